@@ -5,8 +5,8 @@ from __future__ import annotations
 import sys
 
 from app.cli.terminal import end_with_status, run_in_terminal
-from app.error_log import start_log
-from processing.output_streams import write_every_character
+from app.jobs.error_log import start_log
+from processing.core.output_streams import write_every_character
 
 
 def main() -> int:

@@ -12,54 +12,54 @@ from platformdirs import user_documents_path
 from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QApplication
 
-from app.actions.draw import draw_actions
-from app.actions.edit import edit_actions
-from app.actions.file import FileActions
-from app.actions.help import HelpActions
-from app.actions.layouts import adopt_view_toggles, layout_actions
-from app.actions.process import process_actions
-from app.actions.review import review_actions
-from app.actions.sight import sight_actions
-from app.actions.tool_entries import TOOL_ENTRIES
-from app.actions.view import view_actions
+from app.classes.truth_evaluations import TruthEvaluations
 from app.cli.window_request import WindowRequest
-from app.document import Document
-from app.earthwork import Earthwork
-from app.jobs import JobQueue
-from app.main_window import MainWindow
-from app.mouse_tool_factory import make_toolbox
+from app.document.document import Document
+from app.drawing.draw_actions import draw_actions
+from app.drawing.edit_actions import edit_actions
+from app.drawing.mouse_tool_factory import make_toolbox
+from app.drawing.tool_entries import TOOL_ENTRIES
+from app.help.help_actions import HelpActions
+from app.importing.file_actions import FileActions
+from app.importing.source_watch import SourceWatch
+from app.jobs.jobs import JobQueue
+from app.keys.shortcut_editing import give_keys
+from app.layout.view_area import ViewArea
+from app.layout.view_docks import DockedView, ViewDocks
 from app.panel_places import panels_of
-from app.review import Review
-from app.settings import Settings
-from app.shortcut_editing import give_keys
-from app.source_watch import SourceWatch
-from app.theme import Theme
-from app.translation import Translation
-from app.truth_evaluations import TruthEvaluations
-from app.view_area import ViewArea
-from app.view_docks import DockedView, ViewDocks
-from app.volume_exports import VOLUME_EXPORTS
+from app.review.review import Review
+from app.review.review_actions import review_actions
+from app.runs.process_actions import process_actions
+from app.settings.settings import Settings
+from app.settings.theme import Theme
+from app.settings.translation import Translation
+from app.views.layout_actions import adopt_view_toggles, layout_actions
+from app.views.sight_actions import sight_actions
+from app.views.view_actions import view_actions
+from app.volumes.earthwork import Earthwork
+from app.volumes.volume_exports import VOLUME_EXPORTS
+from app.window.main_window import MainWindow
+from app.window.window_contents import WindowContents
+from app.window.window_parts import LastingParts, WindowParts
 from app.window_change import WindowChange
-from app.window_contents import WindowContents
-from app.window_parts import LastingParts, WindowParts
 from app.wiring import connect_lasting, connect_parts
-from processing.text import Language, Text
+from processing.core.text import Language, Text
 from processing.tools.volume import VOLUME
 from widgets.camera_view.panel import CameraPanel
 from widgets.image_view.side_by_side import ImageViews
 from widgets.map_view.view import MapView
-from widgets.panels.attribute_panel import AttributePanel
+from widgets.panels.attributes.attribute_panel import AttributePanel
 from widgets.panels.class_evaluation.class_panel import ClassPanel
 from widgets.panels.class_evaluation.study_panel import StudyPanel
-from widgets.panels.evaluation_panel import EvaluationPanel
-from widgets.panels.feature_table import FeatureTable
 from widgets.panels.jobs_panel import JobsPanel
-from widgets.panels.label_panel import LabelPanel
-from widgets.panels.layers_panel import LayersPanel
-from widgets.panels.processing_panel import ProcessingPanel
-from widgets.panels.project_tree import ProjectTree
-from widgets.panels.review_panel import ReviewPanel
-from widgets.panels.template_panel import TemplatePanel
+from widgets.panels.processing.processing_panel import ProcessingPanel
+from widgets.panels.project.label_panel import LabelPanel
+from widgets.panels.project.layers_panel import LayersPanel
+from widgets.panels.project.project_tree import ProjectTree
+from widgets.panels.review.evaluation_panel import EvaluationPanel
+from widgets.panels.review.review_panel import ReviewPanel
+from widgets.panels.table.feature_table import FeatureTable
+from widgets.panels.templates.template_panel import TemplatePanel
 from widgets.panels.volume.volume_panel import VolumePanel
 from widgets.parts.drawing_bar import DrawingBar
 from widgets.parts.image_bar import ImageBar
@@ -103,7 +103,7 @@ def _close_on_signals(window: MainWindow) -> None:
 
 def _do_demo_job(out: Path) -> int:
     """The demo by itself, in a window that knows nothing of its user's habits."""
-    from app.demo_job import do_demo_job
+    from app.demo.demo_job import do_demo_job
 
     with TemporaryDirectory(prefix="zuka-") as folder:
         parts = build_window(Settings(Path(folder) / "settings.ini"), Path(folder))

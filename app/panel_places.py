@@ -5,9 +5,9 @@ from __future__ import annotations
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QTabWidget, QWidget
 
-from app.window_contents import DockPanel
-from app.window_parts import WindowParts
-from processing.text import Text
+from app.window.window_contents import DockPanel
+from app.window.window_parts import WindowParts
+from processing.core.text import Text
 from widgets.parts.scrolled import make_scrollable
 
 _LEFT = Qt.DockWidgetArea.LeftDockWidgetArea

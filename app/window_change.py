@@ -13,16 +13,16 @@ from dataclasses import dataclass
 from PySide6.QtCore import QObject, Qt, QTimer
 from PySide6.QtWidgets import QApplication
 
-from app.translation import Translation
-from app.window_parts import WindowParts
-from processing.errors import UserError
-from processing.project.volume import ChosenSide
-from processing.text import Language
+from app.settings.translation import Translation
+from app.window.window_parts import WindowParts
+from processing.core.errors import UserError
+from processing.core.text import Language
+from processing.project.volumes.volume import ChosenSide
 from widgets.image_view.panes import ShownImage
 from widgets.image_view.viewport import Viewport
 from widgets.plane_view.viewport import PlaneViewport
-from widgets.scene_view.camera import SceneCamera
 from widgets.scene_view.clipping import ClipChoice
+from widgets.scene_view.rendering.camera import SceneCamera
 from widgets.scene_view.view import SceneView
 
 _LAID_OUT_MS = 50

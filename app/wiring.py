@@ -6,21 +6,21 @@ from pathlib import Path
 
 from PySide6.QtCore import QObject
 
-from app.actions.process import one_click_tools
-from app.class_wiring import connect_classes
-from app.drawing_wiring import connect_drawing
-from app.drive_wiring import connect_drives
-from app.import_wiring import connect_imports
-from app.jobs import JobState, JobStatus
-from app.review_wiring import connect_review
-from app.template_wiring import connect_templates
-from app.view_wiring import connect_views
-from app.volume_wiring import connect_volumes
-from app.window_parts import WindowParts, take_down
-from processing.errors import Unsuitable
-from processing.project.change import Change
-from processing.runner import check_needs, tool_of
-from processing.text import Text
+from app.classes.class_wiring import connect_classes
+from app.drawing.drawing_wiring import connect_drawing
+from app.importing.drive_wiring import connect_drives
+from app.importing.import_wiring import connect_imports
+from app.jobs.jobs import JobState, JobStatus
+from app.review.review_wiring import connect_review
+from app.runs.process_actions import one_click_tools
+from app.templates.template_wiring import connect_templates
+from app.views.view_wiring import connect_views
+from app.volumes.volume_wiring import connect_volumes
+from app.window.window_parts import WindowParts, take_down
+from processing.core.errors import Unsuitable
+from processing.core.text import Text
+from processing.map.change import Change
+from processing.tools.runner import check_needs, tool_of
 from widgets.parts.job_view import JobView
 from widgets.parts.literal_text import literal
 

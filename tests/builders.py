@@ -21,7 +21,7 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.points.trajectory import Trajectory
+from processing.recording.vehicle_path.trajectory import Trajectory
 from tests.street_scene import Rays, StreetScene
 
 Floats = NDArray[np.float64]

@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.cameras.calibration import angles_of
-from processing.cameras.camera import Camera
-from processing.cameras.image_list import CameraImage, ProjectionName
+from processing.recording.camera_images.calibration import angles_of
+from processing.recording.camera_images.camera import Camera
+from processing.recording.camera_images.image_list import CameraImage, ProjectionName
 from tests.builders import START
 from tests.street_scene import Rays, StreetScene
 

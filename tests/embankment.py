@@ -7,8 +7,8 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.earthwork.sides import EpochGround, GroundBlock
-from processing.earthwork.triangle_surface import TriangleSurface
+from processing.methods.earthwork.geometry.triangle_surface import TriangleSurface
+from processing.methods.earthwork.surfaces.sides import EpochGround, GroundBlock
 
 WEST, SOUTH, LEVEL = -12_380.0, -36_690.0, 20.0
 TOP_M, LENGTH_M, TALL_M, GRADE = 20.0, 50.0, 4.0, 1 / 1.5

@@ -5,12 +5,12 @@ from __future__ import annotations
 from contextlib import closing
 from pathlib import Path
 
-from processing.monitor import SilentMonitor
-from processing.project.dropped_files import request_of_files
-from processing.project.importing import import_drives
+from processing.core.monitor import SilentMonitor
+from processing.project.importing.dropped_files import request_of_files
+from processing.project.importing.importing import import_drives
 from processing.project.project import Project
-from processing.runner import RunRequest, run
 from processing.tools.registry import POINT_TOOLS
+from processing.tools.runner import RunRequest, run
 from processing.tools.tool import FinishedColumns
 from resources import path_of
 

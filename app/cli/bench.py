@@ -6,24 +6,34 @@ import argparse
 from collections.abc import Mapping
 
 from app.cli.output import print_json, print_lines
-from app.language import system_language
-from processing.bench.case import BenchmarkCase, BenchmarkOptions, Measurement
-from processing.bench.ground_cases import measure_ground
-from processing.bench.growth import measure_growth
-from processing.bench.image_cases import measure_image, measure_switch
-from processing.bench.import_cases import measure_import, measure_import_memory
-from processing.bench.label_case import measure_labels
-from processing.bench.large_case import measure_large
-from processing.bench.noise_cases import measure_noise
-from processing.bench.peer_cases import measure_normals, measure_searchable
-from processing.bench.review_case import measure_review
-from processing.bench.road_case import measure_road
-from processing.bench.simulate_case import measure_simulate
-from processing.bench.start_case import measure_start
-from processing.bench.table import Circumstances, describe_row, load_now, number, write_table
-from processing.bench.volume_cases import measure_volume, measure_volume_tin, measure_volume_view
-from processing.errors import OutOfRange, use_one_of
-from processing.text import Text
+from app.settings.language import system_language
+from processing.core.errors import OutOfRange, use_one_of
+from processing.core.text import Text
+from processing.laboratory.bench.case import BenchmarkCase, BenchmarkOptions, Measurement
+from processing.laboratory.bench.cases.ground_cases import measure_ground
+from processing.laboratory.bench.cases.image_cases import measure_image, measure_switch
+from processing.laboratory.bench.cases.import_cases import measure_import, measure_import_memory
+from processing.laboratory.bench.cases.label_case import measure_labels
+from processing.laboratory.bench.cases.large_case import measure_large
+from processing.laboratory.bench.cases.noise_cases import measure_noise
+from processing.laboratory.bench.cases.peer_cases import measure_normals, measure_searchable
+from processing.laboratory.bench.cases.review_case import measure_review
+from processing.laboratory.bench.cases.road_case import measure_road
+from processing.laboratory.bench.cases.simulate_case import measure_simulate
+from processing.laboratory.bench.cases.start_case import measure_start
+from processing.laboratory.bench.cases.volume_cases import (
+    measure_volume,
+    measure_volume_tin,
+    measure_volume_view,
+)
+from processing.laboratory.bench.growth import measure_growth
+from processing.laboratory.bench.table import (
+    Circumstances,
+    describe_row,
+    load_now,
+    number,
+    write_table,
+)
 
 CASES: Mapping[str, BenchmarkCase] = {
     "import": measure_import,

@@ -6,11 +6,11 @@ import argparse
 
 from app.cli.opened import terminal_monitor
 from app.cli.output import print_lines
-from app.language import system_language
-from processing.errors import OutOfRange, use_one_of
-from processing.project.export import FORMATS, ExportRequest, export
+from app.settings.language import system_language
+from processing.core.errors import OutOfRange, use_one_of
+from processing.core.text import Text
+from processing.operations.export import FORMATS, ExportRequest, export
 from processing.project.project import Project
-from processing.text import Text
 
 
 def command(arguments: argparse.Namespace) -> int:

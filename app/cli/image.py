@@ -12,15 +12,15 @@ from numpy.typing import NDArray
 
 from app.cli.opened import opened_input, terminal_monitor
 from app.cli.output import print_lines
-from processing.errors import name_with_type
-from processing.formats.png import MOST_PIXELS, MOST_ROWS, write_png
-from processing.image.attributes import ATTRIBUTES, colours
+from processing.core.errors import name_with_type
+from processing.core.monitor import Monitor, SilentMonitor
+from processing.core.text import Text
+from processing.formats.pictures.png import MOST_PIXELS, MOST_ROWS, write_png
+from processing.image.attributes.attributes import ATTRIBUTES, colours
 from processing.image.images_of_drives import image_of
-from processing.image.kinds import ImageKind
 from processing.image.point_image import PointCloudImage
-from processing.monitor import Monitor, SilentMonitor
-from processing.points.drive import Drive
-from processing.text import Text
+from processing.recording.drive import Drive
+from processing.recording.kinds import ImageKind
 
 _STRIP_PIXELS = 2_000_000
 WordT = TypeVar("WordT")

@@ -9,15 +9,15 @@ from pathlib import Path
 from app.cli.opened import request_of, terminal_monitor
 from app.cli.output import print_lines
 from app.cli.terminal import say
-from app.import_words import column_remarks, has_already, known_words, lacking_words
-from app.language import system_language
-from app.long_work import prepare_images
-from processing.points.drive import Drive
+from app.document.import_words import column_remarks, has_already, known_words, lacking_words
+from app.document.long_work import prepare_images
+from app.settings.language import system_language
+from processing.core.text import Text
 from processing.project.additions import Additions, bring_in, home_of, take_over
-from processing.project.import_request import ImportRequest
+from processing.project.importing.import_request import ImportRequest
+from processing.project.importing.unfinished_imports import unfinished_imports
 from processing.project.project import Project, is_project
-from processing.project.unfinished_imports import unfinished_imports
-from processing.text import Text
+from processing.recording.drive import Drive
 
 _ROWS = Text(
     "{rows} rows, {turn} turns/s, {pulse} pulses/s, {each} pulses a turn ({by})",

@@ -10,10 +10,10 @@ import numpy as np
 from app.cli.import_drives import describe_drive
 from app.cli.opened import columns_of
 from app.cli.output import print_json, print_lines
-from app.language import system_language
-from processing.formats.point_files import read_info, read_sample
-from processing.points.drive import Drive
+from app.settings.language import system_language
+from processing.formats.points.point_files import read_info, read_sample
 from processing.project.project import Project, is_project
+from processing.recording.drive import Drive
 
 _SAMPLE_POINTS = 2_000
 

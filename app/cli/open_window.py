@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 
 from app.cli.window_request import WindowRequest
-from processing.errors import MissingInput
-from processing.text import Text
+from processing.core.errors import MissingInput
+from processing.core.text import Text
 
 
 def command(arguments: argparse.Namespace) -> WindowRequest:

@@ -8,17 +8,17 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from app.language import system_language
-from processing.errors import MissingInput
-from processing.monitor import Monitor, TerminalMonitor
-from processing.points.drive import Drive
-from processing.project.catalogue import Catalogue
-from processing.project.catalogue_file import read_catalogue
-from processing.project.importing import ImportRequest, import_drives
+from app.settings.language import system_language
+from processing.core.errors import MissingInput
+from processing.core.monitor import Monitor, TerminalMonitor
+from processing.core.scratch_folder import scratch_folder
+from processing.core.text import Text
+from processing.map.catalogue import Catalogue
+from processing.map.catalogue_file import read_catalogue
+from processing.project.importing.importing import ImportRequest, import_drives
 from processing.project.project import Project, is_project
-from processing.project.scratch_folder import scratch_folder
 from processing.project.work_store import WorkStore
-from processing.text import Text
+from processing.recording.drive import Drive
 from resources import path_of
 
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from processing.text import Language
-from processing.tools.parameters import parameters_of
+from processing.core.parameters import parameters_of
+from processing.core.text import Language
 
 
 def parameter_lines(parameters: type[object], language: Language) -> list[str]:

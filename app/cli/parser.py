@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import NoReturn, cast
 
 from app.cli.window_request import WindowRequest
-from processing.errors import OutOfRange
-from processing.text import Text
+from processing.core.errors import OutOfRange
+from processing.core.text import Text
 
 Command = Callable[[argparse.Namespace], int | WindowRequest]
 
@@ -39,8 +39,8 @@ class _OrderParser(_Parser):
         if not self.what:
             return super().format_help()
         from app.cli.parameter_lines import parameter_lines
-        from app.language import system_language
-        from processing.simulate.simulations import SIMULATIONS
+        from app.settings.language import system_language
+        from processing.laboratory.simulate.simulations import SIMULATIONS
 
         lines = parameter_lines(SIMULATIONS[self.what].request, system_language())
         return "\n".join([super().format_help(), "settings:", *lines, ""])

@@ -12,28 +12,21 @@ from pathlib import Path
 from app.cli.opened import OpenedInput, opened_input, terminal_monitor
 from app.cli.output import print_lines
 from app.cli.set_option import settings_of_words
-from processing.errors import MissingInput, OutOfRange
-from processing.formats.safe_write import refuse_inputs, write_safely
-from processing.ground.stored_surface import StoredSurface
-from processing.monitor import Monitor, PartMonitor
-from processing.points.drive import Drive
-from processing.project.feature import Feature
-from processing.project.feature_files import check_ending, write_feature_file
-from processing.project.found_features import found_features
-from processing.project.point_results import check_point_output, write_point_results
-from processing.project.scratch_folder import scratch_folder
-from processing.project.surface_files import surface_file_of, write_surface_content
-from processing.runner import (
-    RunRequest,
-    check_needs,
-    drives_of,
-    run,
-    run_together,
-    tool_of,
-)
-from processing.text import Text
-from processing.tools.parameters import fill_parameters
+from processing.core.errors import MissingInput, OutOfRange
+from processing.core.monitor import Monitor, PartMonitor
+from processing.core.parameters import fill_parameters
+from processing.core.safe_write import refuse_inputs, write_safely
+from processing.core.scratch_folder import scratch_folder
+from processing.core.text import Text
+from processing.formats.vectors.feature_files import check_ending, write_feature_file
+from processing.map.feature import Feature
+from processing.methods.ground.stored_surface import StoredSurface
+from processing.project.results.found_features import found_features
+from processing.project.results.point_results import check_point_output, write_point_results
+from processing.project.results.surface_files import surface_file_of, write_surface_content
+from processing.recording.drive import Drive
 from processing.tools.registry import COMPARISONS
+from processing.tools.runner import RunRequest, check_needs, drives_of, run, run_together, tool_of
 from processing.tools.tool import CandidateResult, FinishedColumns, Tool
 
 _RUNNING = 0.8

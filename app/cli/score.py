@@ -7,25 +7,25 @@ import tempfile
 from contextlib import closing
 from pathlib import Path
 
-from app.cli.file_score_words import file_score_json, file_score_lines
 from app.cli.opened import terminal_monitor
 from app.cli.output import print_json, print_lines
-from app.cli.point_score_words import point_score_json, point_score_lines
-from app.language import system_language
-from processing.errors import Unsuitable
-from processing.formats.mapped_shapes import read_mapped
-from processing.formats.number_file import read_numbers
-from processing.formats.point_codes import read_result, read_truth
-from processing.monitor import Monitor
-from processing.project.mapped_map import agreed_map, found_map
+from app.cli.scores.file_score_words import file_score_json, file_score_lines
+from app.cli.scores.point_score_words import point_score_json, point_score_lines
+from app.settings.language import system_language
+from processing.core.errors import Unsuitable
+from processing.core.monitor import Monitor
+from processing.formats.points.point_codes import read_result, read_truth
+from processing.formats.reports.number_file import read_numbers
+from processing.formats.vectors.mapped_shapes import read_mapped
+from processing.project.evaluation.mapped_map import agreed_map, found_map
 from processing.project.project import Project, is_project
-from processing.score.coded_points import CodedFile, pairs_by_order
-from processing.score.file_scores import FeatureScorer, FileScore, VolumeScorer
-from processing.score.mapped_features import MappedFile, check_same_system
-from processing.score.pairs_by_position import pairs_by_position
-from processing.score.point_scores import PointScore, PointScorer
-from processing.score.scorers import scorer_of
-from processing.score.volumes import MEASURES
+from processing.scoring.coded_points import CodedFile, pairs_by_order
+from processing.scoring.file_scores import FeatureScorer, FileScore, VolumeScorer
+from processing.scoring.mapped_features import MappedFile, check_same_system
+from processing.scoring.pairs_by_position import pairs_by_position
+from processing.scoring.point_scores import PointScore, PointScorer
+from processing.scoring.scorers import scorer_of
+from processing.scoring.volumes import MEASURES
 
 _ORDER, _POSITION = "order", "place"
 

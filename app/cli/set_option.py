@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from processing.errors import OutOfRange
-from processing.text import Text
+from processing.core.errors import OutOfRange
+from processing.core.text import Text
 
 
 def settings_of_words(words: list[str]) -> dict[str, str]:

@@ -7,14 +7,14 @@ import argparse
 from app.cli.opened import terminal_monitor
 from app.cli.output import print_lines
 from app.cli.set_option import settings_of_words
-from app.language import system_language
-from processing.simulate.scanning.density import density_map, survey_of
-from processing.simulate.scanning.density_files import write_density
-from processing.simulate.scanning.sensors import sensor_of
-from processing.simulate.simulated import Simulated
-from processing.simulate.simulations import SIMULATIONS
-from processing.text import Language, Text
-from processing.tools.parameters import fill_parameters
+from app.settings.language import system_language
+from processing.core.parameters import fill_parameters
+from processing.core.text import Language, Text
+from processing.laboratory.simulate.scanning.density import density_map, survey_of
+from processing.laboratory.simulate.scanning.density_files import write_density
+from processing.laboratory.simulate.scanning.sensors import sensor_of
+from processing.laboratory.simulate.simulated import Simulated
+from processing.laboratory.simulate.simulations import SIMULATIONS
 
 _MADE = Text("{folder}: {points:,} points, {crs}", "{folder}: {points:,}点, {crs}")
 _TRUTH = Text("truth: {folder}", "正解データ: {folder}")

@@ -6,31 +6,31 @@ import argparse
 import math
 from pathlib import Path
 
-from app.cli.aligned import align_lines
 from app.cli.opened import OpenedInput, opened_input, terminal_monitor
 from app.cli.output import print_lines
+from app.cli.scores.aligned import align_lines
 from app.cli.set_option import settings_of_words
-from app.language import system_language
-from processing.errors import OutOfRange
-from processing.formats.safe_write import refuse_inputs
-from processing.monitor import Monitor, PartMonitor
-from processing.points.drive import Drive
-from processing.points.ordering import read_chunk
-from processing.project.class_tables import write_study
-from processing.project.scratch_folder import scratch_folder
-from processing.project.truth_of_file import coded_truth, truth_of_file
-from processing.project.truth_store import TRUTH
-from processing.runner import check_needs, tool_of
-from processing.score.asked_classes import ASKED
-from processing.score.parameter_study import (
+from app.settings.language import system_language
+from processing.core.errors import OutOfRange
+from processing.core.monitor import Monitor, PartMonitor
+from processing.core.parameters import fill_parameters
+from processing.core.safe_write import refuse_inputs
+from processing.core.scratch_folder import scratch_folder
+from processing.core.text import Language, Text
+from processing.project.evaluation.class_tables import write_study
+from processing.project.evaluation.parameter_study import (
     ParameterStudy,
     StudyRequest,
     TruthOf,
     study,
     varied_of,
 )
-from processing.text import Language, Text
-from processing.tools.parameters import fill_parameters
+from processing.project.evaluation.truth_of_file import coded_truth, truth_of_file
+from processing.project.evaluation.truth_store import TRUTH
+from processing.recording.columns.ordering import read_chunk
+from processing.recording.drive import Drive
+from processing.scoring.asked_classes import ASKED
+from processing.tools.runner import check_needs, tool_of
 
 _READING = 0.1
 _HEAD = (Text("precision", "適合率"), Text("recall", "再現率"), Text.same("F"))

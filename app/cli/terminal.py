@@ -10,9 +10,9 @@ from typing import TypeVar
 
 from app.cli.parser import read_arguments
 from app.cli.window_request import WindowRequest
-from app.error_log import defect_of, log_user_error
-from app.language import system_language
-from processing.errors import Cancelled, UserError
+from app.jobs.error_log import defect_of, log_user_error
+from app.settings.language import system_language
+from processing.core.errors import Cancelled, UserError
 
 StatusT = TypeVar("StatusT")
 DONE, DEFECT, BAD_INPUT, CANCELLED = 0, 1, 2, 3

@@ -6,10 +6,10 @@ import argparse
 
 from app.cli.output import print_json, print_lines
 from app.cli.parameter_lines import parameter_lines
-from app.language import system_language
-from processing.runner import any_tool
-from processing.tools.parameters import Parameter, parameters_of
+from app.settings.language import system_language
+from processing.core.parameters import Parameter, parameters_of
 from processing.tools.registry import EVERY_TOOL
+from processing.tools.runner import any_tool
 from processing.tools.tool import Tool
 
 

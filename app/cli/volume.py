@@ -16,21 +16,21 @@ from app.cli.output import print_lines
 from app.cli.set_option import settings_of_words
 from app.cli.volume_reports import check_ending, check_report_options, volume_reports_of
 from app.cli.volume_sides import NamedSide, named_side
-from processing.earthwork.as_built import AsBuiltResult
-from processing.earthwork.boundary import boundary_polygon
-from processing.earthwork.comparison import compare
-from processing.earthwork.sides import EpochGround
-from processing.earthwork.volume_parameters import VolumeParameters
-from processing.earthwork.volume_result import VolumeResult
-from processing.earthwork.volume_scope import VolumeScope
-from processing.errors import MissingInput, Unsuitable
-from processing.formats.boundary_files import file_and_layer, read_boundary
-from processing.formats.line_files import read_lines
-from processing.formats.safe_write import write_safely
-from processing.monitor import parts_of
-from processing.project.scratch_folder import scratch_folder
-from processing.text import Text
-from processing.tools.parameters import fill_parameters
+from processing.core.errors import MissingInput, Unsuitable
+from processing.core.monitor import parts_of
+from processing.core.parameters import fill_parameters
+from processing.core.safe_write import write_safely
+from processing.core.scratch_folder import scratch_folder
+from processing.core.text import Text
+from processing.formats.vectors.boundary_files import file_and_layer, read_boundary
+from processing.formats.vectors.line_files import read_lines
+from processing.methods.earthwork.as_built.as_built import AsBuiltResult
+from processing.methods.earthwork.geometry.boundary import boundary_polygon
+from processing.methods.earthwork.geometry.volume_scope import VolumeScope
+from processing.methods.earthwork.surfaces.sides import EpochGround
+from processing.methods.earthwork.volumes.comparison import compare
+from processing.methods.earthwork.volumes.volume_parameters import VolumeParameters
+from processing.methods.earthwork.volumes.volume_result import VolumeResult
 
 _JSON = ".json"
 

@@ -9,31 +9,31 @@ from importlib.metadata import version
 from pathlib import Path
 
 from app.cli.volume_sides import NamedSide, is_design, is_level
-from app.language import system_language
-from processing.earthwork.as_built import AsBuiltResult, evaluate_as_built
-from processing.earthwork.comparison_checks import ground_and_design, name_of
-from processing.earthwork.limits import AsBuiltLimits
-from processing.earthwork.limits_file import as_built_limits, read_limits
-from processing.earthwork.sides import EpochGround
-from processing.earthwork.triangle_surface import TriangleSurface
-from processing.earthwork.volume_parameters import VolumeParameters
-from processing.earthwork.volume_result import VolumeResult
-from processing.earthwork.volume_scope import VolumeScope
-from processing.errors import MissingInput, OutOfRange, Unsuitable, use_one_of
-from processing.formats.as_built_form import write_as_built_form
-from processing.formats.as_built_rows import AsBuiltFacts
-from processing.formats.as_built_tables import write_as_built_csv, write_as_built_xlsx
-from processing.formats.boundary_files import file_and_layer
-from processing.formats.change_geotiff import write_change_geotiff
-from processing.formats.safe_write import refuse_inputs
-from processing.formats.volume_report import write_volume_report
-from processing.formats.volume_rows import VolumeFacts
-from processing.formats.volume_tables import write_volume_csv, write_volume_xlsx
-from processing.formats.work_facts import SideFacts, WorkFacts
-from processing.monitor import Monitor
+from app.settings.language import system_language
+from processing.core.errors import MissingInput, OutOfRange, Unsuitable, use_one_of
+from processing.core.monitor import Monitor
+from processing.core.safe_write import refuse_inputs
+from processing.core.text import Text
+from processing.formats.reports.as_built_form import write_as_built_form
+from processing.formats.reports.as_built_rows import AsBuiltFacts
+from processing.formats.reports.as_built_tables import write_as_built_csv, write_as_built_xlsx
+from processing.formats.reports.volume_report import write_volume_report
+from processing.formats.reports.volume_rows import VolumeFacts
+from processing.formats.reports.volume_tables import write_volume_csv, write_volume_xlsx
+from processing.formats.reports.work_facts import SideFacts, WorkFacts
+from processing.formats.surfaces.change_geotiff import write_change_geotiff
+from processing.formats.vectors.boundary_files import file_and_layer
+from processing.methods.earthwork.as_built.as_built import AsBuiltResult, evaluate_as_built
+from processing.methods.earthwork.as_built.limits import AsBuiltLimits
+from processing.methods.earthwork.as_built.limits_file import as_built_limits, read_limits
+from processing.methods.earthwork.geometry.triangle_surface import TriangleSurface
+from processing.methods.earthwork.geometry.volume_scope import VolumeScope
+from processing.methods.earthwork.surfaces.sides import EpochGround
+from processing.methods.earthwork.volumes.comparison_checks import ground_and_design, name_of
+from processing.methods.earthwork.volumes.volume_parameters import VolumeParameters
+from processing.methods.earthwork.volumes.volume_result import VolumeResult
 from processing.project.project import is_project
 from processing.project.work_details import WorkDetails, read_work_details
-from processing.text import Text
 
 _MAPS = (".tif", ".tiff")
 _PAPERS = (".pdf", ".xlsx", ".csv")

@@ -11,18 +11,18 @@ from pathlib import Path
 import numpy as np
 
 from app.cli.opened import OpenedInput, opened_input
-from processing.earthwork.epoch_ground import ground_of_drives, has_ground
-from processing.earthwork.sides import Level, Side
-from processing.errors import MissingInput, Unsuitable
-from processing.formats.design import read_design
-from processing.monitor import Monitor, PartMonitor
-from processing.points.drive import Drive
-from processing.points.recorded_together import recordings_of
+from processing.core.errors import MissingInput, Unsuitable
+from processing.core.monitor import Monitor, PartMonitor
+from processing.core.text import Text
+from processing.formats.surfaces.design import read_design
+from processing.methods.earthwork.surfaces.epoch_ground import ground_of_drives, has_ground
+from processing.methods.earthwork.surfaces.sides import Level, Side
 from processing.project.project import is_project
 from processing.project.work_store import WorkStore
-from processing.runner import mark_all
-from processing.text import Text
+from processing.recording.drive import Drive
+from processing.recording.recorded_together import recordings_of
 from processing.tools.ground import GROUND_TOOL
+from processing.tools.runner import mark_all
 
 _DESIGN, _NAME_MARK = ".xml", "#"
 _FOUND = 0.7

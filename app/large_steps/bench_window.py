@@ -9,9 +9,9 @@ from PySide6.QtOpenGLWidgets import QOpenGLWidget
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QWidget
 
-from app.painted_frames import PaintedFrames, Pulse, wait_until
+from app.large_steps.painted_frames import PaintedFrames, Pulse, wait_until
 from app.screenshots.simulated_mouse import SimulatedMouse
-from app.window_parts import WindowParts
+from app.window.window_parts import WindowParts
 from widgets.image_view.minimap import Minimap
 from widgets.image_view.tile_images import TileImages
 

@@ -12,7 +12,7 @@ from PySide6.QtTest import QTest
 from app.large_steps.bench_window import BenchWindow, StepTimings
 from app.large_steps.image import drag_to, go_to, nearer
 from app.screenshots.simulated_mouse import LEFT, NO_BUTTON, PLAIN
-from processing.project.catalogue import Geometry
+from processing.map.catalogue import Geometry
 
 _HOVERS = 200
 _VERTICES = 50

@@ -5,8 +5,8 @@ from __future__ import annotations
 import time
 
 from app.large_steps.bench_window import BenchWindow, StepTimings
-from app.painted_frames import wait_until
-from processing.project.export import ExportRequest
+from app.large_steps.painted_frames import wait_until
+from processing.operations.export import ExportRequest
 
 
 def start(window: BenchWindow) -> StepTimings:

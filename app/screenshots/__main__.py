@@ -22,10 +22,10 @@ from app.screenshots.screenshot_window import ScreenshotWindow
 from app.screenshots.simulated_mouse import SimulatedMouse
 from app.screenshots.street import draw_street, open_street
 from app.screenshots.views import VIEWS
-from app.settings import Settings
-from app.theme import ThemeChoice
-from processing.output_streams import write_every_character
-from processing.text import Language
+from app.settings.settings import Settings
+from app.settings.theme import ThemeChoice
+from processing.core.output_streams import write_every_character
+from processing.core.text import Language
 
 ON_STREET: Mapping[str, Callable[[ScreenshotWindow], None]] = {
     **FRAME,

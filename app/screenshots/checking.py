@@ -10,17 +10,17 @@ import numpy as np
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QTreeWidget
 
-from app.review import Review
+from app.review.review import Review
 from app.screenshots.screenshot_window import ScreenshotWindow
 from app.screenshots.street import LEFT, RIGHT
-from processing.project.change import Change
-from processing.project.feature import Feature, Vertex
-from processing.project.found_features import found_features
-from processing.project.review_state import ReviewOrder
-from processing.text import Text
+from processing.core.text import Text
+from processing.map.change import Change
+from processing.map.feature import Feature, Vertex
+from processing.project.results.found_features import found_features
+from processing.project.review.review_state import ReviewOrder
 from processing.tools.template import TEMPLATE
 from processing.tools.tool import Candidate, CandidateGeometry, CandidateResult
-from widgets.panels.project_runs import RUN
+from widgets.panels.project.project_runs import RUN
 
 _STARTED = datetime(2026, 11, 20, 9, 30, tzinfo=UTC)
 _SAW_TEETH = 17

@@ -9,8 +9,8 @@ from PySide6.QtCore import QPoint, Qt
 from app.screenshots.screenshot_window import ScreenshotWindow
 from app.screenshots.simulated_mouse import CONTROL, SHIFT
 from app.screenshots.street import CARRIAGEWAY_M, LEFT, MARKING_M, RIGHT, SIDEWALK_M, at
-from processing.project.feature import Position
-from widgets.mouse_tools.draw_line import DrawLine
+from processing.map.feature import Position
+from widgets.mouse_tools.drawing.draw_line import DrawLine
 
 _FOLLOWED_MS = 20_000
 

@@ -8,11 +8,11 @@ from collections.abc import Callable, Mapping
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QCheckBox, QLineEdit, QTreeWidget
 
-from app.catalogue_update import adopt_catalogue
+from app.catalogue.catalogue_update import adopt_catalogue
 from app.screenshots.screenshot_window import ScreenshotWindow
 from app.screenshots.simulated_mouse import CONTROL
 from app.screenshots.street import RIGHT, at
-from processing.project.dropped_files import request_of_files
+from processing.project.importing.dropped_files import request_of_files
 from resources import path_of
 from widgets.dialogs.export_map import ExportForm
 from widgets.dialogs.import_drive import ImportForm

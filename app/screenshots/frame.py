@@ -11,8 +11,8 @@ from app.screenshots.editing import several_chosen
 from app.screenshots.screenshot_window import ScreenshotWindow
 from app.screenshots.simulated_mouse import CONTROL, SHIFT
 from app.screenshots.street import RIGHT, at
-from processing.monitor import Monitor
-from processing.text import Text
+from processing.core.monitor import Monitor
+from processing.core.text import Text
 from widgets.parts.command_palette import CommandPalette
 
 _ROW = Text("row {row} of 1,046", "1,046行中{row}行目")

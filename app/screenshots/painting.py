@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QPushButton
 from app.screenshots.screenshot_window import ScreenshotWindow
 from app.screenshots.simulated_mouse import CONTROL, SHIFT
 from app.screenshots.street import MARKING_M, RIGHT, SIDEWALK_M, at
-from processing.project.feature import Position
+from processing.map.feature import Position
 from processing.section.cut import Cut
 from widgets.section_view.pane import SectionPane
 from widgets.shared.cursor import PickedPosition

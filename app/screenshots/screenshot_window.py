@@ -16,16 +16,16 @@ from PySide6.QtGui import QCursor, QGuiApplication, QImage
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QDialog, QDockWidget, QLineEdit, QWidget
 
-from app.review import Review
+from app.layout.view_area import AreaLayout
+from app.review.review import Review
 from app.screenshots.simulated_mouse import CONTROL, PLAIN, SimulatedMouse
-from app.view_area import AreaLayout
-from app.window_parts import WindowParts
-from processing.image.nearest import nearest_point
-from processing.points.drive import Drive
-from processing.project.feature import Feature, PointReference, Position
+from app.window.window_parts import WindowParts
+from processing.image.search.nearest import nearest_point
+from processing.map.feature import Feature, PointReference, Position
+from processing.recording.drive import Drive
 from widgets.parts.command_palette import CommandPalette
 from widgets.scene_view.clipping import ClipChoice
-from widgets.section_view.settings import SectionSettings
+from widgets.section_view.picture.settings import SectionSettings
 from widgets.shared.cursor import PickedPosition
 from widgets.shared.image_orientation import ImageOrientation
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from app.sample_drawing import read_sample_drawing
+from app.demo.sample_drawing import read_sample_drawing
 from app.screenshots.screenshot_window import ScreenshotWindow
-from processing.project.feature import Position
+from processing.map.feature import Position
 
 RIGHT, LEFT = "right", "left"
 CARRIAGEWAY_M, MARKING_M, SIDEWALK_M = -2.0, -0.7, 1.2

@@ -8,11 +8,11 @@ from dataclasses import replace
 import numpy as np
 from PySide6.QtCore import QPoint, Qt
 
+from app.layout.view_docks import ViewLayout
 from app.screenshots.screenshot_window import ScreenshotWindow
 from app.screenshots.simulated_mouse import CONTROL
 from app.screenshots.street import LEFT, MARKING_M, RIGHT, at
-from app.view_docks import ViewLayout
-from processing.project.feature import Position
+from processing.map.feature import Position
 from widgets.camera_view.stereo_measurement import StereoMeasurement
 from widgets.camera_view.view import CameraView
 from widgets.plane_view.view import PlaneView

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from processing.cameras.camera import Camera
-from processing.cameras.choice import pixels_per_radian
 from processing.cameras.depth_kernels import front_kernel, hidden_kernel
-from processing.cameras.image_list import CameraImage
 from processing.cameras.surroundings import ImageSurroundings, SizedPoints
+from processing.recording.camera_images.camera import Camera
+from processing.recording.camera_images.choice import pixels_per_radian
+from processing.recording.camera_images.image_list import CameraImage
 
 if TYPE_CHECKING:  # a drive knows its cameras, so importing it here would be a circle
-    from processing.points.drive import Drive
+    from processing.recording.drive import Drive
 
 REACH_M = 60.0
 TOLERANCE_M = 0.2

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.kernels import kernel
+from processing.core.kernels import kernel
 
 ALONE_M = 0.01
 """The size of a point without neighbours: it hides next to nothing."""

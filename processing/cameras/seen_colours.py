@@ -9,17 +9,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.cameras.camera import Camera
-from processing.cameras.choice import ImageFinder
-from processing.cameras.colouring import SeenColours, penalties
 from processing.cameras.depth import TOLERANCE_M, DepthPicture
-from processing.cameras.image_list import ImageList
-from processing.cameras.image_pixels import read_pixels
-from processing.errors import MissingInput, UserError
-from processing.text import Text
+from processing.core.errors import MissingInput, UserError
+from processing.core.text import Text
+from processing.recording.camera_images.camera import Camera
+from processing.recording.camera_images.choice import ImageFinder
+from processing.recording.camera_images.colouring import SeenColours, penalties
+from processing.recording.camera_images.image_list import ImageList
+from processing.recording.camera_images.image_pixels import read_pixels
 
 if TYPE_CHECKING:  # a drive knows its cameras, so importing it here would be a circle
-    from processing.points.drive import Drive
+    from processing.recording.drive import Drive
 
 _READ_PIXELS = 12_000_000
 _KEPT_DEPTHS = 32

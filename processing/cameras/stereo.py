@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from processing.cameras.camera import Camera
-from processing.cameras.choice import pixels_per_radian
-from processing.errors import Unsuitable
-from processing.text import Text
+from processing.core.errors import Unsuitable
+from processing.core.text import Text
+from processing.recording.camera_images.camera import Camera
+from processing.recording.camera_images.choice import pixels_per_radian
 
 PIXEL_ERROR_PX = 1.0
 """How well a person marks a pixel, one sigma."""

@@ -11,15 +11,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.cameras.camera import Camera
-from processing.cameras.choice import pixels_per_radian
 from processing.cameras.depth_kernels import ALONE_M, sizes_kernel
 from processing.image.images_of_drives import image_of
-from processing.image.tiles import TileKey, TilePyramid
-from processing.points.counted_classes import class_columns
+from processing.image.tiles.tiles import TileKey, TilePyramid
+from processing.recording.camera_images.camera import Camera
+from processing.recording.camera_images.choice import pixels_per_radian
+from processing.recording.columns.counted_classes import class_columns
 
 if TYPE_CHECKING:  # a drive knows its cameras, so importing it here would be a circle
-    from processing.points.drive import Drive
+    from processing.recording.drive import Drive
 
 OWN_BODY_M = 1.5
 """Points nearer to a camera than this are the vehicle's own body, or its dirt."""

@@ -1,1 +1,1 @@
-"""The point-cloud image: rows, pixels, tiles and what they show."""
+"""The point-cloud image: rows and pixels over a drive."""

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from processing.errors import Unsuitable
-from processing.image.kinds import ImageKind
+from processing.core.errors import Unsuitable
+from processing.core.text import Text
 from processing.image.point_image import PointCloudImage
-from processing.points.drive import Drive
-from processing.text import Text
+from processing.recording.drive import Drive
+from processing.recording.kinds import ImageKind
 
 
 def image_of(drive: Drive, kind: ImageKind) -> PointCloudImage:

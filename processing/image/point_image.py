@@ -12,12 +12,10 @@ from typing import Self, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.image.coordinates import Coordinates
-from processing.image.fixed_raster import FixedRaster, fixed_raster_of
-from processing.image.grid import PixelGrid
-from processing.image.image_rows import forget_rows, image_rows
-from processing.image.kinds import ImageKind
-from processing.image.point_image_kernels import (
+from processing.image.rows.fixed_raster import FixedRaster, fixed_raster_of
+from processing.image.rows.grid import PixelGrid
+from processing.image.rows.image_rows import forget_rows, image_rows
+from processing.image.rows.point_image_kernels import (
     PixelLayout,
     columns_kernel,
     first_at_column,
@@ -26,11 +24,13 @@ from processing.image.point_image_kernels import (
     shown_point,
     stretches_kernel,
 )
-from processing.image.rows_of_kind import RevolutionSource
-from processing.image.tiles import TilePyramid
-from processing.points.counted_classes import ClassColumns
-from processing.points.damaged_pulses import damaged_pulses
-from processing.points.drive import Drive
+from processing.image.rows.rows_of_kind import RevolutionSource
+from processing.image.tiles.tiles import TilePyramid
+from processing.recording.columns.coordinates import Coordinates
+from processing.recording.columns.counted_classes import ClassColumns
+from processing.recording.columns.damaged_pulses import damaged_pulses
+from processing.recording.drive import Drive
+from processing.recording.kinds import ImageKind
 
 _Integers = NDArray[np.int64]
 

@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import report_as_user_error
-from processing.points.columns import column_path
-from processing.points.drive import Drive
+from processing.core.errors import report_as_user_error
+from processing.recording.columns.columns import column_path
+from processing.recording.drive import Drive
 
 LABEL = "label"
 CODES = 256

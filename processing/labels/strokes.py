@@ -8,14 +8,14 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import Unsuitable
+from processing.core.errors import Unsuitable
+from processing.core.kernels import kernel
+from processing.core.text import Text
 from processing.image.images_of_drives import image_of
 from processing.image.point_image import PointCloudImage
-from processing.kernels import kernel
-from processing.points.drive import Drive
+from processing.recording.drive import Drive
 from processing.section.cut import Cut
 from processing.section.points_in_cut import points_in_cut
-from processing.text import Text
 
 _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]

@@ -9,26 +9,26 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.cameras.image_list import ImageList
-from processing.cameras.image_store import write_images
-from processing.errors import UNCHANGED, OutOfRange
-from processing.formats.image_list import read_image_list
-from processing.monitor import Monitor, PartMonitor
-from processing.points.drive import SCAN, Drive
-from processing.points.ordering import sample_column
-from processing.project.drive_completion import CompletedDrive, complete_drive
-from processing.project.import_request import ImportRequest
-from processing.project.importing import import_drives
-from processing.project.known_files import known_files
-from processing.project.project import Project
-from processing.project.trajectory_beside import trajectories_beside
-from processing.project.trajectory_choice import (
+from processing.core.errors import UNCHANGED, OutOfRange
+from processing.core.monitor import Monitor, PartMonitor
+from processing.core.text import Text
+from processing.formats.trajectories.image_list import read_image_list
+from processing.project.importing.drive_completion import CompletedDrive, complete_drive
+from processing.project.importing.import_request import ImportRequest
+from processing.project.importing.importing import import_drives
+from processing.project.importing.known_files import known_files
+from processing.project.importing.trajectory_beside import trajectories_beside
+from processing.project.importing.trajectory_choice import (
     NamedTrajectory,
     match_trajectory,
     read_trajectories,
 )
-from processing.project.unfinished_imports import import_folder
-from processing.text import Text
+from processing.project.importing.unfinished_imports import import_folder
+from processing.project.project import Project
+from processing.recording.camera_images.image_list import ImageList
+from processing.recording.camera_images.image_store import write_images
+from processing.recording.columns.ordering import sample_column
+from processing.recording.drive import SCAN, Drive
 
 _SAMPLE_POINTS = 200_000
 _SLACK_S = 1.0
@@ -106,7 +106,7 @@ def bring_in(
     Raises
     ------
     UserError, Cancelled
-        As :func:`processing.project.importing.import_drives`; nothing is left behind.
+        As :func:`processing.project.importing.importing.import_drives`; nothing is left behind.
     """
     sorted_out = known_files(request.inputs, home.drives, monitor)
     new = replace(request, inputs=sorted_out.new)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from processing.points.drive import Drive
-from processing.project.change import Change
-from processing.project.feature import Feature, Status
+from processing.map.change import Change
+from processing.map.feature import Feature, Status
 from processing.project.project import Project
+from processing.recording.drive import Drive
 
 
 def removal_of(project: Project, drives: Sequence[Drive]) -> Change:

@@ -11,48 +11,48 @@ from uuid import uuid4
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import MissingInput, report_as_user_error
-from processing.owned_files import remove_folder
-from processing.points.drive import Drive
-from processing.project.catalogue import Catalogue
-from processing.project.catalogue_adoption import CatalogueFile
-from processing.project.catalogue_change import CatalogueComparison, compare
-from processing.project.catalogue_file import read_catalogue
-from processing.project.catalogue_writing import write_catalogue
-from processing.project.change import ListedDrive
-from processing.project.database import Database
-from processing.project.database_errors import damaged
-from processing.project.drive_completion import CompletedDrive, drive_changed
-from processing.project.drive_folders import DRIVES, DriveFolders
-from processing.project.feature_store import FeatureStore
-from processing.project.filed_labels import LABEL_STEPS
-from processing.project.history import History
-from processing.project.label_filing import remove_unlisted
-from processing.project.label_layer import LabelLayer
-from processing.project.map_origin import ORIGIN, origin_of, stored_origin
-from processing.project.new_folder import (
-    UNFINISHED,
-    database_files,
-    make_database,
-    refuse_occupied,
-    remove_database,
-)
-from processing.project.no_links import refuse_links
-from processing.project.open_drives import OpenDrives
-from processing.project.project_lock import LOCK_FILES, ProjectLock
-from processing.project.project_settings import ProjectSettings, write_setting
-from processing.project.reference_system import (
+from processing.core.errors import MissingInput, report_as_user_error
+from processing.core.owned_files import remove_folder
+from processing.core.text import Text
+from processing.map.catalogue import Catalogue
+from processing.map.catalogue_change import CatalogueComparison, compare
+from processing.map.catalogue_file import read_catalogue
+from processing.map.catalogue_writing import write_catalogue
+from processing.map.change import ListedDrive
+from processing.map.filed_labels import LABEL_STEPS
+from processing.map.reference_system import (
     CRS,
     other_system,
     reference_system,
     srs_number,
     write_reference_system,
 )
-from processing.project.runs import Runs
-from processing.project.source_files import HOMES, SourceFiles
-from processing.project.unfinished_imports import TEMPORARY, unfinished_imports
-from processing.project.volume_store import VOLUMES
-from processing.text import Text
+from processing.project.importing.drive_completion import CompletedDrive, drive_changed
+from processing.project.importing.unfinished_imports import TEMPORARY, unfinished_imports
+from processing.project.sources.source_files import HOMES, SourceFiles
+from processing.project.store.catalogue_adoption import CatalogueFile
+from processing.project.store.database import Database
+from processing.project.store.database_errors import damaged
+from processing.project.store.drive_folders import DRIVES, DriveFolders
+from processing.project.store.feature_store import FeatureStore
+from processing.project.store.history import History
+from processing.project.store.label_filing import remove_unlisted
+from processing.project.store.label_layer import LabelLayer
+from processing.project.store.map_origin import ORIGIN, origin_of, stored_origin
+from processing.project.store.new_folder import (
+    UNFINISHED,
+    database_files,
+    make_database,
+    refuse_occupied,
+    remove_database,
+)
+from processing.project.store.no_links import refuse_links
+from processing.project.store.open_drives import OpenDrives
+from processing.project.store.project_lock import LOCK_FILES, ProjectLock
+from processing.project.store.project_settings import ProjectSettings, write_setting
+from processing.project.store.runs import Runs
+from processing.project.volumes.volume_store import VOLUMES
+from processing.recording.drive import Drive
 from resources import path_of
 
 _DATABASE = "project.gpkg"

@@ -5,17 +5,17 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
-from processing.errors import OutOfRange
-from processing.formats.safe_write import write_safely
-from processing.project.project_settings import ProjectSettings
-from processing.templates.profile_template import ProfileTemplate
-from processing.templates.template_text import (
+from processing.core.errors import OutOfRange
+from processing.core.safe_write import write_safely
+from processing.core.text import Text
+from processing.methods.templates.profile_template import ProfileTemplate
+from processing.methods.templates.template_text import (
     read_template,
     template_of,
     template_text,
     values_of,
 )
-from processing.text import Text
+from processing.project.store.project_settings import ProjectSettings
 
 _KEY = "templates"
 ENDING = ".json"

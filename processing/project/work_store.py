@@ -7,14 +7,14 @@ from contextlib import suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from processing.earthwork.limits import AsBuiltLimits
-from processing.earthwork.limits_file import BUNDLED, as_built_limits, limits_of
-from processing.errors import BadFile, UserError
-from processing.formats.safe_write import write_safely
-from processing.project.project_settings import JsonValue, ProjectSettings
+from processing.core.errors import BadFile, UserError
+from processing.core.safe_write import write_safely
+from processing.core.text import Text
+from processing.core.toml_lines import toml_content
+from processing.methods.earthwork.as_built.limits import AsBuiltLimits
+from processing.methods.earthwork.as_built.limits_file import BUNDLED, as_built_limits, limits_of
+from processing.project.store.project_settings import JsonValue, ProjectSettings
 from processing.project.work_details import WorkDetails, details_of
-from processing.text import Text
-from processing.toml_lines import toml_content
 from resources import path_of
 
 _DETAILS, _LIMITS = "work_details", "as_built_limits"

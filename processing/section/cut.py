@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from processing.errors import OutOfRange
-from processing.text import Text
+from processing.core.errors import OutOfRange
+from processing.core.text import Text
 
 Floats = NDArray[np.float64]
 

@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.kernels import kernel
 from processing.image.images_of_drives import image_of
-from processing.image.tile_kernels import COUNT, HIGHEST, LOWEST
-from processing.image.tiles import TileKey
-from processing.kernels import kernel
-from processing.points.counted_classes import seen_points
+from processing.image.tiles.tile_kernels import COUNT, HIGHEST, LOWEST
+from processing.image.tiles.tiles import TileKey
+from processing.recording.columns.counted_classes import seen_points
 from processing.section.cut import Cut
 
-if TYPE_CHECKING:  # processing.points.drive makes images, so importing it here would be a circle
-    from processing.points.drive import Drive
+if TYPE_CHECKING:  # processing.recording.drive makes images, so importing it here would be a circle
+    from processing.recording.drive import Drive
 
 _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from processing.core.text import Text
 from processing.section.cut import Cut
 from processing.section.points_in_cut import section_points
-from processing.text import Text
 
-if TYPE_CHECKING:  # processing.points.drive makes images, so importing it here would be a circle
-    from processing.points.drive import Drive
+if TYPE_CHECKING:  # processing.recording.drive makes images, so importing it here would be a circle
+    from processing.recording.drive import Drive
 
 Floats = NDArray[np.float64]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.kernels import kernel
+from processing.core.kernels import kernel
 
 Floats = NDArray[np.float64]
 Colours = NDArray[np.uint8]

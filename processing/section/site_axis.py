@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import UserError
+from processing.core.errors import UserError
 from processing.section.stations import Stations
 
-if TYPE_CHECKING:  # processing.points.drive makes images, so importing it here would be a circle
-    from processing.points.drive import Drive
+if TYPE_CHECKING:  # processing.recording.drive makes images, so importing it here would be a circle
+    from processing.recording.drive import Drive
 
 Floats = NDArray[np.float64]
 

@@ -7,11 +7,11 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from processing.errors import Unsuitable
-from processing.points.smooth_path import apart
-from processing.points.trajectory import Trajectory
+from processing.core.errors import Unsuitable
+from processing.core.text import Text
+from processing.recording.vehicle_path.smooth_path import apart
+from processing.recording.vehicle_path.trajectory import Trajectory
 from processing.section.cut import Cut
-from processing.text import Text
 
 Floats = NDArray[np.float64]
 

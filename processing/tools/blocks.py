@@ -16,9 +16,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.monitor import Monitor, SilentMonitor
-from processing.points.columns import ColumnWriter
-from processing.text import Text
+from processing.core.monitor import Monitor, SilentMonitor
+from processing.core.text import Text
+from processing.recording.columns.columns import ColumnWriter
 from processing.tools.components import ComponentColumn
 from processing.tools.tool import FinishedColumns, OutputColumn, PointResult
 

@@ -6,14 +6,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from processing.cameras.image_list import ImageList
-from processing.cameras.image_remarks import far_away
 from processing.cameras.seen_colours import PointColouring
-from processing.errors import MissingInput, Unsuitable
-from processing.monitor import Monitor
-from processing.points.drive import Drive
-from processing.text import Text
-from processing.tools.parameters import length, switch
+from processing.core.errors import MissingInput, Unsuitable
+from processing.core.monitor import Monitor
+from processing.core.parameters import length, switch
+from processing.core.text import Text
+from processing.recording.camera_images.image_list import ImageList
+from processing.recording.camera_images.image_remarks import far_away
+from processing.recording.drive import Drive
 from processing.tools.tool import Needs, OutputColumn, PointBlock, PointComputer, PointResult, Tool
 
 

@@ -11,11 +11,15 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import OutOfRange, report_as_user_error
-from processing.image.segment_kernels import renumber_kernel, roots_kernel, unite_kernel
-from processing.monitor import Monitor
-from processing.points.columns import ColumnWriter, column_path
-from processing.text import Text
+from processing.core.errors import OutOfRange, report_as_user_error
+from processing.core.monitor import Monitor
+from processing.core.text import Text
+from processing.image.neighbourhoods.segment_kernels import (
+    renumber_kernel,
+    roots_kernel,
+    unite_kernel,
+)
+from processing.recording.columns.columns import ColumnWriter, column_path
 
 _Integers = NDArray[np.int64]
 

@@ -5,27 +5,34 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from processing.monitor import Monitor, PartMonitor, parts_of
-from processing.points.drive import Drive
-from processing.road.curbs.approximate_lines import ApproximateLine, approximate_lines_of
-from processing.road.curbs.curb_confidence import CurbFacts, chance_of
-from processing.road.curbs.curb_edges import EdgeSettings, MeasuredEdges, measure_edges
-from processing.road.curbs.curb_evidence import facts_of, noise_of
-from processing.road.curbs.curb_extension import extend_lines
-from processing.road.curbs.curb_features import CurbFeature, EdgeLine, features_of
-from processing.road.curbs.curb_filters import (
+from processing.core.monitor import Monitor, PartMonitor, parts_of
+from processing.core.parameters import angle, length, ratio
+from processing.core.text import Text
+from processing.methods.road.curbs.edges.approximate_lines import (
+    ApproximateLine,
+    approximate_lines_of,
+)
+from processing.methods.road.curbs.edges.curb_edges import (
+    EdgeSettings,
+    MeasuredEdges,
+    measure_edges,
+)
+from processing.methods.road.curbs.edges.curb_evidence import facts_of, noise_of
+from processing.methods.road.curbs.edges.curb_extension import extend_lines
+from processing.methods.road.curbs.edges.curb_features import CurbFeature, EdgeLine, features_of
+from processing.methods.road.curbs.edges.curb_joins import join_edges
+from processing.methods.road.curbs.edges.curb_lines import CurbLine, lines_of
+from processing.methods.road.curbs.steps.curb_confidence import CurbFacts, chance_of
+from processing.methods.road.curbs.steps.curb_filters import (
     remove_inner_faces,
     remove_lone_edging,
     remove_rear_edges,
     step_runs,
 )
-from processing.road.curbs.curb_joins import join_edges
-from processing.road.curbs.curb_lines import CurbLine, lines_of
-from processing.road.curbs.curb_notes import note_on
-from processing.road.curbs.curb_profile import StepSettings
-from processing.road.curbs.curb_runs import StepRun
-from processing.text import Text
-from processing.tools.parameters import angle, length, ratio
+from processing.methods.road.curbs.steps.curb_notes import note_on
+from processing.methods.road.curbs.steps.curb_profile import StepSettings
+from processing.methods.road.curbs.steps.curb_runs import StepRun
+from processing.recording.drive import Drive
 from processing.tools.tool import Candidate, CandidateResult, Needs, Tool
 
 _FINDING = 0.7  # of the time goes into runs of steps

@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from processing.road.curbs.curb_diagnostics import curb_diagnostics
-from processing.road.diagnostics import Diagnostic
-from processing.road.gutters.notch_diagnostics import notch_diagnostics
-from processing.road.requested_position import RequestedPosition
+from processing.methods.road.curbs.steps.curb_diagnostics import curb_diagnostics
+from processing.methods.road.diagnostics import Diagnostic
+from processing.methods.road.gutters.notch_diagnostics import notch_diagnostics
+from processing.methods.road.requested_position import RequestedPosition
 from processing.tools.curbs import CurbParameters, step_settings
 from processing.tools.gutters import GutterParameters, notch_parameters
 

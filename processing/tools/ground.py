@@ -8,21 +8,21 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import OutOfRange, report_as_user_error
-from processing.ground.adaptive import GroundAssumptions
-from processing.ground.drive_ground import adaptive_ground
-from processing.ground.drive_points import DrivePoints
-from processing.ground.drive_references import lowest_ground_of, published_ground_of
-from processing.ground.ground_columns import CLASS, GROUND, HEIGHT, OTHER
-from processing.ground.published_method import PublishedSteps
-from processing.ground.stored_surface import FILE_NAME
-from processing.monitor import Monitor
-from processing.noise.behind_surfaces import echoes_of
-from processing.points.drive import Drive
-from processing.text import Text
-from processing.tools.parameters import ParameterChoice, angle, choice, file, length, switch
+from processing.core.errors import OutOfRange, report_as_user_error
+from processing.core.monitor import Monitor
+from processing.core.parameters import ParameterChoice, angle, choice, file, length, switch
+from processing.core.text import Text
+from processing.core.worked_ahead import in_order
+from processing.methods.ground.drive_ground import adaptive_ground
+from processing.methods.ground.drive_points import DrivePoints
+from processing.methods.ground.drive_references import lowest_ground_of, published_ground_of
+from processing.methods.ground.filters.adaptive import GroundAssumptions
+from processing.methods.ground.filters.published_method import PublishedSteps
+from processing.methods.ground.ground_columns import CLASS, GROUND, HEIGHT, OTHER
+from processing.methods.ground.stored_surface import FILE_NAME
+from processing.methods.noise.beams.behind_surfaces import echoes_of
+from processing.recording.drive import Drive
 from processing.tools.tool import FinishedColumns, Needs, OutputColumn, TogetherResult, Tool
-from processing.worked_ahead import in_order
 
 ADAPTIVE, PUBLISHED, LOWEST = "adaptive", "published", "lowest"
 _PAPER_GRID_M = 3.0

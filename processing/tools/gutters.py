@@ -8,22 +8,22 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.monitor import Monitor, PartMonitor, parts_of
-from processing.points.drive import Drive
-from processing.points.passes import passes_of
-from processing.road.curbs.curb_points import LineCells
-from processing.road.gutters.grating_facts import GratingFound, one_of_each
-from processing.road.gutters.gratings import GratingParameters, gratings_of
-from processing.road.gutters.gutter_confidence import CoverFacts, chance_of, facts_of
-from processing.road.gutters.gutter_gratings import RatedCovers, add_gratings
-from processing.road.gutters.gutter_lids import POINTS_WITHIN_M, GutterCover, covers_of
-from processing.road.gutters.gutter_lines import REACH_M
-from processing.road.gutters.gutter_notches import notches_of
-from processing.road.gutters.gutter_outline import edge_lines
-from processing.road.gutters.gutter_runs import GutterRun, gutter_runs
-from processing.road.gutters.notches import Notches, NotchParameters
-from processing.text import Text
-from processing.tools.parameters import count, length, ratio
+from processing.core.monitor import Monitor, PartMonitor, parts_of
+from processing.core.parameters import count, length, ratio
+from processing.core.text import Text
+from processing.methods.road.curbs.edges.curb_points import LineCells
+from processing.methods.road.gutters.grating_facts import GratingFound, one_of_each
+from processing.methods.road.gutters.gratings import GratingParameters, gratings_of
+from processing.methods.road.gutters.gutter_confidence import CoverFacts, chance_of, facts_of
+from processing.methods.road.gutters.gutter_gratings import RatedCovers, add_gratings
+from processing.methods.road.gutters.gutter_lids import POINTS_WITHIN_M, GutterCover, covers_of
+from processing.methods.road.gutters.gutter_lines import REACH_M
+from processing.methods.road.gutters.gutter_notches import notches_of
+from processing.methods.road.gutters.gutter_outline import edge_lines
+from processing.methods.road.gutters.gutter_runs import GutterRun, gutter_runs
+from processing.methods.road.gutters.notches import Notches, NotchParameters
+from processing.recording.drive import Drive
+from processing.recording.passes import passes_of
 from processing.tools.tool import Candidate, CandidateResult, Needs, Tool
 
 _FINDING = 0.8  # of the time goes into notches

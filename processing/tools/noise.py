@@ -9,16 +9,16 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import report_as_user_error
-from processing.monitor import Monitor, PartMonitor
-from processing.noise.drive_noise import NoiseSearch
-from processing.noise.noise_codes import HIGH_NOISE, LOW_NOISE
-from processing.noise.scratch_files import scratch_array
-from processing.points.columns import ColumnWriter
-from processing.points.drive import Drive
-from processing.points.ordering import chunk_ranges, read_chunk
-from processing.text import Text
-from processing.tools.parameters import ParameterChoice, choice, count, length, ratio
+from processing.core.errors import report_as_user_error
+from processing.core.monitor import Monitor, PartMonitor
+from processing.core.parameters import ParameterChoice, choice, count, length, ratio
+from processing.core.text import Text
+from processing.methods.noise.drive_noise import NoiseSearch
+from processing.methods.noise.noise_codes import HIGH_NOISE, LOW_NOISE
+from processing.methods.noise.scratch_files import scratch_array
+from processing.recording.columns.columns import ColumnWriter
+from processing.recording.columns.ordering import chunk_ranges, read_chunk
+from processing.recording.drive import Drive
 from processing.tools.tool import FinishedColumns, Needs, OutputColumn, Tool
 
 _CLASS = "classification"

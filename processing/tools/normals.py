@@ -6,10 +6,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from processing.image.normals import OVERLAP_ROWS, oriented_surface_shapes
-from processing.monitor import Monitor
-from processing.text import Text
-from processing.tools.parameters import length
+from processing.core.monitor import Monitor
+from processing.core.parameters import length
+from processing.core.text import Text
+from processing.image.neighbourhoods.normals import OVERLAP_ROWS, oriented_surface_shapes
 from processing.tools.tool import Needs, OutputColumn, PointBlock, PointResult, Tool
 
 

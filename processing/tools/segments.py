@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from processing.errors import OutOfRange
-from processing.image.segments import OVERLAP_ROWS, JoinLimits, connected_segments
-from processing.monitor import Monitor
-from processing.text import Text
-from processing.tools.parameters import angle, length, ratio
+from processing.core.errors import OutOfRange
+from processing.core.monitor import Monitor
+from processing.core.parameters import angle, length, ratio
+from processing.core.text import Text
+from processing.image.neighbourhoods.segments import OVERLAP_ROWS, JoinLimits, connected_segments
 from processing.tools.tool import Needs, OutputColumn, PointBlock, PointResult, Tool
 
 

@@ -8,18 +8,18 @@ from pathlib import Path
 
 import numpy as np
 
-from processing.errors import MissingInput, Unsuitable
-from processing.monitor import Monitor, PartMonitor
-from processing.points.drive import Drive
-from processing.templates.fit import FitSettings, fit_along
-from processing.templates.fitted_lines import FittedLine, fitted_lines
-from processing.templates.levels import levels_near
-from processing.templates.line_directions import RoadDirection
-from processing.templates.profile_template import ProfileTemplate
-from processing.templates.slab import SectionFrame
-from processing.templates.template_text import parse_template, read_template
-from processing.text import Text
-from processing.tools.parameters import angle, file, length, ratio
+from processing.core.errors import MissingInput, Unsuitable
+from processing.core.monitor import Monitor, PartMonitor
+from processing.core.parameters import angle, file, length, ratio
+from processing.core.text import Text
+from processing.methods.templates.fit import FitSettings, fit_along
+from processing.methods.templates.fitted_lines import FittedLine, fitted_lines
+from processing.methods.templates.levels import levels_near
+from processing.methods.templates.line_directions import RoadDirection
+from processing.methods.templates.profile_template import ProfileTemplate
+from processing.methods.templates.slab import SectionFrame
+from processing.methods.templates.template_text import parse_template, read_template
+from processing.recording.drive import Drive
 from processing.tools.tool import Candidate, CandidateResult, Needs, Tool
 
 _UNKNOWN_HEIGHT_M = -1000.0

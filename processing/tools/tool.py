@@ -16,16 +16,16 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.earthwork.sides import Side
-from processing.earthwork.volume_result import VolumeResult
-from processing.earthwork.volume_scope import VolumeScope
-from processing.image.grid import PixelGrid
-from processing.monitor import Monitor
-from processing.owned_files import remove_folder
-from processing.points.columns import Columns, column_path
-from processing.points.drive import Drive
-from processing.points.ordering import read_chunk
-from processing.text import Text
+from processing.core.monitor import Monitor
+from processing.core.owned_files import remove_folder
+from processing.core.text import Text
+from processing.image.rows.grid import PixelGrid
+from processing.methods.earthwork.geometry.volume_scope import VolumeScope
+from processing.methods.earthwork.surfaces.sides import Side
+from processing.methods.earthwork.volumes.volume_result import VolumeResult
+from processing.recording.columns.columns import Columns, column_path
+from processing.recording.columns.ordering import read_chunk
+from processing.recording.drive import Drive
 
 CandidateValue = str | float | int | bool | None
 CandidateGeometry = Literal["point", "line", "area"]
@@ -282,7 +282,7 @@ class Tool:
     explanation: Text
     group: Text
     needs: Needs
-    parameters: type[Any]  # a frozen dataclass of fields from processing.tools.parameters
+    parameters: type[Any]  # a frozen dataclass of fields from processing.core.parameters
     compute: PointComputer = nothing_per_point
     outputs: tuple[OutputColumn, ...] = ()
     overlap_rows: int = 0

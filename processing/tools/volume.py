@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from processing.earthwork.comparison import compare
-from processing.earthwork.volume_parameters import VolumeParameters
-from processing.text import Text
+from processing.core.text import Text
+from processing.methods.earthwork.volumes.comparison import compare
+from processing.methods.earthwork.volumes.volume_parameters import VolumeParameters
 from processing.tools.tool import Needs, Tool
 
 VOLUME = Tool(

@@ -9,9 +9,9 @@ import pytest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from app.document import Document
-from app.jobs import JobQueue
-from processing.project.importing import ImportRequest
+from app.document.document import Document
+from app.jobs.jobs import JobQueue
+from processing.project.importing.importing import ImportRequest
 
 WAIT_MS = 30_000
 

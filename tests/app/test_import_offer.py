@@ -8,12 +8,12 @@ import pytest
 from PySide6.QtWidgets import QToolButton
 
 from app.application import build_window, make_application
-from app.settings import Settings
-from processing.project import import_journal
-from processing.project.import_request import ImportRequest
-from processing.project.importing import import_drives
+from app.settings.settings import Settings
+from processing.project.importing import import_journal
+from processing.project.importing.import_request import ImportRequest
+from processing.project.importing.importing import import_drives
+from processing.project.importing.unfinished_imports import import_folder, unfinished_imports
 from processing.project.project import Project
-from processing.project.unfinished_imports import import_folder, unfinished_imports
 from tests.builders import simulated_drive, write_laz, write_trajectory_csv
 
 

@@ -13,12 +13,12 @@ from PySide6.QtWidgets import QPushButton, QToolBar, QToolButton
 from pytestqt.qtbot import QtBot
 
 from app.application import build_window, make_application
-from app.review import Review
-from app.settings import Settings
-from app.window_parts import WindowParts
-from processing.monitor import Monitor
-from processing.points.drive import Drive
-from processing.project.importing import ImportRequest
+from app.review.review import Review
+from app.settings.settings import Settings
+from app.window.window_parts import WindowParts
+from processing.core.monitor import Monitor
+from processing.project.importing.importing import ImportRequest
+from processing.recording.drive import Drive
 from processing.tools.normals import NormalsParameters
 from processing.tools.registry import TOOLS
 from processing.tools.tool import Candidate, CandidateResult, Needs

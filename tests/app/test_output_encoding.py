@@ -16,9 +16,9 @@ from laspy import LasData, LasHeader
 
 from app.__main__ import main
 from app.cli.terminal import BAD_INPUT, DONE
-from app.error_log import log_path
-from processing.errors import BadFile
-from processing.formats.mapped_shapes import read_mapped
+from app.jobs.error_log import log_path
+from processing.core.errors import BadFile
+from processing.formats.vectors.mapped_shapes import read_mapped
 from processing.project.project import Project
 from tests.builders import simulated_drive, write_laz
 

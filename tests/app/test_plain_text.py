@@ -24,20 +24,20 @@ from PySide6.QtWidgets import (
 from pytestqt.qtbot import QtBot
 
 from app.application import build_window, make_application
-from app.settings import Settings
-from app.window_parts import WindowParts
-from processing.errors import BadFile
-from processing.project.catalogue import AttributeField, Catalogue, FeatureKind, Geometry
-from processing.project.change import Change
-from processing.project.feature import Feature, Status, Vertex
-from processing.text import Text
+from app.settings.settings import Settings
+from app.window.window_parts import WindowParts
+from processing.core.errors import BadFile
+from processing.core.text import Text
+from processing.map.catalogue import AttributeField, Catalogue, FeatureKind, Geometry
+from processing.map.change import Change
+from processing.map.feature import Feature, Status, Vertex
 from tests.widgets.builders import OpenMap
 from tests.widgets.panels.table_user import menu_of
-from widgets.panels.attribute_panel import AttributePanel
-from widgets.panels.candidate_card import CandidateCard
-from widgets.panels.feature_table import FeatureTable
+from widgets.panels.attributes.attribute_panel import AttributePanel
 from widgets.panels.jobs_panel import JobsPanel
-from widgets.panels.layers_panel import LayersPanel
+from widgets.panels.project.layers_panel import LayersPanel
+from widgets.panels.review.candidate_card import CandidateCard
+from widgets.panels.table.feature_table import FeatureTable
 from widgets.parts.drawing_bar import DrawingBar
 from widgets.parts.job_view import JobView
 from widgets.parts.message_bar import MessageBar

@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from processing.project.feature import Status
+from processing.map.feature import Status
 from processing.project.project import Project
-from processing.project.review_state import read_review_state
+from processing.project.review.review_state import read_review_state
 from tests.processing.project.candidates import found_lines
 from tests.processing.project.drawn import new_project
 
@@ -22,10 +22,10 @@ from pathlib import Path
 from PySide6.QtCore import QCoreApplication
 from PySide6.QtGui import QGuiApplication
 application = QGuiApplication(["zuka", "-platform", "offscreen"])
-from app.document import Document
-from app.jobs import JobQueue
-from app.review import Review
-from processing.project.review_state import ReviewOrder
+from app.document.document import Document
+from app.jobs.jobs import JobQueue
+from app.review.review import Review
+from processing.project.review.review_state import ReviewOrder
 document = Document(JobQueue())
 review = Review(document)
 document.open(Path(sys.argv[1]))

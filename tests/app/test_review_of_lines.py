@@ -6,10 +6,10 @@ from dataclasses import replace
 
 import pytest
 
-from processing.project.feature import Status
-from processing.project.review_state import ReviewOrder
+from processing.map.feature import Status
+from processing.project.review.review_state import ReviewOrder
 from processing.tools.tool import CandidateResult
-from tests.app.test_review import ReviewSession, desk
+from tests.app.review.test_review import ReviewSession, desk
 from tests.processing.project.candidates import found, line
 
 __all__ = ["desk"]

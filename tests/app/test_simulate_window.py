@@ -8,8 +8,8 @@ import pytest
 from PySide6.QtWidgets import QApplication, QLabel, QPushButton, QToolButton
 
 from app.application import build_window, make_application
-from app.settings import Settings
-from processing.simulate.requests import StreetRequest
+from app.settings.settings import Settings
+from processing.laboratory.simulate.requests import StreetRequest
 from widgets.dialogs.simulate import SimulateForm, SimulationRequest
 from widgets.parts.density_view import DensityView
 

@@ -10,9 +10,9 @@ from PySide6.QtWidgets import QDockWidget
 from pytestqt.qtbot import QtBot
 
 from app.application import build_window, make_application
-from app.settings import Settings
-from app.view_docks import ViewLayout
-from app.window_parts import WindowParts
+from app.layout.view_docks import ViewLayout
+from app.settings.settings import Settings
+from app.window.window_parts import WindowParts
 
 _IN_FRONT = {
     ViewLayout.DRAWING: ["scene", "section"],

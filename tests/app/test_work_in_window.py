@@ -11,14 +11,14 @@ from PySide6.QtWidgets import QDialogButtonBox, QFileDialog, QLineEdit
 from pytestqt.qtbot import QtBot
 
 from app.application import build_window, make_application
-from app.settings import Settings
-from app.window_parts import WindowParts
-from processing.earthwork.limits_file import as_built_limits, read_limits
-from processing.errors import NoSpace
-from processing.project.project_settings import ProjectSettings
+from app.settings.settings import Settings
+from app.window.window_parts import WindowParts
+from processing.core.errors import NoSpace
+from processing.core.text import Text
+from processing.methods.earthwork.as_built.limits_file import as_built_limits, read_limits
+from processing.project.store.project_settings import ProjectSettings
 from processing.project.work_details import WorkDetails
 from processing.project.work_store import WorkStore
-from processing.text import Text
 from resources import path_of
 from widgets.dialogs.work_details import WorkDetailsForm
 from widgets.panels.volume.limits_box import LimitsBox

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from app.cli.terminal import BAD_INPUT, DONE, run_in_terminal
-from processing.earthwork.triangle_surface import TriangleSurface
-from processing.formats.landxml_writing import LandXmlFacts, WrittenSurface, write_landxml
+from processing.formats.surfaces.landxml_writing import LandXmlFacts, WrittenSurface, write_landxml
+from processing.methods.earthwork.geometry.triangle_surface import TriangleSurface
 
 CORNER = np.array([-12_380.0, -36_690.0, 5.0])
 SIDE_M = 20.0

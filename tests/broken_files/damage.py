@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from processing.errors import UserError
+from processing.core.errors import UserError
 
 _LONGEST_S = 20.0
 _MOST_BYTES = 200 << 20

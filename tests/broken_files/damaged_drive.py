@@ -15,25 +15,25 @@ from pathlib import Path
 
 import numpy as np
 
-from processing.errors import UserError
-from processing.image import image_rows
-from processing.image.attributes import available, colours
-from processing.image.beam import beam_at
-from processing.image.edges import edge_beside
+from processing.core.errors import UserError
+from processing.core.monitor import SilentMonitor
+from processing.image.attributes.attributes import available, colours
+from processing.image.edges.beam import beam_at
+from processing.image.edges.edges import edge_beside
 from processing.image.images_of_drives import image_of
-from processing.image.kinds import ImageKind
-from processing.image.nearest import nearest_point
-from processing.image.points_around import neighbours
-from processing.image.ray_hits import RayHits, RaySight
-from processing.image.touched_tiles import TouchedTiles
-from processing.monitor import SilentMonitor
-from processing.points.columns import COLUMN_TYPES
-from processing.points.drive import Drive
+from processing.image.neighbourhoods.points_around import neighbours
+from processing.image.rows import image_rows
+from processing.image.search.nearest import nearest_point
+from processing.image.search.ray_hits import RayHits, RaySight
+from processing.image.search.touched_tiles import TouchedTiles
 from processing.project.project import Project
-from processing.runner import RunRequest, columns_of, run
+from processing.recording.columns.columns import COLUMN_TYPES
+from processing.recording.drive import Drive
+from processing.recording.kinds import ImageKind
 from processing.section.cut import Cut
 from processing.section.points_in_cut import points_in_cut
 from processing.tools.registry import TOOLS
+from processing.tools.runner import RunRequest, columns_of, run
 
 SILENT = SilentMonitor()
 DAMAGES = 6

@@ -13,22 +13,22 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from processing.errors import BadFile
-from processing.image import image_rows as rows_module
+from processing.core.errors import BadFile
 from processing.image.images_of_drives import image_of
-from processing.image.kinds import ImageKind
-from processing.image.point_image_kernels import (
+from processing.image.rows import image_rows as rows_module
+from processing.image.rows.point_image_kernels import (
     PixelLayout,
     columns_kernel,
     noiseless_raster_kernel,
     raster_kernel,
     stretches_kernel,
 )
-from processing.image.touched_tiles import _touch_kernel
-from processing.points.counted_classes import class_columns
-from processing.points.drive import Drive
-from processing.points.source_order import sources_of
+from processing.image.search.touched_tiles import _touch_kernel
 from processing.project.project import Project
+from processing.recording.columns.counted_classes import class_columns
+from processing.recording.columns.source_order import sources_of
+from processing.recording.drive import Drive
+from processing.recording.kinds import ImageKind
 from tests.processing.project.labelled import labelled_project
 
 _LONGEST_S = 600

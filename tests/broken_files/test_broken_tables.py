@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from processing.errors import MissingInput, UserError
-from processing.formats.image_list import read_image_list
-from processing.formats.trajectory_files import read_trajectory
+from processing.core.errors import MissingInput, UserError
+from processing.formats.trajectories.image_list import read_image_list
+from processing.formats.trajectories.trajectory_files import read_trajectory
 from tests.broken_files.damage import check_refusal, flipped, outcome, overwritten
 from tests.delivered_files import sbet_bytes, trajectory_rows, trajectory_text
 

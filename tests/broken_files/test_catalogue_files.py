@@ -8,8 +8,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from processing.errors import BadFile, MissingInput
-from processing.project.catalogue_file import read_catalogue
+from processing.core.errors import BadFile, MissingInput
+from processing.map.catalogue_file import read_catalogue
 from resources import path_of
 from tests.broken_files.damage import check_refusal, flipped, outcome, overwritten
 

@@ -9,12 +9,12 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from processing.errors import BadFile, UserError
-from processing.project.catalogue import Catalogue, FeatureKind, Geometry
-from processing.project.catalogue_file import read_catalogue
-from processing.project.feature import Feature, PointReference, Vertex
-from processing.project.feature_clips import PastedFeatures, clip_of, features_of_clip
-from processing.text import Text
+from processing.core.errors import BadFile, UserError
+from processing.core.text import Text
+from processing.formats.vectors.feature_clips import PastedFeatures, clip_of, features_of_clip
+from processing.map.catalogue import Catalogue, FeatureKind, Geometry
+from processing.map.catalogue_file import read_catalogue
+from processing.map.feature import Feature, PointReference, Vertex
 from resources import path_of
 from tests.processing.project.drawn import curb
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from html.parser import HTMLParser
 from pathlib import Path
 
-from processing.text import Language
+from processing.core.text import Language
 from tests.house_rules.sources import ROOT
 
 MANUAL = ROOT / "resources" / "manual"

@@ -10,14 +10,14 @@ from pathlib import Path
 import pytest
 from PySide6.QtWidgets import QApplication
 
-from app.actions.action import MENUS, SUBMENUS, Action
-from app.actions.tool_entries import TOOL_ENTRIES
 from app.application import build_window, make_application
 from app.cli.parser import read_arguments
-from app.settings import Settings
-from app.shortcuts import FIXED
-from processing.project.catalogue_file import read_catalogue
-from processing.text import Language
+from app.drawing.tool_entries import TOOL_ENTRIES
+from app.keys.shortcuts import FIXED
+from app.settings.settings import Settings
+from app.window.action import MENUS, SUBMENUS, Action
+from processing.core.text import Language
+from processing.map.catalogue_file import read_catalogue
 from processing.tools.registry import TOOLS
 from resources import path_of
 from tests.house_rules.manual_pages import LANGUAGES, MANUAL, Page, pages, read_page

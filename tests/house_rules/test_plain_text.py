@@ -1,6 +1,6 @@
 """Words are shown as they are: nothing in the window can take them for HTML.
 
-``app/edged_style.py`` makes every label plain, also those of tooltips and of Qt's own forms. What
+``app/settings/edged_style.py`` makes every label plain, also those of tooltips and of Qt's own forms. What
 would show HTML all the same, or another style, is named here and used nowhere.
 """
 
@@ -16,8 +16,8 @@ SHOWS_HTML = re.compile(
     r"|QSplashScreen|QWhatsThis|setWhatsThis|WhatsThisRole|QWebEngineView)\b|\.setStyle\("
 )
 ALLOWED = {
-    "app/edged_style.py": ["setTextFormat"],
-    "app/theme.py": [".setStyle("],
+    "app/settings/edged_style.py": ["setTextFormat"],
+    "app/settings/theme.py": [".setStyle("],
     # The manual's own pages, and no file but those below its folder.
     "widgets/dialogs/manual.py": ["QTextBrowser", "QTextEdit"],
 }

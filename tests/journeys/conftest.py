@@ -13,12 +13,12 @@ from PySide6.QtCore import QPoint, Qt
 from pytestqt.qtbot import QtBot
 
 from app.application import build_window, make_application
-from app.settings import Settings
-from app.window_parts import WindowParts
+from app.settings.settings import Settings
+from app.window.window_parts import WindowParts
 from processing.image.images_of_drives import image_of
-from processing.points.drive import Drive
-from processing.project.dropped_files import request_of_files
-from processing.project.feature import PointReference
+from processing.map.feature import PointReference
+from processing.project.importing.dropped_files import request_of_files
+from processing.recording.drive import Drive
 from resources import path_of
 from widgets.shared.cursor import PickedPosition
 

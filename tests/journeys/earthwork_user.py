@@ -9,13 +9,13 @@ import numpy as np
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtWidgets import QAbstractButton, QComboBox, QFileDialog
 
-from app.earthwork import Earthwork
-from processing.errors import UserError
-from processing.project.catalogue import Geometry
-from processing.project.change import Change
-from processing.project.feature import Feature, Vertex, new_feature_id
-from processing.project.importing import ImportRequest
-from processing.text import Text
+from app.volumes.earthwork import Earthwork
+from processing.core.errors import UserError
+from processing.core.text import Text
+from processing.map.catalogue import Geometry
+from processing.map.change import Change
+from processing.map.feature import Feature, Vertex, new_feature_id
+from processing.project.importing.importing import ImportRequest
 from tests.earthwork_site import CORNER, EarthworkSite, earthwork_site, write_site
 from tests.journeys.conftest import WAIT_MS
 from widgets.parts.number_field import NumberField

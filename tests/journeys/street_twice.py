@@ -8,10 +8,10 @@ from pathlib import Path
 
 import numpy as np
 
-from processing.monitor import SilentMonitor
-from processing.points.trajectory import Trajectory
-from processing.project.importing import ImportRequest, import_drives
+from processing.core.monitor import SilentMonitor
+from processing.project.importing.importing import ImportRequest, import_drives
 from processing.project.project import Project
+from processing.recording.vehicle_path.trajectory import Trajectory
 from tests.builders import SimulatedDrive, simulated_drive, write_laz, write_trajectory_csv
 
 ASIDE_MM = np.array([150, -250, 20])

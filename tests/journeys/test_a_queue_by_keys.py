@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from PySide6.QtCore import QPointF, Qt
 
-from app.review import Review
-from app.window_parts import WindowParts
-from processing.bench.street_candidates import street_candidates
-from processing.project.feature import Feature, Position, Status
-from processing.project.feature_middle import middle_of
+from app.review.review import Review
+from app.window.window_parts import WindowParts
+from processing.laboratory.bench.street_candidates import street_candidates
+from processing.map.feature import Feature, Position, Status
+from processing.map.feature_middle import middle_of
 from tests.processing.project.candidates import found
 from widgets.shared.cursor import PickedPosition
 

@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 from PySide6.QtCore import Qt
 from scipy.spatial import cKDTree
 
-from processing.points.drive import Drive
-from processing.project.dropped_files import request_of_files
-from processing.project.export import ExportRequest
+from processing.operations.export import ExportRequest
+from processing.project.importing.dropped_files import request_of_files
+from processing.recording.drive import Drive
 from tests.journeys.conftest import Surveyor
 from tests.journeys.true_street import TrueStreet
 from tests.journeys.window_user import WindowUser

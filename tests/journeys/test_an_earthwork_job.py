@@ -14,13 +14,13 @@ import rasterio
 from pyproj import CRS
 from PySide6.QtWidgets import QDialogButtonBox, QFileDialog, QLabel, QLineEdit
 
-from app.jobs import JobState
-from app.volume_exports import VOLUME_EXPORTS
-from processing.earthwork.heat_map import change_classes
-from processing.earthwork.triangle_surface import TriangleSurface
-from processing.formats.landxml import read_landxml
-from processing.formats.landxml_writing import LandXmlFacts, WrittenSurface, write_landxml
-from processing.project.volume import SideKind
+from app.jobs.jobs import JobState
+from app.volumes.volume_exports import VOLUME_EXPORTS
+from processing.formats.surfaces.landxml import read_landxml
+from processing.formats.surfaces.landxml_writing import LandXmlFacts, WrittenSurface, write_landxml
+from processing.methods.earthwork.geometry.triangle_surface import TriangleSurface
+from processing.methods.earthwork.maps.heat_map import change_classes
+from processing.project.volumes.volume import SideKind
 from resources import path_of
 from tests.earthwork_site import CORNER, GRADE
 from tests.journeys.conftest import WAIT_MS

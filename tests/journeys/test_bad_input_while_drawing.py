@@ -15,18 +15,18 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtWidgets import QApplication, QMessageBox
 
 from app.application import build_window
-from app.catalogue_update import adopt_catalogue
-from app.settings import Settings
-from processing.errors import InUse, MissingInput, NoSpace, OutOfRange, Unsuitable
+from app.catalogue.catalogue_update import adopt_catalogue
+from app.settings.settings import Settings
+from processing.core.errors import InUse, MissingInput, NoSpace, OutOfRange, Unsuitable
+from processing.core.text import Text
 from processing.image.images_of_drives import image_of
-from processing.project.catalogue import Catalogue, Geometry
-from processing.project.catalogue_writing import write_catalogue
-from processing.project.change import Change, Replacement
+from processing.map.catalogue import Catalogue, Geometry
+from processing.map.catalogue_writing import write_catalogue
+from processing.map.change import Change, Replacement
 from processing.project.project import Project
-from processing.text import Text
 from tests.journeys.conftest import WAIT_MS, Surveyor
-from widgets.mouse_tools.draw_line import CROSSES, RESTORED
-from widgets.mouse_tools.drawing_tool import NO_POINT, TOO_FEW
+from widgets.mouse_tools.drawing.draw_line import CROSSES, RESTORED
+from widgets.mouse_tools.drawing.drawing_tool import NO_POINT, TOO_FEW
 
 LABEL = Text("Edit", "編集")
 _ROOM = 4096

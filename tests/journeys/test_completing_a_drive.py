@@ -11,23 +11,23 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtWidgets import QCheckBox, QDialogButtonBox, QMenu, QToolButton, QTreeWidget
 
-from processing.image.kinds import ImageKind
+from processing.core.monitor import SilentMonitor
+from processing.core.text import Text
 from processing.labels.label_column import labels_of
-from processing.monitor import SilentMonitor
-from processing.project.catalogue import Geometry
-from processing.project.change import Change
-from processing.project.feature import Feature, PointReference, Vertex
-from processing.project.import_request import ImportRequest
-from processing.project.importing import import_drives
-from processing.project.label_change import label_changes
+from processing.map.catalogue import Geometry
+from processing.map.change import Change
+from processing.map.feature import Feature, PointReference, Vertex
+from processing.map.label_change import label_changes
+from processing.project.importing.import_request import ImportRequest
+from processing.project.importing.importing import import_drives
 from processing.project.project import Project
-from processing.runner import tool_of
-from processing.text import Text
+from processing.recording.kinds import ImageKind
+from processing.tools.runner import tool_of
 from resources import path_of
 from tests.journeys.conftest import WAIT_MS
 from tests.processing.project.cells import order_by_cells
 from widgets.dialogs.import_drive import ImportForm
-from widgets.panels.project_drives import DRIVE
+from widgets.panels.project.project_drives import DRIVE
 
 LABEL = Text.same("x")
 

@@ -10,14 +10,14 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
-from processing.image.colour_maps import class_colours
+from processing.core.text import Text
+from processing.image.attributes.colour_maps import class_colours
 from processing.labels.label_column import labels_of
-from processing.points.counted_classes import class_columns
-from processing.project.change import Change
-from processing.project.export import ExportRequest
-from processing.project.importing import ImportRequest
-from processing.project.label_change import label_changes
-from processing.text import Text
+from processing.map.change import Change
+from processing.map.label_change import label_changes
+from processing.operations.export import ExportRequest
+from processing.project.importing.importing import ImportRequest
+from processing.recording.columns.counted_classes import class_columns
 from processing.tools.ground import GroundParameters
 from tests.earthwork_site import (
     CORNER,

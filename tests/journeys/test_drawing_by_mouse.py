@@ -9,8 +9,8 @@ import pytest
 from PySide6.QtCore import Qt
 
 from processing.image.images_of_drives import image_of
-from processing.project.catalogue import Geometry
-from processing.project.export import ExportRequest
+from processing.map.catalogue import Geometry
+from processing.operations.export import ExportRequest
 
 
 @pytest.fixture

@@ -16,17 +16,17 @@ from PySide6.QtWidgets import (
     QTabWidget,
 )
 
-from app.jobs import JobState
-from app.truth_evaluations import TruthEvaluations
-from processing.image.colour_maps import ERROR_MAP_COLOURS
+from app.classes.truth_evaluations import TruthEvaluations
+from app.jobs.jobs import JobState
+from processing.core.monitor import SilentMonitor
+from processing.image.attributes.colour_maps import ERROR_MAP_COLOURS
 from processing.image.images_of_drives import image_of
 from processing.labels.label_column import labels_of
-from processing.monitor import SilentMonitor
-from processing.points.error_map import ErrorMapValue
-from processing.project.importing import ImportRequest
-from processing.project.truth_store import has_truth
-from processing.runner import RunRequest, run
+from processing.project.evaluation.truth_store import has_truth
+from processing.project.importing.importing import ImportRequest
+from processing.recording.columns.error_map import ErrorMapValue
 from processing.tools.noise import NoiseParameters
+from processing.tools.runner import RunRequest, run
 from tests.builders import write_laz, write_trajectory_csv
 from tests.journeys.conftest import WAIT_MS
 from tests.mouse_events import NO_KEYS, move_mouse

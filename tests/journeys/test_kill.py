@@ -14,11 +14,11 @@ from processing.project.project import Project
 DRAWING = """
 import sys
 from pathlib import Path
-from processing.project.catalogue import Geometry
-from processing.project.change import Change
-from processing.project.feature import Feature, Vertex
+from processing.map.catalogue import Geometry
+from processing.map.change import Change
+from processing.map.feature import Feature, Vertex
 from processing.project.project import Project
-from processing.text import Text
+from processing.core.text import Text
 project = Project.open(Path(sys.argv[1]))
 number = len(project.features)
 while True:

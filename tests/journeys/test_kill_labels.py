@@ -21,7 +21,7 @@ PAINTING = """
 import random, sys
 from pathlib import Path
 import numpy as np
-from processing.monitor import SilentMonitor
+from processing.core.monitor import SilentMonitor
 from processing.project import label_filing
 from processing.project.project import Project
 from tests.processing.project.labelled import PAINT, painting

@@ -24,7 +24,7 @@ from tests.processing.project.drawn import (
 DRAWING = """
 import random, sys
 from pathlib import Path
-from processing.project.change import Change, Replacement
+from processing.map.change import Change, Replacement
 from processing.project.project import Project
 from tests.processing.project.drawn import LABEL, curb, features_of, sign
 project = Project.open(Path(sys.argv[1]))

@@ -11,8 +11,8 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtWidgets import QTreeWidget
 
-from app.source_watch import SourceWatch
-from processing.errors import InUse
+from app.importing.source_watch import SourceWatch
+from processing.core.errors import InUse
 from processing.image.images_of_drives import image_of
 from processing.project.project import Project
 from tests.journeys.conftest import WAIT_MS, Surveyor

@@ -7,7 +7,7 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtTest import QTest
 
-from processing.image.colour_maps import class_colours
+from processing.image.attributes.colour_maps import class_colours
 from processing.image.images_of_drives import image_of
 from processing.labels.label_column import labels_of
 from processing.labels.strokes import points_under_brush

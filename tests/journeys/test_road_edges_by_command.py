@@ -12,9 +12,9 @@ import pyogrio
 import pytest
 
 from app.cli.terminal import DONE, run_in_terminal
-from processing.monitor import SilentMonitor
-from processing.simulate.requests import StreetRequest
-from processing.simulate.streets import simulate_street
+from processing.core.monitor import SilentMonitor
+from processing.laboratory.simulate.requests import StreetRequest
+from processing.laboratory.simulate.streets import simulate_street
 from tests.app.score_answers import scored
 
 STREET = StreetRequest(seed=418, length_m=30.0, style="rural", images=False)

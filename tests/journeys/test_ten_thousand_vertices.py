@@ -12,9 +12,9 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 
 from processing.image.images_of_drives import image_of
-from processing.project.catalogue import Geometry
-from processing.project.export import ExportRequest
-from processing.project.feature import PointReference
+from processing.map.catalogue import Geometry
+from processing.map.feature import PointReference
+from processing.operations.export import ExportRequest
 from tests.journeys.conftest import Surveyor
 from widgets.mouse_tools.mouse_tool import Hit
 from widgets.shared.cursor import PickedPosition

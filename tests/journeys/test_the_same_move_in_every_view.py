@@ -10,13 +10,13 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtWidgets import QApplication
 
-from processing.cameras.camera import Camera
+from processing.core.text import Text
 from processing.image.images_of_drives import image_of
-from processing.project.catalogue import Geometry
-from processing.project.change import Change
-from processing.project.export import ExportRequest
-from processing.project.feature import Feature, Vertex, new_feature_id
-from processing.text import Text
+from processing.map.catalogue import Geometry
+from processing.map.change import Change
+from processing.map.feature import Feature, Vertex, new_feature_id
+from processing.operations.export import ExportRequest
+from processing.recording.camera_images.camera import Camera
 from tests.journeys.conftest import Surveyor
 from tests.mouse_events import NO_KEYS, move_mouse
 from widgets.shared.cursor import PickedPosition

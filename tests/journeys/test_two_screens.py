@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from app.view_docks import ViewLayout
+from app.layout.view_docks import ViewLayout
 from tests.journeys.conftest import WAIT_MS, Surveyor
 
 

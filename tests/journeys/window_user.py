@@ -8,12 +8,12 @@ import numpy as np
 from PySide6.QtCore import QPoint, QPointF, Qt
 from pytestqt.qtbot import QtBot
 
-from app.window_parts import WindowParts
-from processing.points.drive import Drive
-from processing.project.feature import PointReference
+from app.window.window_parts import WindowParts
+from processing.map.feature import PointReference
+from processing.recording.drive import Drive
 from tests.mouse_events import NO_KEYS, move_mouse, turn_wheel
 from widgets.image_view.minimap import Minimap
-from widgets.mouse_tools.draw_line import DrawLine
+from widgets.mouse_tools.drawing.draw_line import DrawLine
 from widgets.shared.cursor import PickedPosition
 
 LEFT = Qt.MouseButton.LeftButton

@@ -18,7 +18,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from processing.image.attributes import available
+from processing.image.attributes.attributes import available
 from tests.properties.operator_input import CTRL, FREE, RIGHT, SHIFT, Operator
 from tests.properties.operator_views import review, stand_otherwise
 

@@ -15,11 +15,11 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QApplication, QWidget
 
 from app.application import build_window, make_application
-from app.settings import Settings
-from app.window_parts import WindowParts
-from processing.errors import UserError
-from processing.project.feature import Feature
-from processing.text import Text
+from app.settings.settings import Settings
+from app.window.window_parts import WindowParts
+from processing.core.errors import UserError
+from processing.core.text import Text
+from processing.map.feature import Feature
 from widgets.image_view.view import ImageView
 from widgets.shared.cursor import PickedPosition
 

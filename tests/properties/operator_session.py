@@ -12,15 +12,15 @@ from pathlib import Path
 
 import numpy as np
 
-from processing.drafting.crossings import crosses_itself
-from processing.points.drive import Drive
-from processing.project.catalogue import Geometry
-from processing.project.feature import Feature
+from processing.map.catalogue import Geometry
+from processing.map.drafting.crossings import crosses_itself
+from processing.map.feature import Feature
 from processing.project.project import Project
+from processing.recording.drive import Drive
 from tests.properties.operator_actions import OperatorAction
 from tests.properties.operator_input import Operator
 from tests.properties.watched import watched
-from widgets.mouse_tools.drawing_tool import LEAST_VERTICES
+from widgets.mouse_tools.drawing.drawing_tool import LEAST_VERTICES
 
 _BESIDE_M = 0.15
 """A vertex on a fitted edge names the measured point beside it."""

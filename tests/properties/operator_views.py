@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import random
 
-from app.review import Review
-from processing.bench.street_candidates import street_candidates
-from processing.project.review_state import ReviewOrder
+from app.review.review import Review
+from processing.laboratory.bench.street_candidates import street_candidates
+from processing.project.review.review_state import ReviewOrder
 from tests.processing.project.candidates import found
 from tests.properties.operator_input import Operator
 

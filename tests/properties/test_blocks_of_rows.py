@@ -12,19 +12,18 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from processing.cameras.image_list import ImageList
-from processing.cameras.image_store import write_images
-from processing.image.kinds import ImageKind
+from processing.core.monitor import SilentMonitor
 from processing.image.point_image import PointCloudImage
-from processing.monitor import SilentMonitor
-from processing.points.drive import Drive
-from processing.road.curbs.approximate_lines import ApproximateLine, outwards_of
-from processing.road.curbs.curb_points import LineCells
-from processing.road.gutters.gutter_notches import notches_of
-from processing.road.gutters.notches import NotchParameters
-from processing.runner import RunRequest, columns_of, run
-from processing.templates.fit import FitSettings, fit_along
-from processing.templates.fitted_lines import FittedLine, fitted_lines
+from processing.methods.road.curbs.edges.approximate_lines import ApproximateLine, outwards_of
+from processing.methods.road.curbs.edges.curb_points import LineCells
+from processing.methods.road.gutters.gutter_notches import notches_of
+from processing.methods.road.gutters.notches import NotchParameters
+from processing.methods.templates.fit import FitSettings, fit_along
+from processing.methods.templates.fitted_lines import FittedLine, fitted_lines
+from processing.recording.camera_images.image_list import ImageList
+from processing.recording.camera_images.image_store import write_images
+from processing.recording.drive import Drive
+from processing.recording.kinds import ImageKind
 from processing.tools.blocks import JoinedResults, blocks_of
 from processing.tools.colour import COLOUR, ColourParameters
 from processing.tools.curbs import CURBS
@@ -33,6 +32,7 @@ from processing.tools.gutters import GUTTERS
 from processing.tools.noise import NOISE, NoiseParameters
 from processing.tools.normals import NORMALS, NormalsParameters
 from processing.tools.registry import POINT_TOOLS, TOOLS
+from processing.tools.runner import RunRequest, columns_of, run
 from processing.tools.segments import SEGMENTS, SegmentsParameters
 from processing.tools.template import TEMPLATE
 from processing.tools.tool import FinishedColumns, PointBlock, PointResult
@@ -44,7 +44,7 @@ from tests.processing.image.recordings import (
     small_drive,
     without_revolutions,
 )
-from tests.processing.templates.curb_street import CURB, CURB_FRAME, recorded
+from tests.processing.methods.templates.curb_street import CURB, CURB_FRAME, recorded
 
 ColumnArrays = Mapping[str, np.ndarray]
 BLOCKS = (

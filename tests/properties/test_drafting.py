@@ -7,9 +7,11 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from processing.drafting.constructions import arc_through, rectangle_from, spline_through
-from processing.drafting.crossings import crosses_itself
-from processing.drafting.line_edits import (
+from processing.core.errors import OutOfRange
+from processing.map.catalogue import Geometry
+from processing.map.drafting.constructions import arc_through, rectangle_from, spline_through
+from processing.map.drafting.crossings import crosses_itself
+from processing.map.drafting.line_edits import (
     close_line,
     join,
     open_area,
@@ -18,11 +20,9 @@ from processing.drafting.line_edits import (
     split_line,
     with_kind,
 )
-from processing.drafting.parallels import distance_to_line, parallel
-from processing.errors import OutOfRange
-from processing.project.catalogue import Geometry
-from processing.project.feature import Feature, PointReference, Vertex
-from tests.processing.drafting.positions import CORNER, distances_to, kind, local, positions
+from processing.map.drafting.parallels import distance_to_line, parallel
+from processing.map.feature import Feature, PointReference, Vertex
+from tests.processing.map.drafting.positions import CORNER, distances_to, kind, local, positions
 
 METRES = st.integers(-20_000, 20_000).map(lambda millimetres: millimetres / 1000)
 HEIGHTS = st.integers(-500, 500).map(lambda millimetres: millimetres / 1000)

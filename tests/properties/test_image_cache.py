@@ -12,13 +12,13 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from processing.errors import Unsuitable, UserError
-from processing.image.attributes import colours, most_telling_attribute
+from processing.core.errors import Unsuitable, UserError
+from processing.image.attributes.attributes import colours, most_telling_attribute
+from processing.image.attributes.tile_cache import TileCache, TilePixels, TileRequest
 from processing.image.images_of_drives import image_of
-from processing.image.kinds import ImageKind
-from processing.image.tile_cache import TileCache, TilePixels, TileRequest
-from processing.image.tiles import TileKey
-from processing.points.drive import Drive
+from processing.image.tiles.tiles import TileKey
+from processing.recording.drive import Drive
+from processing.recording.kinds import ImageKind
 from tests.processing.image.recordings import small_drive
 
 KINDS = (ImageKind.TRAJECTORY_CENTER, ImageKind.REVERSIBLE)

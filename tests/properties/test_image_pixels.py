@@ -6,8 +6,8 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from processing.image.kinds import ImageKind
 from processing.image.point_image import PointCloudImage
+from processing.recording.kinds import ImageKind
 from tests.processing.image.recordings import random_recording
 
 KINDS = st.sampled_from(

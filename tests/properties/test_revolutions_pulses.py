@@ -6,8 +6,8 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from processing.points.point_source import PointColumns
-from processing.points.pulse_clock import PulseNumbering, estimate_clock
+from processing.recording.columns.point_source import PointColumns
+from processing.recording.revolutions.pulse_clock import PulseNumbering, estimate_clock
 
 
 def _points(time: np.ndarray) -> PointColumns:

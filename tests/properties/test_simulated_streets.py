@@ -10,13 +10,13 @@ import numpy as np
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as some
 
-from processing.monitor import SilentMonitor
-from processing.points.drive import Drive
-from processing.project.importing import ImportRequest, import_drives
-from processing.simulate.requests import StreetRequest
-from processing.simulate.scanning.sensors import SENSORS
-from processing.simulate.street.styles import STYLES
-from processing.simulate.streets import simulate_street
+from processing.core.monitor import SilentMonitor
+from processing.laboratory.simulate.requests import StreetRequest
+from processing.laboratory.simulate.scanning.sensors import SENSORS
+from processing.laboratory.simulate.street.styles import STYLES
+from processing.laboratory.simulate.streets import simulate_street
+from processing.project.importing.importing import ImportRequest, import_drives
+from processing.recording.drive import Drive
 
 MOBILE = [one.id for one in SENSORS.values() if one.kind == "mobile"]
 REQUESTS = some.builds(

@@ -8,11 +8,11 @@ from pathlib import Path
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from processing.project.catalogue import Geometry
-from processing.project.change import Change, Replacement
-from processing.project.feature import Feature, PointReference, Status, Vertex
+from processing.core.text import Text
+from processing.map.catalogue import Geometry
+from processing.map.change import Change, Replacement
+from processing.map.feature import Feature, PointReference, Status, Vertex
 from processing.project.project import Project
-from processing.text import Text
 
 LABEL = Text("Step", "操作")
 NUMBERS = st.floats(-1e7, 1e7)

@@ -9,16 +9,16 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.monitor import SilentMonitor
-from processing.points.drive import Drive
-from processing.project.catalogue import Catalogue, FeatureKind, Geometry
-from processing.project.change import Change
-from processing.project.feature import Feature, PointReference, Vertex, new_feature_id
-from processing.project.importing import ImportRequest, import_drives
-from processing.project.runs import Run
-from processing.text import Text
+from processing.core.monitor import SilentMonitor
+from processing.core.text import Text
+from processing.map.catalogue import Catalogue, FeatureKind, Geometry
+from processing.map.change import Change
+from processing.map.feature import Feature, PointReference, Vertex, new_feature_id
+from processing.project.importing.importing import ImportRequest, import_drives
+from processing.project.store.runs import Run
+from processing.recording.drive import Drive
 from tests.builders import simulated_drive, write_laz, write_trajectory_csv
-from widgets.mouse_tools.draw_line import DrawLine
+from widgets.mouse_tools.drawing.draw_line import DrawLine
 from widgets.mouse_tools.mouse_tool import MouseTool
 from widgets.shared.cursor import Cursor, PickedPosition
 from widgets.shared.map_changes import MapChanges

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from processing.points.drive import Drive
+from processing.recording.drive import Drive
 from tests.widgets.builders import imported_drive
 
 

@@ -6,15 +6,15 @@ import numpy as np
 from PySide6.QtCore import QObject, Signal
 from PySide6.QtGui import QPainter
 
-from processing.errors import Unsuitable
-from processing.text import Text
+from processing.core.errors import Unsuitable
+from processing.core.text import Text
 from widgets.camera_view.camera_marks import paint_line_of_sight, paint_marked
 from widgets.camera_view.image_selector import ImageSelector
 from widgets.camera_view.projection import CameraProjection
 from widgets.camera_view.stereo_measurement import StereoMeasurement
+from widgets.feature_drawing.screen_marks import paint_note
 from widgets.plane_view.viewport import PlaneViewport
 from widgets.shared.cursor import PickedPosition
-from widgets.shared.screen_marks import paint_note
 from widgets.shared.sketch import Note
 
 ClickedPixel = tuple[float, float]

@@ -12,12 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QObject, Signal
 
-from processing.cameras.choice import ImageFinder
 from processing.cameras.depth import DepthPicture
-from processing.cameras.image_list import CameraImage
-from processing.cameras.image_pixels import read_pixels
-from processing.errors import Cancelled, UserError
-from processing.points.drive import Drive
+from processing.core.errors import Cancelled, UserError
+from processing.recording.camera_images.choice import ImageFinder
+from processing.recording.camera_images.image_list import CameraImage
+from processing.recording.camera_images.image_pixels import read_pixels
+from processing.recording.drive import Drive
 from widgets.camera_view.photo import Photo, photo_of
 
 _KEPT_BYTES = 300_000_000

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.cameras.choice import Sighting, field_of_view
 from processing.cameras.depth import DepthPicture
-from processing.errors import UserError
+from processing.core.errors import UserError
+from processing.recording.camera_images.choice import Sighting, field_of_view
 from widgets.camera_view.image_loader import ImageLoader, ImageRequest
 from widgets.camera_view.photo import Photo
 from widgets.camera_view.taken_images import TakenImage, TakenImages

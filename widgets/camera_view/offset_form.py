@@ -8,17 +8,17 @@ from collections.abc import Mapping
 from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
-from processing.cameras.calibration import (
+from processing.core.errors import Unsuitable
+from processing.core.text import Language
+from processing.recording.camera_images.calibration import (
     NO_OFFSET,
     CameraOffset,
     PixelPair,
     estimate_offset,
     residuals_px,
 )
-from processing.cameras.image_list import CameraImage, ImageList
-from processing.cameras.image_remarks import outside_trajectory
-from processing.errors import Unsuitable
-from processing.text import Language
+from processing.recording.camera_images.image_list import CameraImage, ImageList
+from processing.recording.camera_images.image_remarks import outside_trajectory
 from widgets.camera_view.taken_images import TakenImage
 from widgets.camera_view.view import CameraView
 from widgets.parts.number_field import NumberField

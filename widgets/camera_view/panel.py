@@ -5,7 +5,7 @@ from __future__ import annotations
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 
-from processing.text import Language
+from processing.core.text import Language
 from widgets.camera_view.camera_bar import CameraBar
 from widgets.camera_view.offset_form import OffsetForm
 from widgets.camera_view.view import CameraView

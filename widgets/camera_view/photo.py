@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QImage, QPainter
 
-from processing.cameras.image_pixels import ImagePixels
-from processing.text import Text
+from processing.core.text import Text
+from processing.recording.camera_images.image_pixels import ImagePixels
 from widgets.plane_view.viewport import PlaneViewport
 
 _SMALLEST_PX = 256

@@ -5,11 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.cameras.camera import Camera
-from processing.cameras.choice import pixels_per_radian
 from processing.cameras.depth import DepthPicture
-from processing.cameras.image_list import CameraImage
-from processing.project.feature import Position
+from processing.map.feature import Position
+from processing.recording.camera_images.camera import Camera
+from processing.recording.camera_images.choice import pixels_per_radian
+from processing.recording.camera_images.image_list import CameraImage
 from widgets.mouse_tools.mouse_tool import Ray
 from widgets.plane_view.line_pieces import clip_pieces
 

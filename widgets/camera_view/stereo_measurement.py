@@ -7,10 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.cameras.camera import Camera
-from processing.cameras.choice import ImageFinder
 from processing.cameras.stereo import StereoPosition, epipolar_line, stereo_position
-from processing.errors import Unsuitable
+from processing.core.errors import Unsuitable
+from processing.recording.camera_images.camera import Camera
+from processing.recording.camera_images.choice import ImageFinder
 
 StereoPixel = tuple[float, float]
 

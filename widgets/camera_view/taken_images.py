@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from processing.cameras.calibration import CameraOffset, apply_offsets, camera_of
-from processing.cameras.choice import ImageFinder
-from processing.cameras.image_list import CameraImage, ImageList
-from processing.cameras.image_remarks import far_away
-from processing.points.drive import Drive
-from processing.text import Text
+from processing.core.text import Text
+from processing.recording.camera_images.calibration import CameraOffset, apply_offsets, camera_of
+from processing.recording.camera_images.choice import ImageFinder
+from processing.recording.camera_images.image_list import CameraImage, ImageList
+from processing.recording.camera_images.image_remarks import far_away
+from processing.recording.drive import Drive
 
 
 @dataclass(frozen=True)
@@ -31,7 +31,7 @@ class TakenImage:
 
     @property
     def camera(self) -> str:
-        """See :func:`processing.cameras.calibration.camera_of`."""
+        """See :func:`processing.recording.camera_images.calibration.camera_of`."""
         return camera_of(self.delivered)
 
 

@@ -10,10 +10,10 @@ from PySide6.QtGui import QCloseEvent, QKeyEvent, QMouseEvent, QPainter
 from PySide6.QtWidgets import QMenu, QWidget
 from typing_extensions import override
 
-from processing.cameras.calibration import CameraOffset
 from processing.cameras.depth import SeenPoint
-from processing.project.feature import PointReference
-from processing.text import Language
+from processing.core.text import Language
+from processing.map.feature import PointReference
+from processing.recording.camera_images.calibration import CameraOffset
 from widgets.camera_view.camera_marks import paint_remarks
 from widgets.camera_view.image_clicks import ImageClicks
 from widgets.camera_view.image_loader import ImageLoader

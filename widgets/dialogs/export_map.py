@@ -30,7 +30,7 @@ class ExportOptions:
     Attributes
     ----------
     formats : tuple of str
-        Keys of :data:`processing.project.export.FORMATS`.
+        Keys of :data:`processing.operations.export.FORMATS`.
     """
 
     formats: tuple[str, ...]

@@ -21,7 +21,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from processing.project.dropped_files import DELIVERED_ENDINGS
+from processing.project.importing.dropped_files import DELIVERED_ENDINGS
 from widgets.dialogs.reference_systems import ReferenceSystemBox
 from widgets.parts.plain_buttons import remove_icons
 

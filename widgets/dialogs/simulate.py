@@ -24,10 +24,10 @@ from PySide6.QtWidgets import (
 )
 from typing_extensions import override
 
-from processing.simulate.forecast import Forecast
-from processing.simulate.simulations import SIMULATIONS
-from processing.text import Language
-from widgets.panels.parameter_form import ParameterForm
+from processing.core.text import Language
+from processing.laboratory.simulate.forecast import Forecast
+from processing.laboratory.simulate.simulations import SIMULATIONS
+from widgets.panels.processing.parameter_form import ParameterForm
 from widgets.parts.density_view import DensityView
 from widgets.parts.plain_buttons import remove_icons
 
@@ -42,7 +42,7 @@ class SimulationRequest:
     Attributes
     ----------
     order : str
-        Key of :data:`processing.simulate.orders.SIMULATIONS`.
+        Key of :data:`processing.laboratory.simulate.simulations.SIMULATIONS`.
     request : object
         Of that order's class.
     folder : Path

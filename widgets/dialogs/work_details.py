@@ -7,10 +7,10 @@ from dataclasses import asdict
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QDialog, QDialogButtonBox, QLabel, QLineEdit, QVBoxLayout, QWidget
 
-from processing.errors import OutOfRange
+from processing.core.errors import OutOfRange
+from processing.core.text import Language
 from processing.project.work_details import WorkDetails, details_of
-from processing.text import Language
-from widgets.panels.parameter_form import ParameterForm
+from widgets.panels.processing.parameter_form import ParameterForm
 from widgets.parts.plain_buttons import remove_icons
 
 _WIDTH_PX = 460

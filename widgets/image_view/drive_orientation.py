@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.image.kinds import ImageKind
 from processing.image.point_image import PointCloudImage
-from processing.points.drive import Drive
+from processing.recording.drive import Drive
+from processing.recording.kinds import ImageKind
 
 Floats = NDArray[np.float64]
 

@@ -6,8 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtGui import QPainter
 
-from processing.project.catalogue import Catalogue, Geometry
-from processing.project.feature import Position, Vertex
+from processing.map.catalogue import Catalogue, Geometry
+from processing.map.feature import Position, Vertex
+from widgets.feature_drawing.crowded_marks import FEW
+from widgets.feature_drawing.feature_style import sketch_style, style_of
+from widgets.feature_drawing.screen_marks import preview_pens
 from widgets.image_view.feature_positions import FeaturePositions
 from widgets.image_view.marks import MarkPainter
 from widgets.image_view.oriented_image import OrientedImage, Span
@@ -17,9 +20,6 @@ from widgets.image_view.picture_feature import (
     segments_between,
 )
 from widgets.image_view.viewport import Viewport
-from widgets.shared.crowded_marks import FEW
-from widgets.shared.feature_style import sketch_style, style_of
-from widgets.shared.screen_marks import preview_pens
 from widgets.shared.sketch import Drawing
 from widgets.shared.view_settings import ViewSettings
 

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.image.nearest import NearestSearch, nearest_point, nearest_points
-from processing.project.feature import Feature, Vertex
+from processing.image.search.nearest import NearestSearch, nearest_point, nearest_points
+from processing.map.feature import Feature, Vertex
 from widgets.image_view.oriented_image import OrientedImage, Span
 from widgets.image_view.picture_feature import PictureFeature, join_vertices
 from widgets.image_view.waiting_features import WaitingFeatures

@@ -10,10 +10,11 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QPolygonF
 
-from processing.image.beam import beam_at
-from processing.points.counted_classes import class_columns, seen_points
-from processing.project.catalogue import Geometry
-from processing.project.feature import PointReference
+from processing.image.edges.beam import beam_at
+from processing.map.catalogue import Geometry
+from processing.map.feature import PointReference
+from processing.recording.columns.counted_classes import class_columns, seen_points
+from widgets.feature_drawing.outlines import are_inside, is_rectangle
 from widgets.image_view.feature_overlay import FeatureOverlay
 from widgets.image_view.oriented_image import OrientedImage, Span
 from widgets.image_view.picture_feature import PictureFeature
@@ -21,7 +22,6 @@ from widgets.image_view.viewport import Viewport
 from widgets.mouse_tools.gesture import REACH_PX
 from widgets.mouse_tools.mouse_tool import EnclosedHits, Hit, Ray
 from widgets.shared.cursor import PickedPosition
-from widgets.shared.outlines import are_inside, is_rectangle
 from widgets.shared.snap_state import SnapState
 from widgets.shared.view_settings import ViewSettings
 

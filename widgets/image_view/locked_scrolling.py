@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.image.kinds import ImageKind
-from processing.image.nearest import nearest_point
-from processing.points.drive import Drive
+from processing.image.search.nearest import nearest_point
+from processing.recording.drive import Drive
+from processing.recording.kinds import ImageKind
 from widgets.image_view.oriented_image import OrientedImage
 from widgets.image_view.viewport import Viewport
 

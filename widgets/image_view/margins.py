@@ -5,7 +5,7 @@ from __future__ import annotations
 from PySide6.QtCore import QCoreApplication
 from PySide6.QtWidgets import QWidget
 
-from processing.image.tile_cache import TileCache
+from processing.image.attributes.tile_cache import TileCache
 from widgets.image_view.minimap import Minimap
 from widgets.image_view.oriented_image import OrientedImage
 from widgets.image_view.ruler import Ruler

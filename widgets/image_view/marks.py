@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtGui import QBrush, QColor, QPainter, QPainterPath, QPen
 
+from widgets.feature_drawing.feature_marks import FeatureMarks
+from widgets.feature_drawing.feature_style import FeatureStyle
 from widgets.image_view.viewport import Viewport
-from widgets.shared.feature_marks import FeatureMarks
-from widgets.shared.feature_style import FeatureStyle
 
 Floats = NDArray[np.float64]
 

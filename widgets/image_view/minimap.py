@@ -11,12 +11,12 @@ from PySide6.QtGui import QColor, QMouseEvent, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QWidget
 from typing_extensions import override
 
-from processing.image.tile_cache import TileCache
+from processing.image.attributes.tile_cache import TileCache
+from widgets.feature_drawing.feature_style import ACCENT
 from widgets.image_view.mosaic import Mosaic
 from widgets.image_view.oriented_image import OrientedImage, Span
 from widgets.image_view.tile_images import TileImages
 from widgets.image_view.viewport import Viewport
-from widgets.shared.feature_style import ACCENT
 from widgets.shared.image_orientation import ImageOrientation
 from widgets.shared.view_settings import PointStyle
 

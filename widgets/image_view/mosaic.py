@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from PySide6.QtCore import QPoint, QRect, QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QImage, QPainter, QTransform
 
-from processing.image.tile_choice import tiles_in_window
-from processing.image.tiles import TileKey
+from processing.image.search.tile_choice import tiles_in_window
+from processing.image.tiles.tiles import TileKey
 from widgets.image_view.oriented_image import OrientedImage, Span
 from widgets.image_view.tile_images import THINNINGS, TileImages
 from widgets.image_view.viewport import Viewport

@@ -12,9 +12,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.image.images_of_drives import image_of
-from processing.image.kinds import ImageKind
 from processing.image.point_image import PointCloudImage
-from processing.points.drive import Drive
+from processing.recording.drive import Drive
+from processing.recording.kinds import ImageKind
 from widgets.image_view.drive_orientation import DriveOrientation, orientation_of
 from widgets.shared.image_orientation import ImageOrientation
 from widgets.shared.map_source import MapSource

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import QHBoxLayout, QToolButton, QVBoxLayout, QWidget
 
-from processing.image.kinds import ImageKind
+from processing.recording.kinds import ImageKind
 from widgets.image_view.view import ImageView
 from widgets.shared.image_orientation import ImageOrientation
 from widgets.shared.image_view_settings import ImageViewSettings

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QPointF
 from PySide6.QtGui import QPainterPath, QPolygonF
 
-from processing.project.catalogue import Geometry
-from processing.project.feature import Feature
+from processing.map.catalogue import Geometry
+from processing.map.feature import Feature
 from widgets.image_view.oriented_image import OrientedImage
 
 Floats = NDArray[np.float64]

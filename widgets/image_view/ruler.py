@@ -10,7 +10,7 @@ from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen
 from PySide6.QtWidgets import QWidget
 from typing_extensions import override
 
-from processing.image.kinds import ImageKind
+from processing.recording.kinds import ImageKind
 from widgets.image_view.oriented_image import OrientedImage
 from widgets.image_view.viewport import Viewport
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from processing.image.nearest import nearest_point
+from processing.image.search.nearest import nearest_point
 from widgets.image_view.oriented_image import OrientedImage
 from widgets.shared.cursor import PickedPosition
 

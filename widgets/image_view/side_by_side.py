@@ -9,9 +9,9 @@ from PySide6.QtCore import QEvent, QObject, QPoint, QPointF, Qt, Signal
 from PySide6.QtWidgets import QSplitter, QVBoxLayout, QWidget
 from typing_extensions import override
 
-from processing.image.tile_cache import TileCache
-from processing.points.drive import Drive
-from processing.text import Language
+from processing.core.text import Language
+from processing.image.attributes.tile_cache import TileCache
+from processing.recording.drive import Drive
 from widgets.image_view.locked_scrolling import following, is_opposite
 from widgets.image_view.oriented_image import OrientedImage
 from widgets.image_view.panes import Pane, PaneHeader, SecondaryImage, ShownImage

@@ -15,14 +15,14 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QObject, Qt, Signal
 from PySide6.QtGui import QColor, QImage
 
-from processing.errors import UserError
-from processing.image.attributes import SHOWS_LABELS
-from processing.image.kinds import ImageKind
-from processing.image.tile_cache import TileCache, TilePixels, TileRequest
-from processing.image.tiles import TileKey
-from processing.image.touched_tiles import TouchedTiles
+from processing.core.errors import UserError
+from processing.image.attributes.attributes import SHOWS_LABELS
+from processing.image.attributes.tile_cache import TileCache, TilePixels, TileRequest
+from processing.image.search.touched_tiles import TouchedTiles
+from processing.image.tiles.tiles import TileKey
+from processing.recording.kinds import ImageKind
+from widgets.feature_drawing.feature_style import ACCENT
 from widgets.image_view.oriented_image import OrientedImage
-from widgets.shared.feature_style import ACCENT
 from widgets.shared.view_settings import PointStyle
 
 MOST_BYTES = 96 * 2**20

@@ -15,9 +15,9 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QWidget
 from typing_extensions import override
 
-from processing.errors import UserError
-from processing.image.tile_cache import TileCache
-from processing.text import Language
+from processing.core.errors import UserError
+from processing.core.text import Language
+from processing.image.attributes.tile_cache import TileCache
 from widgets.image_view.feature_overlay import FeatureOverlay
 from widgets.image_view.feature_positions import FeaturePositions
 from widgets.image_view.hit_finder import HitFinder

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from processing.project.feature import Feature
+from processing.map.feature import Feature
 
 _FAR_M = 20.0
 

@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QBrush, QColor, QImage, QPainter, QPixmap
 
-from processing.earthwork.change_grid import ChangeGrid
-from processing.earthwork.heat_map import change_colours
+from processing.methods.earthwork.maps.change_grid import ChangeGrid
+from processing.methods.earthwork.maps.heat_map import change_colours
 from widgets.plane_view.viewport import PlaneViewport
 
 MOST_CELLS = 4_000_000

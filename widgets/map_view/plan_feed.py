@@ -10,15 +10,20 @@ import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QObject, Signal
 
-from processing.errors import UserError
+from processing.core.errors import UserError
+from processing.image.attributes.tile_cache import TileCache, TileRequest
+from processing.image.from_above.plan_ground import ceilings_above, ground_along
+from processing.image.from_above.plan_raster import (
+    PlanFrame,
+    PlanRaster,
+    PlanSnapshot,
+    square_middles,
+)
 from processing.image.images_of_drives import image_of
-from processing.image.kinds import ImageKind
-from processing.image.plan_ground import ceilings_above, ground_along
-from processing.image.plan_raster import PlanFrame, PlanRaster, PlanSnapshot, square_middles
-from processing.image.tile_cache import TileCache, TileRequest
-from processing.image.tile_choice import Camera3D, tiles_in_view
-from processing.image.tiles import TileKey, TilePyramid
-from processing.points.drive import Drive
+from processing.image.search.tile_choice import Camera3D, tiles_in_view
+from processing.image.tiles.tiles import TileKey, TilePyramid
+from processing.recording.drive import Drive
+from processing.recording.kinds import ImageKind
 from widgets.map_view.plan_tiles import OutdatedRequest, PlanTiles, TilePoints, WantedTile
 from widgets.shared.view_settings import PointStyle
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from PySide6.QtCore import QRectF
 from PySide6.QtGui import QImage, QPainter, QRegion
 
-from processing.image.plan_raster import PlanFrame
+from processing.image.from_above.plan_raster import PlanFrame
 from widgets.map_view.plan_feed import ShownPlan
 from widgets.plane_view.viewport import PlaneViewport
 

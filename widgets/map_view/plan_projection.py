@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.image.plan_raster import PlanFrame
-from processing.project.feature import Position
+from processing.image.from_above.plan_raster import PlanFrame
+from processing.map.feature import Position
 from widgets.mouse_tools.mouse_tool import Ray
 from widgets.plane_view.viewport import PlaneViewport
 

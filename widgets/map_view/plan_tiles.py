@@ -10,10 +10,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import UserError
+from processing.core.errors import UserError
+from processing.image.attributes.tile_cache import TileCache, TilePixels, TileRequest
 from processing.image.images_of_drives import image_of
-from processing.image.tile_cache import TileCache, TilePixels, TileRequest
-from processing.points.drive import Drive
+from processing.recording.drive import Drive
 
 _KEPT_POINTS = 5_000_000
 

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QPointF, QRectF
 
-from processing.errors import Unsuitable
-from processing.points.drive import Drive
-from processing.points.trajectory import Trajectory
+from processing.core.errors import Unsuitable
+from processing.recording.drive import Drive
+from processing.recording.vehicle_path.trajectory import Trajectory
 from processing.section.stations import Stations
 from widgets.map_view.plan_projection import on_plan
 

@@ -20,12 +20,13 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QMenu, QWidget
 from typing_extensions import override
 
-from processing.image.kinds import ImageKind
-from processing.image.plan_points import PlanPoints, PointQuery
-from processing.image.tile_cache import TileCache
-from processing.points.drive import Drive
-from processing.project.feature import PointReference
-from processing.text import Language
+from processing.core.text import Language
+from processing.image.attributes.tile_cache import TileCache
+from processing.image.from_above.plan_points import PlanPoints, PointQuery
+from processing.map.feature import PointReference
+from processing.recording.drive import Drive
+from processing.recording.kinds import ImageKind
+from widgets.feature_drawing.outlines import are_inside
 from widgets.map_view.map_decorations import (
     paint_fields_of_view,
     paint_north,
@@ -46,7 +47,6 @@ from widgets.plane_view.view import PlaneView
 from widgets.plane_view.viewport import PlaneViewport
 from widgets.shared.cursor import PickedPosition
 from widgets.shared.map_source import MapSource
-from widgets.shared.outlines import are_inside
 from widgets.shared.shared_state import SharedState
 
 Floats = NDArray[np.float64]

@@ -15,15 +15,15 @@ from PySide6.QtGui import (
 )
 from typing_extensions import override
 
-from processing.earthwork.contours import LevelLine
-from processing.earthwork.heat_map import change_classes
-from processing.text import Language, Text
+from processing.core.text import Language, Text
+from processing.methods.earthwork.maps.contours import LevelLine
+from processing.methods.earthwork.maps.heat_map import change_classes
+from widgets.feature_drawing.screen_marks import paint_note
 from widgets.map_view.heat_picture import UNMEASURED, HeatPicture
 from widgets.map_view.plan_projection import on_plan
 from widgets.parts.change_words import change_words
 from widgets.plane_view.view import PlaneView
 from widgets.plane_view.viewport import PlaneViewport
-from widgets.shared.screen_marks import paint_note
 from widgets.shared.shown_volume import ShownVolume
 from widgets.shared.sketch import Note
 

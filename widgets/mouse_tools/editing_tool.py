@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from PySide6.QtCore import QObject
 
-from processing.drafting.crossings import crosses_itself
-from processing.errors import UserError
-from processing.project.catalogue import Geometry
-from processing.project.change import Change, Replacement
-from processing.project.feature import Feature
-from processing.text import Text
+from processing.core.errors import UserError
+from processing.core.text import Text
+from processing.map.catalogue import Geometry
+from processing.map.change import Change, Replacement
+from processing.map.drafting.crossings import crosses_itself
+from processing.map.feature import Feature
 from widgets.mouse_tools.mouse_tool import Hit, MouseTool
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QObject, Qt, Signal
 
-from processing.project.feature import Position, Vertex
+from processing.map.feature import Position, Vertex
 from processing.section.cut import Cut
 from widgets.shared.cursor import PickedPosition
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QCoreApplication, QObject, QTimer
 
-from processing.project.feature import Feature, Position
+from processing.map.feature import Feature, Position
 from widgets.shared.map_changes import MapChanges
 from widgets.shared.map_source import MapSource
 

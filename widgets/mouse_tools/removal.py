@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from processing.project.change import Change
-from processing.project.feature import Feature
-from processing.text import Text
+from processing.core.text import Text
+from processing.map.change import Change
+from processing.map.feature import Feature
 
 
 def removal_of(features: tuple[Feature, ...]) -> tuple[Text, Change]:

@@ -9,11 +9,11 @@ import numpy as np
 from PySide6.QtCore import QObject, Qt
 from typing_extensions import override
 
-from processing.drafting.crossings import LinePosition, line_positions
-from processing.drafting.heights import set_on_ground
-from processing.image.edges import edge_beside, highest_point, lowest_point
-from processing.project.catalogue import Geometry
-from processing.project.feature import Feature, PointReference, Vertex
+from processing.image.edges.edges import edge_beside, highest_point, lowest_point
+from processing.map.catalogue import Geometry
+from processing.map.drafting.crossings import LinePosition, line_positions
+from processing.map.drafting.heights import set_on_ground
+from processing.map.feature import Feature, PointReference, Vertex
 from widgets.mouse_tools.mouse_tool import DragShape, EnclosedHits, Hit, MouseTool
 from widgets.mouse_tools.near_features import NearFeatures
 from widgets.shared.cursor import PickedPosition

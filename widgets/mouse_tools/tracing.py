@@ -9,11 +9,11 @@ from typing import Protocol
 
 import numpy as np
 
-from processing.image.nearest import nearest_point
-from processing.image.trace import TraceResult, trace
-from processing.points.drive import Drive
-from processing.project.feature import PointReference, Vertex
-from processing.text import Text
+from processing.core.text import Text
+from processing.image.search.nearest import nearest_point
+from processing.image.tracing.trace import TraceResult, trace
+from processing.map.feature import PointReference, Vertex
+from processing.recording.drive import Drive
 from widgets.shared.map_source import MapSource
 
 STRAIGHT_ON = Text(

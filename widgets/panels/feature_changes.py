@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 
-from processing.drafting.line_edits import with_kind
-from processing.project.catalogue import Catalogue, FeatureKind, Geometry
-from processing.project.change import Change, Replacement
-from processing.project.feature import AttributeValue, Feature, Status
-from processing.text import Text
+from processing.core.text import Text
+from processing.map.catalogue import Catalogue, FeatureKind, Geometry
+from processing.map.change import Change, Replacement
+from processing.map.drafting.line_edits import with_kind
+from processing.map.feature import AttributeValue, Feature, Status
 
 _STATUS_LABELS = {
     Status.ACCEPTED: (

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
 
-from processing.project.feature import Feature, Status
+from processing.map.feature import Feature, Status
 from widgets.shared.map_source import MapSource
 
 

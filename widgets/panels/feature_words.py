@@ -6,9 +6,9 @@ from collections.abc import Mapping
 
 from PySide6.QtCore import QLocale
 
-from processing.project.catalogue import AttributeField, Catalogue
-from processing.project.feature import AttributeValue, Feature, Status
-from processing.text import Language, Text
+from processing.core.text import Language, Text
+from processing.map.catalogue import AttributeField, Catalogue
+from processing.map.feature import AttributeValue, Feature, Status
 from processing.tools.registry import TOOLS
 
 STATUS_NAMES: Mapping[Status, Text] = {

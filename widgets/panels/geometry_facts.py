@@ -7,9 +7,9 @@ from itertools import pairwise
 
 from PySide6.QtCore import QLocale
 
-from processing.project.catalogue import Geometry
-from processing.project.feature import Feature
-from processing.text import Language, Text
+from processing.core.text import Language, Text
+from processing.map.catalogue import Geometry
+from processing.map.feature import Feature
 from widgets.parts.number_field import coordinate
 
 _LENGTH = Text("Length", "延長")

@@ -13,7 +13,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from processing.text import Language
+from processing.core.text import Language
 from widgets.parts.job_view import JobView, time_left
 from widgets.parts.progress_bar import ProgressBar
 

@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 
 from PySide6.QtCore import QDateTime, QLocale
 
-from processing.project.runs import Run
-from processing.text import Language, Text
-from processing.tools.parameters import parameters_of
+from processing.core.parameters import parameters_of
+from processing.core.text import Language, Text
+from processing.project.store.runs import Run
 from processing.tools.registry import TOOLS
 from widgets.panels.feature_tally import RunOfTool, RunTally
 from widgets.panels.feature_words import words_of_value

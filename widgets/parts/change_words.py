@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from processing.earthwork.change_reading import ChangeReading
-from processing.text import Text
+from processing.core.text import Text
+from processing.methods.earthwork.maps.change_reading import ChangeReading
 from widgets.parts.number_field import coordinate
 
 _WORDS = Text(

@@ -5,11 +5,11 @@ from __future__ import annotations
 from PySide6.QtCore import QSize, Qt
 from PySide6.QtWidgets import QHBoxLayout, QToolButton, QWidget
 
+from processing.core.text import Language
 from processing.labels.rules import PaintRule
-from processing.points.classes import class_key, point_classes
-from processing.text import Language
+from processing.recording.columns.classes import class_key, point_classes
+from widgets.feature_drawing.swatch import SWATCH_PX, swatch_of
 from widgets.shared.label_palette import LabelPalette
-from widgets.shared.swatch import SWATCH_PX, swatch_of
 
 INTERACTIVE = (2, 1, 7, 18)
 """Ground, what stands on it, and noise below and above: what corrections are made with."""

@@ -18,7 +18,7 @@ from PySide6.QtWidgets import (
 )
 from typing_extensions import override
 
-from processing.text import Language, Text
+from processing.core.text import Language, Text
 from widgets.parts.name_match import match_rank
 
 _NAME, _OTHER, _KEY = range(3)

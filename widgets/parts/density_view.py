@@ -11,9 +11,14 @@ from PySide6.QtGui import QImage, QMouseEvent, QPainter, QPaintEvent
 from PySide6.QtWidgets import QSizePolicy, QToolTip, QWidget
 from typing_extensions import override
 
-from processing.simulate.scanning.density import DensityMap
-from processing.simulate.scanning.density_files import DECADES, LEAST, MOST, density_colours
-from processing.text import Language
+from processing.core.text import Language
+from processing.laboratory.simulate.scanning.density import DensityMap
+from processing.laboratory.simulate.scanning.density_files import (
+    DECADES,
+    LEAST,
+    MOST,
+    density_colours,
+)
 
 _STEP_M = 5
 _SCALE_PX = 14

@@ -14,15 +14,15 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from processing.drafting.measuring import Measure
-from processing.project.catalogue import FeatureKind
-from processing.text import Language, Text
+from processing.core.text import Language, Text
+from processing.map.catalogue import FeatureKind
+from processing.map.drafting.measuring import Measure
+from widgets.feature_drawing.swatch import SWATCH_PX, swatch_of
 from widgets.parts.class_chips import ClassChips
 from widgets.parts.elided_label import ElidedLabel
 from widgets.parts.literal_text import literal
 from widgets.shared.shared_state import SharedState
 from widgets.shared.snap_state import SNAP_NAMES, SnapMode
-from widgets.shared.swatch import SWATCH_PX, swatch_of
 
 _FARTHEST_M = 999.0
 _HIGHEST_M = 99.0

@@ -5,7 +5,7 @@ from __future__ import annotations
 from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QSpinBox, QToolButton, QWidget
 
-from processing.text import Language
+from processing.core.text import Language
 from widgets.shared.image_view_settings import ImageViewSettings
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState

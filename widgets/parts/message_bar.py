@@ -6,8 +6,8 @@ from PySide6.QtCore import Qt
 from PySide6.QtGui import QAction
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
 
-from processing.errors import UserError
-from processing.text import Language
+from processing.core.errors import UserError
+from processing.core.text import Language
 
 
 class MessageBar(QFrame):

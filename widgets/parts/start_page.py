@@ -20,7 +20,7 @@ from PySide6.QtWidgets import (
 )
 from typing_extensions import override
 
-from processing.text import Language
+from processing.core.text import Language
 from widgets.parts.recent_project import RecentProject
 
 _WIDTH = 760

@@ -6,8 +6,8 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QFont
 from PySide6.QtWidgets import QLabel, QStatusBar, QToolButton, QWidget
 
-from processing.earthwork.change_reading import ChangeReading
-from processing.text import Language, Text
+from processing.core.text import Language, Text
+from processing.methods.earthwork.maps.change_reading import ChangeReading
 from widgets.parts.change_words import change_words
 from widgets.parts.job_view import JobView, time_left
 from widgets.parts.number_field import coordinate

@@ -11,20 +11,20 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QPolygonF
 
-from processing.project.catalogue import Geometry
-from widgets.mouse_tools.gesture import REACH_PX
-from widgets.mouse_tools.mouse_tool import EnclosedHits, Hit
-from widgets.plane_view.projected_map import PlaneFeatures
-from widgets.plane_view.projection import PlanePoint, PlaneProjection
-from widgets.plane_view.viewport import PlaneViewport
-from widgets.shared.cursor import PickedPosition
-from widgets.shared.feature_hits import (
+from processing.map.catalogue import Geometry
+from widgets.feature_drawing.feature_hits import (
     SEGMENT_PX,
     FeatureHit,
     features_inside,
     segment_at,
     vertex_at,
 )
+from widgets.mouse_tools.gesture import REACH_PX
+from widgets.mouse_tools.mouse_tool import EnclosedHits, Hit
+from widgets.plane_view.projected_map import PlaneFeatures
+from widgets.plane_view.projection import PlanePoint, PlaneProjection
+from widgets.plane_view.viewport import PlaneViewport
+from widgets.shared.cursor import PickedPosition
 
 Floats = NDArray[np.float64]
 

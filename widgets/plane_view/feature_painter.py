@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPen, QPolygonF
 
-from processing.project.catalogue import Catalogue, Geometry
-from processing.project.feature import Status
+from processing.map.catalogue import Catalogue, Geometry
+from processing.map.feature import Status
+from widgets.feature_drawing.feature_marks import FeatureMarks
+from widgets.feature_drawing.feature_style import FeatureStyle, style_of
 from widgets.plane_view.line_pieces import as_lines, clip_pieces, dash_pieces, thin_pieces
 from widgets.plane_view.projected_map import PlaneFeatures, ProjectedShape
 from widgets.plane_view.viewport import PlaneViewport
-from widgets.shared.feature_marks import FeatureMarks
-from widgets.shared.feature_style import FeatureStyle, style_of
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]

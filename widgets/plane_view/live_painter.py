@@ -9,20 +9,20 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QColor, QPainter
 
-from processing.project.catalogue import Catalogue, Geometry
-from processing.project.feature import Position, Vertex
-from processing.text import Language
+from processing.core.text import Language
+from processing.map.catalogue import Catalogue, Geometry
+from processing.map.feature import Position, Vertex
+from widgets.feature_drawing.crowded_marks import FEW
+from widgets.feature_drawing.feature_marks import FeatureMarks
+from widgets.feature_drawing.feature_shapes import local_positions, segments_of
+from widgets.feature_drawing.feature_style import sketch_style
+from widgets.feature_drawing.screen_marks import paint_cross, paint_note, paint_snap, preview_pens
 from widgets.plane_view.feature_painter import MARGIN_PX, paint_pieces
 from widgets.plane_view.line_pieces import as_lines, clip_pieces
 from widgets.plane_view.projected_map import pieces_of
 from widgets.plane_view.projection import PlaneProjection
 from widgets.plane_view.viewport import PlaneViewport
-from widgets.shared.crowded_marks import FEW
 from widgets.shared.cursor import PickedPosition
-from widgets.shared.feature_marks import FeatureMarks
-from widgets.shared.feature_shapes import local_positions, segments_of
-from widgets.shared.feature_style import sketch_style
-from widgets.shared.screen_marks import paint_cross, paint_note, paint_snap, preview_pens
 from widgets.shared.sketch import Drawing
 from widgets.shared.snap_state import SNAP_NAMES, SnapMark
 

@@ -11,8 +11,13 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QPointF
 from PySide6.QtGui import QPolygonF
 
+from widgets.feature_drawing.feature_shapes import (
+    FeatureShape,
+    FeatureShapes,
+    FlatShapes,
+    flatten_shapes,
+)
 from widgets.plane_view.projection import PlaneProjection
-from widgets.shared.feature_shapes import FeatureShape, FeatureShapes, FlatShapes, flatten_shapes
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
 

@@ -7,7 +7,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.project.feature import Position
+from processing.map.feature import Position
 from widgets.mouse_tools.mouse_tool import Ray
 
 Floats = NDArray[np.float64]

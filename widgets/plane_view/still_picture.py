@@ -7,7 +7,7 @@ from typing import Protocol
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QColor, QPainter, QPixmap
 
-from processing.project.catalogue import Catalogue
+from processing.map.catalogue import Catalogue
 from widgets.plane_view.feature_painter import FeaturePainter
 from widgets.plane_view.projected_map import PlaneFeatures
 from widgets.plane_view.viewport import PlaneViewport

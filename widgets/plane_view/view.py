@@ -19,7 +19,8 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QMenu, QWidget
 from typing_extensions import override
 
-from processing.text import Language
+from processing.core.text import Language
+from widgets.feature_drawing.screen_marks import paint_outline
 from widgets.mouse_tools.menu_request import MenuRequest
 from widgets.mouse_tools.mouse_tool import MouseTool
 from widgets.plane_view.feature_hits import EnclosedPoints, PlaneHits
@@ -31,7 +32,6 @@ from widgets.plane_view.still_picture import BACKGROUND, StillPicture
 from widgets.plane_view.viewport import PlaneViewport
 from widgets.shared.cursor import PickedPosition
 from widgets.shared.map_source import MapSource
-from widgets.shared.screen_marks import paint_outline
 from widgets.shared.shared_state import SharedState
 
 _MIDDLE_PART = 0.6

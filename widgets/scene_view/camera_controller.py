@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QPointF, Qt
 
-from widgets.scene_view.camera import SceneCamera
-from widgets.scene_view.projection import SceneProjection
+from widgets.scene_view.rendering.camera import SceneCamera
+from widgets.scene_view.rendering.projection import SceneProjection
 
 Floats = NDArray[np.float64]
 

@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QObject, Signal
 
-from processing.image.clip import Clip
-from processing.image.corridor import Corridor, CorridorExtent
-from processing.points.drive import Drive
+from processing.image.search.clip import Clip
+from processing.image.search.corridor import Corridor, CorridorExtent
+from processing.recording.drive import Drive
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
 

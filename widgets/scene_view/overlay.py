@@ -11,19 +11,19 @@ from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen, QPolygonF
 from PySide6.QtWidgets import QWidget
 from typing_extensions import override
 
-from processing.project.catalogue import Catalogue, Geometry
-from processing.text import Language
-from widgets.scene_view.projection import SceneProjection
-from widgets.shared.crowded_marks import FEW, marks_to_paint
-from widgets.shared.feature_shapes import local_positions, segments_of
-from widgets.shared.feature_style import FeatureStyle, sketch_style
-from widgets.shared.screen_marks import (
+from processing.core.text import Language
+from processing.map.catalogue import Catalogue, Geometry
+from widgets.feature_drawing.crowded_marks import FEW, marks_to_paint
+from widgets.feature_drawing.feature_shapes import local_positions, segments_of
+from widgets.feature_drawing.feature_style import FeatureStyle, sketch_style
+from widgets.feature_drawing.screen_marks import (
     paint_cross,
     paint_note,
     paint_outline,
     paint_snap,
     preview_pens,
 )
+from widgets.scene_view.rendering.projection import SceneProjection
 from widgets.shared.sketch import Drawing
 from widgets.shared.snap_state import SNAP_NAMES, SnapMark
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.image.kinds import ImageKind
-from processing.points.drive import Drive
-from widgets.scene_view import overviews
-from widgets.scene_view.camera import SceneCamera
+from processing.recording.drive import Drive
+from processing.recording.kinds import ImageKind
+from widgets.scene_view.rendering import overviews
+from widgets.scene_view.rendering.camera import SceneCamera
 from widgets.shared.map_source import MapSource
 from widgets.shared.view_settings import ViewSettings
 

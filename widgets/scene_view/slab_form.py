@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from PySide6.QtWidgets import QDoubleSpinBox, QFormLayout, QWidget
 
-from processing.image.corridor import CorridorExtent
+from processing.image.search.corridor import CorridorExtent
 from widgets.scene_view.clipping import Clipping
 
 _WIDEST_M = 100.0

@@ -12,21 +12,21 @@ from PySide6.QtGui import QCloseEvent, QColor, QPainter, QPaintEvent, QResizeEve
 from PySide6.QtWidgets import QWidget
 from typing_extensions import override
 
-from processing.image.tile_cache import TileCache
-from processing.text import Language
+from processing.core.text import Language
+from processing.image.attributes.tile_cache import TileCache
 from widgets.mouse_tools.menu_request import MenuRequest
 from widgets.mouse_tools.mouse_tool import MouseTool
-from widgets.scene_view import overviews
-from widgets.scene_view.backdrop import BACKGROUND
-from widgets.scene_view.camera import SceneCamera
 from widgets.scene_view.clipping import Clipping
 from widgets.scene_view.hits import SceneHits
 from widgets.scene_view.map.map_layer import MapLayer
 from widgets.scene_view.mouse import SceneMouse
 from widgets.scene_view.overlay import OverlayContent, SceneOverlay
 from widgets.scene_view.points.point_finder import PointFinder
-from widgets.scene_view.projection import SceneProjection
 from widgets.scene_view.renderer_loader import RendererLoader, reserve_graphics
+from widgets.scene_view.rendering import overviews
+from widgets.scene_view.rendering.backdrop import BACKGROUND
+from widgets.scene_view.rendering.camera import SceneCamera
+from widgets.scene_view.rendering.projection import SceneProjection
 from widgets.scene_view.shown_drives import ShownDrives
 from widgets.scene_view.view_menu import view_menu
 from widgets.shared.cursor import PickedPosition
@@ -35,7 +35,7 @@ from widgets.shared.shared_state import SharedState
 
 if TYPE_CHECKING:  # importing these imports VTK, which is done after the view was shown
     from widgets.scene_view.points.cloud import PointCloudLayer
-    from widgets.scene_view.scene_renderer import SceneRenderer
+    from widgets.scene_view.rendering.scene_renderer import SceneRenderer
 
 Floats = NDArray[np.float64]
 
@@ -252,7 +252,7 @@ class SceneView(QWidget):
         if self._is_closed:
             return
         from widgets.scene_view.points.cloud import PointCloudLayer
-        from widgets.scene_view.scene_renderer import SceneRenderer
+        from widgets.scene_view.rendering.scene_renderer import SceneRenderer
 
         self._scene_renderer = SceneRenderer(self, self._on_scene_renderer_frame)
         self._cloud = PointCloudLayer(self._scene_renderer, self._tiles, self)

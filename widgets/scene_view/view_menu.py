@@ -8,8 +8,8 @@ from PySide6.QtCore import QCoreApplication
 from PySide6.QtGui import QAction, QActionGroup
 from PySide6.QtWidgets import QMenu, QWidget, QWidgetAction
 
-from widgets.scene_view.camera import SceneCamera
 from widgets.scene_view.clipping import ClipChoice, Clipping
+from widgets.scene_view.rendering.camera import SceneCamera
 from widgets.scene_view.slab_form import SlabForm
 
 

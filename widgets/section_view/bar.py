@@ -19,8 +19,8 @@ from typing_extensions import override
 
 from widgets.parts.icon_button import IconButton
 from widgets.parts.number_field import NumberField
-from widgets.section_view.section_position import LEAST_WIDTH_M, MOST_WIDTH_M
-from widgets.section_view.settings import EXAGGERATIONS, SectionSettings
+from widgets.section_view.picture.section_position import LEAST_WIDTH_M, MOST_WIDTH_M
+from widgets.section_view.picture.settings import EXAGGERATIONS, SectionSettings
 
 _LEAST_STEP_M, _MOST_STEP_M = 0.05, 100.0
 _TYPED = 2

@@ -6,10 +6,10 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from processing.project.catalogue import Catalogue, Geometry
-from processing.project.feature import Feature, Status
+from processing.core.text import Text
+from processing.map.catalogue import Catalogue, Geometry
+from processing.map.feature import Feature, Status
 from processing.section.profile import DrawnLine
-from processing.text import Text
 
 _UNKNOWN_LAYER, _UNKNOWN_ACI = "0", 7
 

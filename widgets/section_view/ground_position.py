@@ -7,11 +7,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from processing.image.nearest import nearest_point
-from processing.points.drive import Drive
+from processing.image.search.nearest import nearest_point
+from processing.recording.drive import Drive
 from processing.section.points_in_cut import ground_near
-from widgets.section_view.point_search import can_search, position_of
-from widgets.section_view.section_position import SectionPosition
+from widgets.section_view.picture.point_search import can_search, position_of
+from widgets.section_view.picture.section_position import SectionPosition
 from widgets.shared.cursor import PickedPosition
 
 _SAME_M = 0.1

@@ -7,14 +7,14 @@ from collections.abc import Sequence
 import numpy as np
 from PySide6.QtCore import QObject
 
-from processing.errors import UserError
-from processing.points.drive import Drive
-from processing.project.catalogue import Geometry
-from processing.project.feature import Feature, Position
+from processing.core.errors import UserError
+from processing.map.catalogue import Geometry
+from processing.map.feature import Feature, Position
+from processing.recording.drive import Drive
 from processing.section.site_axis import site_axis
 from processing.section.stations import Stations
 from widgets.mouse_tools.near_features import NearFeatures
-from widgets.section_view.section_position import CutLine, SectionPosition
+from widgets.section_view.picture.section_position import CutLine, SectionPosition
 from widgets.shared.cursor import PickedPosition
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState

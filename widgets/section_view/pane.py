@@ -12,29 +12,35 @@ from PySide6.QtGui import QCloseEvent, QMouseEvent, QPainter, QPolygonF, QResize
 from PySide6.QtWidgets import QMenu, QWidget
 from typing_extensions import override
 
-from processing.points.drive import Drive
-from processing.project.feature import Vertex
+from processing.core.text import Language, Text
+from processing.map.feature import Vertex
+from processing.recording.drive import Drive
 from processing.section.cut import Cut
-from processing.text import Language, Text
+from widgets.feature_drawing.screen_marks import paint_note
 from widgets.plane_view.projection import PlanePoint
 from widgets.plane_view.view import PlaneView
 from widgets.plane_view.viewport import PlaneViewport
-from widgets.section_view.diagnostic_marks import DiagnosticMarks
-from widgets.section_view.feed import SectionFeed, SectionPicture, SectionRequest
-from widgets.section_view.frame import BOTTOM_PX, LEFT_PX, paint_frame
-from widgets.section_view.ground import GroundPainter, ground_y
-from widgets.section_view.ground_layers import GroundLayers
 from widgets.section_view.lines import SectionLines
-from widgets.section_view.marks import NamedMark, SectionMarks, mark_under, marks_of, paint_marks
-from widgets.section_view.point_search import measured_point, points_within, shown_point
-from widgets.section_view.projection import SectionProjection
-from widgets.section_view.section_position import SectionPosition
-from widgets.section_view.settings import SectionSettings
-from widgets.section_view.titles import frame_words
+from widgets.section_view.picture.diagnostic_marks import DiagnosticMarks
+from widgets.section_view.picture.feed import SectionFeed, SectionPicture, SectionRequest
+from widgets.section_view.picture.frame import BOTTOM_PX, LEFT_PX, paint_frame
+from widgets.section_view.picture.ground import GroundPainter, ground_y
+from widgets.section_view.picture.ground_layers import GroundLayers
+from widgets.section_view.picture.marks import (
+    NamedMark,
+    SectionMarks,
+    mark_under,
+    marks_of,
+    paint_marks,
+)
+from widgets.section_view.picture.point_search import measured_point, points_within, shown_point
+from widgets.section_view.picture.projection import SectionProjection
+from widgets.section_view.picture.section_position import SectionPosition
+from widgets.section_view.picture.settings import SectionSettings
+from widgets.section_view.picture.titles import frame_words
 from widgets.section_view.view_menu import add_settings
 from widgets.shared.cursor import PickedPosition
 from widgets.shared.map_source import MapSource
-from widgets.shared.screen_marks import paint_note
 from widgets.shared.shared_state import SharedState
 from widgets.shared.sketch import Note
 

@@ -9,13 +9,13 @@ from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QSplitter, QWidget
 from typing_extensions import override
 
-from processing.text import Language
+from processing.core.text import Language
 from widgets.mouse_tools.mouse_tool import MouseTool
 from widgets.section_view.lines import SectionLines
 from widgets.section_view.pane import SectionPane
+from widgets.section_view.picture.section_position import SectionPosition
+from widgets.section_view.picture.settings import SectionSettings
 from widgets.section_view.pinned import PinnedSections
-from widgets.section_view.section_position import SectionPosition
-from widgets.section_view.settings import SectionSettings
 from widgets.shared.cursor import PickedPosition
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState

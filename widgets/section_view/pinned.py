@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Self
 
-from widgets.section_view.section_position import SectionPosition
+from widgets.section_view.picture.section_position import SectionPosition
 
 
 @dataclass(frozen=True)

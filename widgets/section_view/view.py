@@ -10,9 +10,9 @@ from PySide6.QtGui import QCloseEvent, QKeyEvent
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 from typing_extensions import override
 
+from processing.core.text import Language, Text
 from processing.section.cut import Cut
 from processing.section.profile import SectionProfile, profile_of
-from processing.text import Language, Text
 from widgets.mouse_tools.mouse_tool import MouseTool
 from widgets.section_view.bar import SectionBar
 from widgets.section_view.drawn_lines import drawn_lines
@@ -21,10 +21,10 @@ from widgets.section_view.lines import SectionLines
 from widgets.section_view.live import LiveLine
 from widgets.section_view.pane import SectionPane
 from widgets.section_view.panes import SectionPanes
+from widgets.section_view.picture.section_position import SectionPosition
+from widgets.section_view.picture.settings import SectionSettings
+from widgets.section_view.picture.titles import line_title
 from widgets.section_view.pinned import PinnedSections
-from widgets.section_view.section_position import SectionPosition
-from widgets.section_view.settings import SectionSettings
-from widgets.section_view.titles import line_title
 from widgets.shared.cursor import PickedPosition
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState

@@ -8,7 +8,7 @@ from dataclasses import replace
 from PySide6.QtCore import QCoreApplication
 from PySide6.QtWidgets import QMenu
 
-from widgets.section_view.settings import EXAGGERATIONS, SectionSettings
+from widgets.section_view.picture.settings import EXAGGERATIONS, SectionSettings
 
 
 def add_settings(

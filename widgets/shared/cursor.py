@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from PySide6.QtCore import QObject, Signal
 
-from processing.project.feature import PointReference, Position
+from processing.map.feature import PointReference, Position
 
 
 @dataclass(frozen=True)

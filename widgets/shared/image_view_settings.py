@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from PySide6.QtWidgets import QComboBox, QHBoxLayout, QMenu, QSizePolicy, QToolButton, QWidget
 
-from processing.image.attributes import ATTRIBUTES, available, most_telling_attribute
-from processing.image.kinds import ImageKind
-from processing.points.drive import Drive
-from processing.text import Language
+from processing.core.text import Language
+from processing.image.attributes.attributes import ATTRIBUTES, available, most_telling_attribute
+from processing.recording.drive import Drive
+from processing.recording.kinds import ImageKind
 from widgets.shared.image_orientation import ImageOrientation
 from widgets.shared.map_changes import MapChanges
 from widgets.shared.map_source import MapSource

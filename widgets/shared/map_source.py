@@ -8,10 +8,10 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.points.drive import Drive
-from processing.project.catalogue import Catalogue
-from processing.project.feature import Feature
-from processing.project.runs import Run
+from processing.map.catalogue import Catalogue
+from processing.map.feature import Feature
+from processing.project.store.runs import Run
+from processing.recording.drive import Drive
 
 
 class MapSource(Protocol):

@@ -8,9 +8,9 @@ from enum import Enum
 
 from PySide6.QtCore import QObject, Signal
 
-from processing.earthwork.change_grid import ChangeGrid
-from processing.earthwork.change_reading import ChangeReading, reading_at
-from processing.earthwork.contours import LevelLine
+from processing.methods.earthwork.maps.change_grid import ChangeGrid
+from processing.methods.earthwork.maps.change_reading import ChangeReading, reading_at
+from processing.methods.earthwork.maps.contours import LevelLine
 from widgets.shared.cursor import PickedPosition
 
 LEAST_LIMIT_M, MOST_LIMIT_M = 0.01, 100.0

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 from PySide6.QtCore import QObject, Signal
 
-from processing.project.catalogue import Geometry
-from processing.project.feature import Position, Vertex
+from processing.map.catalogue import Geometry
+from processing.map.feature import Position, Vertex
 
 
 @dataclass(frozen=True)

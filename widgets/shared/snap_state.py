@@ -9,8 +9,8 @@ from enum import Enum
 import numpy as np
 from PySide6.QtCore import QObject, Signal
 
-from processing.project.feature import Position
-from processing.text import Text
+from processing.core.text import Text
+from processing.map.feature import Position
 
 
 class SnapMode(Enum):

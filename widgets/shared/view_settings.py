@@ -6,9 +6,9 @@ from dataclasses import dataclass
 
 from PySide6.QtCore import QObject, Signal
 
-from processing.image.attributes import SHOWS_LABELS
-from processing.image.kinds import ImageKind
-from processing.project.feature import Feature, Status
+from processing.image.attributes.attributes import SHOWS_LABELS
+from processing.map.feature import Feature, Status
+from processing.recording.kinds import ImageKind
 from widgets.shared.image_orientation import ImageOrientation
 
 
@@ -19,7 +19,7 @@ class PointStyle:
     Attributes
     ----------
     attribute : str
-        A key of :data:`processing.image.attributes.ATTRIBUTES`.
+        A key of :data:`processing.image.attributes.attributes.ATTRIBUTES`.
     low_percent, high_percent : float
         Percentiles of the drive that become the dark and the bright end.
     point_size_px : float

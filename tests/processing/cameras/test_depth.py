@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from processing.cameras.camera import Camera
 from processing.cameras.depth import DepthPicture
-from processing.cameras.image_list import CameraImage, ProjectionName
-from processing.errors import Cancelled
-from processing.points.drive import Drive
+from processing.core.errors import Cancelled
+from processing.recording.camera_images.camera import Camera
+from processing.recording.camera_images.image_list import CameraImage, ProjectionName
+from processing.recording.drive import Drive
 from tests.builders import START
 from tests.camera_scene import looking, seen_by
 from tests.processing.image.recordings import drive_of, simulated_drive

@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from processing.cameras.camera import Camera
 from processing.cameras.stereo import epipolar_line, stereo_position
-from processing.errors import Unsuitable
+from processing.core.errors import Unsuitable
+from processing.recording.camera_images.camera import Camera
 from tests.builders import START
 from tests.camera_scene import looking
 

@@ -7,10 +7,10 @@ from typing import Any
 
 import ezdxf.filemanagement
 
-from processing.formats.dxf import write_dxf
-from processing.formats.dxf_document import DxfVersion
-from processing.project.catalogue import Catalogue
-from processing.project.feature import Feature
+from processing.formats.drawings.dxf import write_dxf
+from processing.formats.drawings.dxf_document import DxfVersion
+from processing.map.catalogue import Catalogue
+from processing.map.feature import Feature
 
 
 def audited_dxf(

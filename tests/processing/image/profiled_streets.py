@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.points.columns import ColumnWriter
-from processing.points.drive import Drive
-from processing.points.drive_info import DriveInfo, write_drive_info
-from processing.points.revolutions_file import write_revolutions
+from processing.recording.columns.columns import ColumnWriter
+from processing.recording.drive import Drive
+from processing.recording.drive_info import DriveInfo, write_drive_info
+from processing.recording.revolutions.revolutions_file import write_revolutions
 from tests.processing.image.recordings import revolutions_of
 
 Floats = NDArray[np.float64]

@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.points.columns import ColumnWriter
-from processing.points.drive import Drive
-from processing.points.drive_info import DriveInfo, read_drive_info, write_drive_info
-from processing.points.revolutions import Revolutions
-from processing.points.revolutions_file import write_revolutions
-from processing.text import Text
+from processing.core.text import Text
+from processing.recording.columns.columns import ColumnWriter
+from processing.recording.drive import Drive
+from processing.recording.drive_info import DriveInfo, read_drive_info, write_drive_info
+from processing.recording.revolutions.revolutions import Revolutions
+from processing.recording.revolutions.revolutions_file import write_revolutions
 from tests.builders import SimulatedDrive, simulated_drive
 
 Integers = NDArray[np.int64]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from processing.errors import Unsuitable
+from processing.core.errors import Unsuitable
 from processing.labels import strokes
 from processing.labels.rules import PaintOver, PaintRule
 from processing.labels.strokes import (
@@ -14,7 +14,7 @@ from processing.labels.strokes import (
     segments_of,
     stroke_is_short,
 )
-from processing.points.drive import Drive
+from processing.recording.drive import Drive
 from tests.widgets.builders import imported_drive
 
 

@@ -6,8 +6,8 @@ from datetime import UTC, datetime, timedelta
 
 import numpy as np
 
-from processing.project.found_features import FoundFeatures, found_features
-from processing.text import Text
+from processing.core.text import Text
+from processing.project.results.found_features import FoundFeatures, found_features
 from processing.tools.normals import NormalsParameters
 from processing.tools.tool import Candidate, CandidateResult, Needs, Tool
 

@@ -7,12 +7,12 @@ from pathlib import Path
 
 import numpy as np
 
-from processing.monitor import SilentMonitor
-from processing.points.drive import Drive
-from processing.points.drive_info import write_drive_info
-from processing.points.ordering import sort_points
-from processing.points.top_view import top_view_of
-from processing.text import Text
+from processing.core.monitor import SilentMonitor
+from processing.core.text import Text
+from processing.recording.columns.ordering import sort_points
+from processing.recording.drive import Drive
+from processing.recording.drive_info import write_drive_info
+from processing.recording.without_revolutions.top_view import top_view_of
 
 
 def order_by_cells(folder: Path) -> None:

@@ -5,9 +5,10 @@ from __future__ import annotations
 from contextlib import closing
 from pathlib import Path
 
-from processing.project.catalogue import Geometry
-from processing.project.change import Change
-from processing.project.feature import (
+from processing.core.text import Text
+from processing.map.catalogue import Geometry
+from processing.map.change import Change
+from processing.map.feature import (
     AttributeValue,
     Feature,
     PointReference,
@@ -15,10 +16,9 @@ from processing.project.feature import (
     Status,
     Vertex,
 )
-from processing.project.feature_rows import change_from_json
 from processing.project.project import Project
-from processing.project.reading_connection import connect
-from processing.text import Text
+from processing.project.store.feature_rows import change_from_json
+from processing.project.store.reading_connection import connect
 
 LABEL = Text("Draw", "作図")
 

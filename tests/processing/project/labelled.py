@@ -8,14 +8,14 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.monitor import SilentMonitor
+from processing.core.text import Text
 from processing.labels.label_column import labels_of
-from processing.monitor import SilentMonitor
-from processing.points.drive import Drive
-from processing.project.change import Change
-from processing.project.importing import ImportRequest, import_drives
-from processing.project.label_change import label_changes
+from processing.map.change import Change
+from processing.map.label_change import label_changes
+from processing.project.importing.importing import ImportRequest, import_drives
 from processing.project.project import Project
-from processing.text import Text
+from processing.recording.drive import Drive
 from tests.builders import simulated_drive, write_laz, write_trajectory_csv
 
 PAINT = Text("Label points", "点のラベル")

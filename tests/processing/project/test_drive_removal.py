@@ -12,17 +12,17 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from processing.core.monitor import SilentMonitor
+from processing.core.text import Text
 from processing.labels.label_column import labels_of
-from processing.monitor import SilentMonitor
-from processing.project.catalogue import Geometry
-from processing.project.change import Change
+from processing.map.catalogue import Geometry
+from processing.map.change import Change
+from processing.map.feature import Feature, PointReference, Provenance, Status, Vertex
+from processing.map.label_change import label_changes
 from processing.project.drive_removal import removal_of
-from processing.project.feature import Feature, PointReference, Provenance, Status, Vertex
-from processing.project.importing import ImportRequest, import_drives
-from processing.project.label_change import label_changes
+from processing.project.importing.importing import ImportRequest, import_drives
 from processing.project.project import Project
-from processing.project.runs import Run
-from processing.text import Text
+from processing.project.store.runs import Run
 from tests.builders import simulated_drive, write_laz
 
 LABEL = Text.same("x")

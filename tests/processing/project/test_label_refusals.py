@@ -17,7 +17,7 @@ ON_A_FULL_DISK = """
 import json, resource, sys
 from pathlib import Path
 import numpy as np
-from processing.errors import UserError
+from processing.core.errors import UserError
 from processing.project.project import Project
 from tests.processing.project.labelled import all_labels, paint
 folder = Path(sys.argv[1])

@@ -10,12 +10,12 @@ import pyogrio
 import pytest
 import shapely
 
-from processing.errors import BadFile, InUse, MissingInput, OutOfRange
-from processing.project.catalogue import Geometry
-from processing.project.change import Change, Replacement
-from processing.project.feature import Feature, PointReference, Vertex
+from processing.core.errors import BadFile, InUse, MissingInput, OutOfRange
+from processing.core.text import Text
+from processing.map.catalogue import Geometry
+from processing.map.change import Change, Replacement
+from processing.map.feature import Feature, PointReference, Vertex
 from processing.project.project import Project, is_project
-from processing.text import Text
 
 LABEL = Text("Draw", "作図")
 LINE = Feature(

@@ -19,8 +19,8 @@ from tests.processing.project.drawn import features_of, new_project, replayed_hi
 ON_A_FULL_DISK = """
 import json, resource, sys
 from pathlib import Path
-from processing.errors import NoSpace
-from processing.project.change import Change
+from processing.core.errors import NoSpace
+from processing.map.change import Change
 from processing.project.project import Project
 from tests.processing.project.drawn import LABEL, curb, features_of
 folder, room = Path(sys.argv[1]), int(sys.argv[2])
@@ -47,7 +47,7 @@ print(json.dumps([done, refused]))
 WITHOUT_RIGHTS = """
 import os, sys
 from pathlib import Path
-from processing.errors import NoSpace
+from processing.core.errors import NoSpace
 from processing.project.project import Project
 # What is imported late must be there before the rights are given up.
 Project.open(Path(sys.argv[1]), writing=False).close()

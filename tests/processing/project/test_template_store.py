@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from processing.errors import BadFile, OutOfRange
+from processing.core.errors import BadFile, OutOfRange
 from processing.project.project import Project
 from processing.project.template_store import TemplateStore, export_template
-from tests.processing.templates.curb_street import CURB, WALL_FOOT
+from tests.processing.methods.templates.curb_street import CURB, WALL_FOOT
 
 
 @pytest.fixture

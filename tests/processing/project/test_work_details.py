@@ -10,9 +10,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from processing.errors import BadFile, MissingInput, OutOfRange
+from processing.core.errors import BadFile, MissingInput, OutOfRange
+from processing.core.parameters import MOST_LETTERS, parameters_of
 from processing.project.work_details import WorkDetails, details_of, read_work_details
-from processing.tools.parameters import MOST_LETTERS, parameters_of
 
 DETAILS = WorkDetails(
     work="令和8年度 国道1号改良工事",

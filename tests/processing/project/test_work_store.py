@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from processing.earthwork.limits_file import as_built_limits, read_limits
-from processing.errors import BadFile, InUse, MissingInput, OutOfRange
+from processing.core.errors import BadFile, InUse, MissingInput, OutOfRange
+from processing.methods.earthwork.as_built.limits_file import as_built_limits, read_limits
 from processing.project.project import Project
 from processing.project.work_details import WorkDetails
 from processing.project.work_store import ChosenLimits, WorkStore

@@ -6,9 +6,9 @@ from typing import Literal
 
 import pytest
 
-from processing.monitor import SilentMonitor
-from processing.points.drive import Drive
-from processing.project.importing import ImportRequest, import_drives
+from processing.core.monitor import SilentMonitor
+from processing.project.importing.importing import ImportRequest, import_drives
+from processing.recording.drive import Drive
 from tests.builders import simulated_drive, write_laz, write_trajectory_csv
 
 

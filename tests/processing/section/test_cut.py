@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from processing.errors import OutOfRange
+from processing.core.errors import OutOfRange
 from processing.section.cut import Cut
 
 NORTHWARDS = Cut((-11_030.0, -35_020.0, 125.0), (1.0, 0.0), 1.0, 15.0)

@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from processing.points.drive import Drive
+from processing.recording.drive import Drive
 from processing.section import points_in_cut as module
 from processing.section.cut import Cut
 from processing.section.points_in_cut import ground_near, points_in_cut, section_points

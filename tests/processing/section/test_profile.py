@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from processing.core.text import Text
 from processing.section.cut import Cut
 from processing.section.profile import DrawnLine, crossings_of, ground_line
-from processing.text import Text
 
 CUT = Cut((0.0, 0.0, 100.0), (1.0, 0.0), 1.0, 15.0)
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from processing.errors import Unsuitable
-from processing.points.trajectory import Trajectory
+from processing.core.errors import Unsuitable
+from processing.recording.vehicle_path.trajectory import Trajectory
 from processing.section.stations import Stations
 
 CORNER = Stations([(0.0, 0.0, 10.0), (0.0, 20.0, 11.0), (30.0, 20.0, 11.0)])

@@ -5,15 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from processing.errors import Unsuitable
+from processing.core.errors import Unsuitable
+from processing.core.monitor import SilentMonitor
 from processing.image.images_of_drives import image_of
-from processing.image.kinds import ImageKind
-from processing.image.nearest import nearest_point
-from processing.monitor import SilentMonitor
-from processing.points.drive import Drive
-from processing.project.importing import ImportRequest, import_drives
-from processing.runner import RunRequest, check_needs, columns_of, run
+from processing.image.search.nearest import nearest_point
+from processing.project.importing.importing import ImportRequest, import_drives
+from processing.recording.drive import Drive
+from processing.recording.kinds import ImageKind
 from processing.tools.registry import TOOLS
+from processing.tools.runner import RunRequest, check_needs, columns_of, run
 from processing.tools.tool import Needs
 from tests.structured_scans import ptx_text, sphere_scan
 

@@ -10,18 +10,18 @@ import laspy
 import numpy as np
 import pytest
 
-from processing.cameras.image_list import CameraImage, ImageList
-from processing.cameras.image_store import write_images
-from processing.errors import Cancelled, MissingInput, Unsuitable
-from processing.image.attributes import available, colours
-from processing.monitor import SilentMonitor
-from processing.points.columns import ColumnWriter
-from processing.points.drive import Drive
-from processing.project.importing import ImportRequest, import_drives
-from processing.project.point_results import write_point_results
-from processing.runner import RunRequest, columns_of, run
-from processing.text import Text
+from processing.core.errors import Cancelled, MissingInput, Unsuitable
+from processing.core.monitor import SilentMonitor
+from processing.core.text import Text
+from processing.image.attributes.attributes import available, colours
+from processing.project.importing.importing import ImportRequest, import_drives
+from processing.project.results.point_results import write_point_results
+from processing.recording.camera_images.image_list import CameraImage, ImageList
+from processing.recording.camera_images.image_store import write_images
+from processing.recording.columns.columns import ColumnWriter
+from processing.recording.drive import Drive
 from processing.tools.colour import ColourParameters
+from processing.tools.runner import RunRequest, columns_of, run
 from processing.tools.tool import FinishedColumns
 from tests.builders import SimulatedDrive, simulated_drive, write_laz, write_trajectory_csv
 from tests.camera_scene import SURFACE_COLOURS, looking, photograph

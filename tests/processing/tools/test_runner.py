@@ -9,19 +9,19 @@ from uuid import uuid4
 import numpy as np
 import pytest
 
-from processing.cameras.image_list import ImageList
-from processing.cameras.image_store import write_images
-from processing.errors import Cancelled, OutOfRange, Unsuitable
-from processing.image.kinds import ImageKind
-from processing.monitor import SilentMonitor
-from processing.points.columns import COLUMN_TYPES, ColumnWriter
-from processing.points.drive import Drive
-from processing.points.drive_info import read_drive_info, write_drive_info
-from processing.runner import RunRequest, check_needs, columns_of, run, tool_of
-from processing.text import Text
+from processing.core.errors import Cancelled, OutOfRange, Unsuitable
+from processing.core.monitor import SilentMonitor
+from processing.core.parameters import parameters_of
+from processing.core.text import Text
+from processing.recording.camera_images.image_list import ImageList
+from processing.recording.camera_images.image_store import write_images
+from processing.recording.columns.columns import COLUMN_TYPES, ColumnWriter
+from processing.recording.drive import Drive
+from processing.recording.drive_info import read_drive_info, write_drive_info
+from processing.recording.kinds import ImageKind
 from processing.tools.normals import NORMALS, NormalsParameters
-from processing.tools.parameters import parameters_of
 from processing.tools.registry import POINT_TOOLS, TOOLS
+from processing.tools.runner import RunRequest, check_needs, columns_of, run, tool_of
 from processing.tools.segments import SEGMENTS, SegmentsParameters
 from processing.tools.tool import Needs
 from tests.camera_scene import looking, photograph

@@ -7,16 +7,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from processing.errors import MissingInput, Unsuitable
-from processing.monitor import SilentMonitor
-from processing.points.drive import Drive
-from processing.runner import RunRequest, run
-from processing.templates.template_text import template_text
-from processing.tools.parameters import fill_parameters
+from processing.core.errors import MissingInput, Unsuitable
+from processing.core.monitor import SilentMonitor
+from processing.core.parameters import fill_parameters
+from processing.methods.templates.template_text import template_text
+from processing.recording.drive import Drive
+from processing.tools.runner import RunRequest, run
 from processing.tools.template import TEMPLATE, TemplateParameters
 from processing.tools.tool import CandidateResult
 from tests.builders import simulated_drive
-from tests.processing.templates.curb_street import (
+from tests.processing.methods.templates.curb_street import (
     CURB,
     CURB_FRAME,
     TOP_M,

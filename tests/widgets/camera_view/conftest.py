@@ -10,9 +10,9 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from pytestqt.qtbot import QtBot
 
-from processing.cameras.image_list import CameraImage, ImageList
-from processing.cameras.image_store import write_images
-from processing.points.drive import Drive
+from processing.recording.camera_images.image_list import CameraImage, ImageList
+from processing.recording.camera_images.image_store import write_images
+from processing.recording.drive import Drive
 from tests.builders import START
 from tests.camera_scene import looking, photograph
 from tests.widgets.builders import OpenMap, imported_drive

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from processing.cameras.camera import Camera
+from processing.recording.camera_images.camera import Camera
 from tests.builders import START
 from tests.camera_scene import looking
 from widgets.camera_view.projection import CameraProjection

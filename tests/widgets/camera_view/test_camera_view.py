@@ -11,11 +11,11 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from pytestqt.qtbot import QtBot
 
-from processing.cameras.calibration import CameraOffset
-from processing.cameras.image_list import CameraImage, ImageList
-from processing.cameras.image_store import write_images
-from processing.points.drive import Drive
-from processing.project.catalogue import Geometry
+from processing.map.catalogue import Geometry
+from processing.recording.camera_images.calibration import CameraOffset
+from processing.recording.camera_images.image_list import CameraImage, ImageList
+from processing.recording.camera_images.image_store import write_images
+from processing.recording.drive import Drive
 from tests.camera_scene import SURFACE_COLOURS, looking, photograph
 from tests.widgets.builders import OpenMap, path_tool
 from tests.widgets.camera_view.conftest import CameraViewUser, position_at, shown

@@ -9,8 +9,8 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QComboBox, QDialogButtonBox, QLabel, QLineEdit, QPushButton, QTabBar
 from pytestqt.qtbot import QtBot
 
-from processing.simulate.forecast import forecast_site, forecast_street
-from processing.simulate.requests import SiteRequest, StreetRequest
+from processing.laboratory.simulate.forecast import forecast_site, forecast_street
+from processing.laboratory.simulate.requests import SiteRequest, StreetRequest
 from widgets.dialogs.simulate import SimulateForm
 from widgets.parts.density_view import DensityView
 from widgets.parts.number_field import NumberField

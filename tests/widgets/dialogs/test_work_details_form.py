@@ -7,9 +7,9 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QDialogButtonBox, QLabel, QLineEdit
 from pytestqt.qtbot import QtBot
 
+from processing.core.parameters import MOST_LETTERS, parameters_of
+from processing.core.text import Language
 from processing.project.work_details import WorkDetails
-from processing.text import Language
-from processing.tools.parameters import MOST_LETTERS, parameters_of
 from widgets.dialogs.work_details import WorkDetailsForm
 
 LEFT = Qt.MouseButton.LeftButton

@@ -10,10 +10,10 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from pytestqt.qtbot import QtBot
 
+from processing.image.attributes.tile_cache import TileCache
 from processing.image.images_of_drives import image_of
-from processing.image.kinds import ImageKind
-from processing.image.tile_cache import TileCache
-from processing.points.drive import Drive
+from processing.recording.drive import Drive
+from processing.recording.kinds import ImageKind
 from tests.mouse_events import NO_KEYS, move_mouse, turn_wheel
 from tests.widgets.builders import OpenMap, position_on
 from widgets.image_view.view import ImageView

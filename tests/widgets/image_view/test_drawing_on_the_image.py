@@ -7,19 +7,19 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 
 from processing.image.images_of_drives import image_of
-from processing.image.kinds import ImageKind
-from processing.image.nearest import nearest_point
-from processing.points.drive import Drive
-from processing.project.catalogue import Geometry
-from processing.project.feature import Status
+from processing.image.search.nearest import nearest_point
+from processing.map.catalogue import Geometry
+from processing.map.feature import Status
+from processing.recording.drive import Drive
+from processing.recording.kinds import ImageKind
 from tests.widgets.builders import KINDS, path_tool, position_on, vertex_on
 from tests.widgets.image_view.conftest import ImageViewUser
 from tests.widgets.image_view.test_image_view import sky_spot
-from widgets.mouse_tools.draw_line import DrawLine
-from widgets.mouse_tools.draw_point import DrawPoint
-from widgets.mouse_tools.drawing_tool import NO_POINT, TOO_FEW
-from widgets.mouse_tools.edit_vertices import EditVertices
-from widgets.mouse_tools.select import Select
+from widgets.mouse_tools.drawing.draw_line import DrawLine
+from widgets.mouse_tools.drawing.draw_point import DrawPoint
+from widgets.mouse_tools.drawing.drawing_tool import NO_POINT, TOO_FEW
+from widgets.mouse_tools.editing.edit_vertices import EditVertices
+from widgets.mouse_tools.editing.select import Select
 from widgets.shared.sketch import Drawing
 
 SHIFT = Qt.KeyboardModifier.ShiftModifier

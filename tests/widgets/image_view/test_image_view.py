@@ -9,13 +9,13 @@ from PySide6.QtGui import QColor
 from PySide6.QtWidgets import QPushButton, QWidget
 from pytestqt.qtbot import QtBot
 
-from processing.image.attributes import colours
+from processing.image.attributes.attributes import colours
+from processing.image.attributes.tile_cache import TileCache
 from processing.image.images_of_drives import image_of
-from processing.image.kinds import ImageKind
-from processing.image.nearest import nearest_point
-from processing.image.tile_cache import TileCache
-from processing.points.drive import Drive
-from processing.project.catalogue import Geometry
+from processing.image.search.nearest import nearest_point
+from processing.map.catalogue import Geometry
+from processing.recording.drive import Drive
+from processing.recording.kinds import ImageKind
 from tests.widgets.builders import OpenMap, position_on
 from tests.widgets.image_view.conftest import ImageViewUser
 from widgets.image_view.minimap import Minimap

@@ -12,15 +12,15 @@ from hypothesis import strategies as st
 from PySide6.QtCore import QPoint, QPointF, QRectF, Qt
 
 from processing.image.images_of_drives import image_of
-from processing.image.kinds import ImageKind
-from processing.project.catalogue import Geometry
+from processing.map.catalogue import Geometry
+from processing.recording.kinds import ImageKind
 from tests.widgets.builders import path_tool, position_on
 from tests.widgets.image_view.conftest import ImageViewUser
 from widgets.image_view.minimap import Minimap
 from widgets.image_view.oriented_image import Span
 from widgets.image_view.ruler import Ruler
 from widgets.image_view.viewport import Viewport
-from widgets.mouse_tools.select import Select
+from widgets.mouse_tools.editing.select import Select
 from widgets.shared.image_orientation import ImageOrientation
 
 ORIENTATIONS = [ImageOrientation(*choice) for choice in itertools.product((False, True), repeat=3)]

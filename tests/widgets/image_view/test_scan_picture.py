@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from processing.image.kinds import ImageKind
-from processing.monitor import SilentMonitor
-from processing.points.drive import Drive
-from processing.project.importing import ImportRequest, import_drives
+from processing.core.monitor import SilentMonitor
+from processing.project.importing.importing import ImportRequest, import_drives
+from processing.recording.drive import Drive
+from processing.recording.kinds import ImageKind
 from tests.structured_scans import SphereScan, ptx_text, sphere_scan
 from widgets.image_view.locked_scrolling import position_along
 from widgets.image_view.oriented_image import OrientedImage

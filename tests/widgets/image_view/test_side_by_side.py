@@ -14,14 +14,14 @@ from PySide6.QtCore import SIGNAL, QPoint, Qt
 from PySide6.QtWidgets import QComboBox, QToolButton
 from pytestqt.qtbot import QtBot
 
+from processing.core.monitor import SilentMonitor
+from processing.image.attributes.tile_cache import TileCache
 from processing.image.images_of_drives import image_of
-from processing.image.kinds import ImageKind
-from processing.image.nearest import nearest_point
-from processing.image.tile_cache import TileCache
-from processing.monitor import SilentMonitor
-from processing.points.drive import Drive
-from processing.project.catalogue import Geometry
-from processing.project.importing import ImportRequest, import_drives
+from processing.image.search.nearest import nearest_point
+from processing.map.catalogue import Geometry
+from processing.project.importing.importing import ImportRequest, import_drives
+from processing.recording.drive import Drive
+from processing.recording.kinds import ImageKind
 from tests.mouse_events import move_mouse, turn_wheel
 from tests.widgets.builders import OpenMap, path_tool, position_on
 from widgets.image_view.locked_scrolling import following, position_along

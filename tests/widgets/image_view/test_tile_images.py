@@ -8,10 +8,10 @@ import pytest
 from PySide6.QtCore import QDeadlineTimer, QThread
 from pytestqt.qtbot import QtBot
 
-from processing.image.kinds import ImageKind
-from processing.image.tile_cache import TileCache, TilePixels, TileRequest
-from processing.image.tiles import TileKey
-from processing.points.drive import Drive
+from processing.image.attributes.tile_cache import TileCache, TilePixels, TileRequest
+from processing.image.tiles.tiles import TileKey
+from processing.recording.drive import Drive
+from processing.recording.kinds import ImageKind
 from widgets.image_view.oriented_image import OrientedImage
 from widgets.image_view.tile_images import TileImages
 from widgets.shared.view_settings import PointStyle

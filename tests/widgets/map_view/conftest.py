@@ -10,8 +10,8 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from pytestqt.qtbot import QtBot
 
-from processing.image.tile_cache import TileCache
-from processing.points.drive import Drive
+from processing.image.attributes.tile_cache import TileCache
+from processing.recording.drive import Drive
 from tests.mouse_events import NO_KEYS, move_mouse, turn_wheel
 from tests.widgets.builders import OpenMap
 from widgets.map_view.view import MapView

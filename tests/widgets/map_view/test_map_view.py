@@ -12,13 +12,13 @@ from PySide6.QtGui import QPolygonF
 from PySide6.QtWidgets import QPushButton
 from pytestqt.qtbot import QtBot
 
-from processing.image.tile_cache import TileCache
-from processing.points.drive import Drive
-from processing.project.catalogue import Geometry
+from processing.image.attributes.tile_cache import TileCache
+from processing.map.catalogue import Geometry
+from processing.recording.drive import Drive
 from tests.widgets.builders import OpenMap, position_on
 from tests.widgets.map_view.conftest import MapViewUser
 from widgets.map_view.view import LIMIT_M, MapView
-from widgets.mouse_tools.edit_vertices import EditVertices
+from widgets.mouse_tools.editing.edit_vertices import EditVertices
 from widgets.plane_view.still_picture import BACKGROUND
 from widgets.shared.cursor import PickedPosition
 

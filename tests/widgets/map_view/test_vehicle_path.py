@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from PySide6.QtGui import QImage, QPainter
 
-from processing.points.drive import Drive
+from processing.recording.drive import Drive
 from widgets.map_view.map_decorations import (
     metres,
     paint_north,

@@ -9,10 +9,10 @@ import pytest
 from PySide6.QtCore import QPoint
 from PySide6.QtGui import QColor
 
-from processing.earthwork.change_grid import ChangeGrid
-from processing.earthwork.contours import LevelLine
-from processing.earthwork.heat_map import change_classes
-from processing.ground.cells import CellGrid
+from processing.methods.earthwork.maps.change_grid import ChangeGrid
+from processing.methods.earthwork.maps.contours import LevelLine
+from processing.methods.earthwork.maps.heat_map import change_classes
+from processing.methods.ground.filters.cells import CellGrid
 from tests.widgets.map_view.conftest import MapViewUser
 from widgets.shared.cursor import PickedPosition
 from widgets.shared.shown_volume import VolumeStyle

@@ -8,12 +8,12 @@ from pathlib import Path
 import pytest
 from PySide6.QtCore import QObject
 
-from processing.project.catalogue import Geometry
+from processing.map.catalogue import Geometry
 from tests.widgets.builders import KINDS, OpenMap
-from widgets.mouse_tools.drawing_tool import NO_POINT, DrawingTool
+from widgets.mouse_tools.drawing.drawing_tool import NO_POINT, DrawingTool
+from widgets.mouse_tools.drawing.toolbox import MouseToolbox
+from widgets.mouse_tools.editing.select import Select
 from widgets.mouse_tools.mouse_tool import Hit
-from widgets.mouse_tools.select import Select
-from widgets.mouse_tools.toolbox import MouseToolbox
 from widgets.shared.cursor import PickedPosition
 
 GUIDE = Path(__file__).parents[3] / "docs" / "adding_a_mouse_tool.md"

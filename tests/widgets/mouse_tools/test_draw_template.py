@@ -8,10 +8,10 @@ import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QSignalSpy
 
+from processing.core.text import Text
 from processing.section.cut import Cut
-from processing.text import Text
 from tests.widgets.builders import shared_state
-from widgets.mouse_tools.draw_template import (
+from widgets.mouse_tools.drawing.draw_template import (
     BEGIN,
     NEEDS_SECTION,
     NOT_IN_SECTION,

@@ -9,16 +9,16 @@ import numpy as np
 import pytest
 from PySide6.QtCore import Qt
 
-from processing.project.catalogue import AttributeField, Geometry
-from processing.project.change import Change
-from processing.project.feature import PointReference
-from processing.text import Text
+from processing.core.text import Text
+from processing.map.catalogue import AttributeField, Geometry
+from processing.map.change import Change
+from processing.map.feature import PointReference
 from tests.widgets.builders import KINDS, OpenMap, do_now
-from widgets.mouse_tools.draw_line import DROPPED, RESTORED, DrawLine
-from widgets.mouse_tools.draw_point import DrawPoint
-from widgets.mouse_tools.draw_shape import DrawShape, ThreePointShape
-from widgets.mouse_tools.drawing_tool import NO_KIND, NO_POINT, TOO_FEW, DrawingTool
-from widgets.mouse_tools.legs import LegMode
+from widgets.mouse_tools.drawing.draw_line import DROPPED, RESTORED, DrawLine
+from widgets.mouse_tools.drawing.draw_point import DrawPoint
+from widgets.mouse_tools.drawing.draw_shape import DrawShape, ThreePointShape
+from widgets.mouse_tools.drawing.drawing_tool import NO_KIND, NO_POINT, TOO_FEW, DrawingTool
+from widgets.mouse_tools.drawing.legs import LegMode
 from widgets.mouse_tools.mouse_tool import Hit
 from widgets.shared.cursor import PickedPosition
 

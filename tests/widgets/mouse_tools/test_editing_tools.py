@@ -8,18 +8,24 @@ from dataclasses import replace
 import pytest
 from PySide6.QtCore import Qt
 
-from processing.project.catalogue import Geometry
-from processing.project.change import Change
-from processing.project.feature import Feature, PointReference, Vertex, new_feature_id
-from processing.text import Text
+from processing.core.text import Text
+from processing.map.catalogue import Geometry
+from processing.map.change import Change
+from processing.map.feature import Feature, PointReference, Vertex, new_feature_id
 from tests.widgets.builders import KINDS, OpenMap
-from widgets.mouse_tools.cut_lines import PICK_REST, PICK_TARGET, ExtendLine, SplitLine, TrimLine
-from widgets.mouse_tools.draw_parallel import DrawParallel
-from widgets.mouse_tools.edit_vertices import EditVertices
+from widgets.mouse_tools.drawing.draw_parallel import DrawParallel
+from widgets.mouse_tools.drawing.measure import NO_SUCH_KIND, MeasureTool
+from widgets.mouse_tools.editing.cut_lines import (
+    PICK_REST,
+    PICK_TARGET,
+    ExtendLine,
+    SplitLine,
+    TrimLine,
+)
+from widgets.mouse_tools.editing.edit_vertices import EditVertices
+from widgets.mouse_tools.editing.move_features import MoveFeatures
 from widgets.mouse_tools.editing_tool import PICK_LINE
-from widgets.mouse_tools.measure import NO_SUCH_KIND, MeasureTool
 from widgets.mouse_tools.mouse_tool import Hit, MouseTool
-from widgets.mouse_tools.move_features import MoveFeatures
 from widgets.shared.cursor import PickedPosition
 
 XYZ = tuple[float, float, float]

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from processing.project.catalogue import Catalogue, FeatureKind, Geometry
-from processing.text import Text
+from processing.core.text import Text
+from processing.map.catalogue import Catalogue, FeatureKind, Geometry
 from tests.widgets.builders import OpenMap
-from widgets.mouse_tools.draw_line import CROSSES
-from widgets.mouse_tools.measure import MEASURED_AREA, MeasureTool
+from widgets.mouse_tools.drawing.draw_line import CROSSES
+from widgets.mouse_tools.drawing.measure import MEASURED_AREA, MeasureTool
 from widgets.mouse_tools.mouse_tool import Hit
 from widgets.shared.cursor import PickedPosition
 

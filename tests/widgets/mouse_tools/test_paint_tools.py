@@ -7,21 +7,21 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from processing.core.text import Text
 from processing.image.images_of_drives import image_of
 from processing.labels.label_column import labels_of, make_column, write_labels
 from processing.labels.rules import PaintOver
 from processing.labels.strokes import points_under_brush
-from processing.points.drive import Drive
-from processing.project.change import Change
+from processing.map.change import Change
+from processing.recording.drive import Drive
 from processing.section.cut import Cut
-from processing.text import Text
 from tests.widgets.builders import OpenMap, do_now, imported_drive, position_on
 from widgets.mouse_tools.mouse_tool import DragShape, EnclosedHits, Hit
-from widgets.mouse_tools.paint_brush import PaintBrush
-from widgets.mouse_tools.paint_outline import PaintOutline
-from widgets.mouse_tools.paint_segments import IN_NO_SEGMENT, NO_SEGMENTS, PaintSegments
-from widgets.mouse_tools.paint_tool import NOTHING_THERE, PaintTool
-from widgets.section_view.projection import SectionProjection
+from widgets.mouse_tools.painting.paint_brush import PaintBrush
+from widgets.mouse_tools.painting.paint_outline import PaintOutline
+from widgets.mouse_tools.painting.paint_segments import IN_NO_SEGMENT, NO_SEGMENTS, PaintSegments
+from widgets.mouse_tools.painting.paint_tool import NOTHING_THERE, PaintTool
+from widgets.section_view.picture.projection import SectionProjection
 
 NOWHERE = Hit(None)
 

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from PySide6.QtCore import Qt
 
+from processing.core.text import Text
 from processing.image.images_of_drives import image_of
-from processing.image.kinds import ImageKind
-from processing.points.drive import Drive
-from processing.project.catalogue import Geometry
-from processing.project.change import Change
-from processing.project.feature import Feature, PointReference, Vertex, new_feature_id
-from processing.text import Text
+from processing.map.catalogue import Geometry
+from processing.map.change import Change
+from processing.map.feature import Feature, PointReference, Vertex, new_feature_id
+from processing.recording.drive import Drive
+from processing.recording.kinds import ImageKind
 from tests.widgets.builders import OpenMap, path_tool, position_on
 from widgets.mouse_tools.mouse_tool import Hit, Ray
 from widgets.mouse_tools.snapping import SnappingTool

@@ -8,13 +8,13 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from processing.points.drive import Drive
-from processing.project.catalogue import Geometry
-from processing.project.feature import Vertex
+from processing.map.catalogue import Geometry
+from processing.map.feature import Vertex
+from processing.recording.drive import Drive
 from tests.processing.image.profiled_streets import UPPER, ProfiledStreet, off_line, recorded
 from tests.widgets.builders import OpenMap, path_tool, position_on
-from widgets.mouse_tools.draw_line import DrawLine
-from widgets.mouse_tools.legs import LegMode
+from widgets.mouse_tools.drawing.draw_line import DrawLine
+from widgets.mouse_tools.drawing.legs import LegMode
 from widgets.mouse_tools.mouse_tool import Hit
 from widgets.mouse_tools.tracing import STRAIGHT_ON, TracedLine, tracing_work
 from widgets.shared.cursor import PickedPosition

@@ -15,12 +15,12 @@ from PySide6.QtWidgets import (
 )
 from pytestqt.qtbot import QtBot
 
-from processing.project.catalogue import AttributeField, Catalogue, FeatureKind, Geometry
-from processing.project.change import Change, Replacement
-from processing.project.feature import AttributeValue, Feature, Vertex
-from processing.text import Text
+from processing.core.text import Text
+from processing.map.catalogue import AttributeField, Catalogue, FeatureKind, Geometry
+from processing.map.change import Change, Replacement
+from processing.map.feature import AttributeValue, Feature, Vertex
 from tests.widgets.builders import KINDS, OpenMap
-from widgets.panels.feature_table import FeatureTable
+from widgets.panels.table.feature_table import FeatureTable
 
 NONE = Qt.KeyboardModifier.NoModifier
 SHIFT = Qt.KeyboardModifier.ShiftModifier

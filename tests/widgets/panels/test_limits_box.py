@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from pytestqt.qtbot import QtBot
 
-from processing.text import Text
+from processing.core.text import Text
 from widgets.panels.volume.limits_box import LimitsBox
 
 ROAD, CUTTING = ("road", Text("Embankment", "盛土")), ("cutting", Text("Cutting", "掘削"))

@@ -11,11 +11,11 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QCheckBox, QComboBox, QLabel, QPushButton, QToolButton
 from pytestqt.qtbot import QtBot
 
-from processing.earthwork.volume_result import Registration, Volumes
-from processing.project.epochs import Epoch
-from processing.project.volume import ChosenSide, KeptVolume, SideKind, VolumeRequest
-from processing.text import Text
-from processing.tools.parameters import length
+from processing.core.parameters import length
+from processing.core.text import Text
+from processing.methods.earthwork.volumes.volume_result import Registration, Volumes
+from processing.project.volumes.epochs import Epoch
+from processing.project.volumes.volume import ChosenSide, KeptVolume, SideKind, VolumeRequest
 from tests.widgets.builders import OpenMap
 from widgets.panels.volume.side_box import SideBox
 from widgets.panels.volume.style_form import VolumeStyleForm

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from pytestqt.qtbot import QtBot
 
-from processing.earthwork.change_grid import ChangeGrid
-from processing.earthwork.change_reading import ChangeReading
-from processing.ground.cells import CellGrid
+from processing.methods.earthwork.maps.change_grid import ChangeGrid
+from processing.methods.earthwork.maps.change_reading import ChangeReading
+from processing.methods.ground.filters.cells import CellGrid
 from tests.widgets.builders import OpenMap
 from widgets.parts.change_words import change_words, format_difference
 from widgets.parts.status_line import StatusLine

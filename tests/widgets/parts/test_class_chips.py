@@ -5,8 +5,8 @@ from __future__ import annotations
 from PySide6.QtCore import Qt
 from pytestqt.qtbot import QtBot
 
-from processing.points.classes import class_key, point_classes
-from processing.text import Text
+from processing.core.text import Text
+from processing.recording.columns.classes import class_key, point_classes
 from tests.widgets.builders import shared_state
 from widgets.parts.class_chips import INTERACTIVE, ClassChips
 from widgets.parts.drawing_bar import DrawingBar

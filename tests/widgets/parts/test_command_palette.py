@@ -10,7 +10,7 @@ from PySide6.QtGui import QAction
 from PySide6.QtWidgets import QLineEdit, QTreeWidget, QWidget
 from pytestqt.qtbot import QtBot
 
-from processing.text import Text
+from processing.core.text import Text
 from widgets.parts.command_palette import CommandPalette, NamedAction
 from widgets.parts.name_match import match_rank
 

@@ -9,8 +9,8 @@ import pytest
 from PySide6.QtCore import QPointF
 from pytestqt.qtbot import QtBot
 
-from processing.simulate.scanning.density import DensityMap, density_map, survey_of
-from processing.simulate.scanning.sensors import SENSORS
+from processing.laboratory.simulate.scanning.density import DensityMap, density_map, survey_of
+from processing.laboratory.simulate.scanning.sensors import SENSORS
 from widgets.parts.density_view import DensityView
 
 

@@ -7,8 +7,8 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QLabel, QToolButton
 from pytestqt.qtbot import QtBot
 
-from processing.points.drive import Drive
-from processing.text import Text
+from processing.core.text import Text
+from processing.recording.drive import Drive
 from tests.widgets.builders import OpenMap
 from widgets.parts.job_view import JobView
 from widgets.parts.number_field import NumberField, coordinate, decimals_for

@@ -13,10 +13,10 @@ from PySide6.QtGui import QPainter, QPolygonF
 from pytestqt.qtbot import QtBot
 from typing_extensions import override
 
-from processing.project.catalogue import Geometry
-from processing.project.change import Change
-from processing.project.feature import Feature, PointReference, Position, Vertex, new_feature_id
-from processing.text import Text
+from processing.core.text import Text
+from processing.map.catalogue import Geometry
+from processing.map.change import Change
+from processing.map.feature import Feature, PointReference, Position, Vertex, new_feature_id
 from tests.mouse_events import NO_KEYS, move_mouse, turn_wheel
 from tests.widgets.builders import OpenMap
 from widgets.mouse_tools.mouse_tool import MouseTool, Ray

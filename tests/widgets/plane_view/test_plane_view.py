@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 from PySide6.QtCore import QPoint, Qt
 
-from processing.project.catalogue import Geometry
-from processing.project.feature import Status
+from processing.map.catalogue import Geometry
+from processing.map.feature import Status
 from tests.widgets.builders import path_tool
 from tests.widgets.plane_view.conftest import RIGHT, GridProjection, PlaneViewUser, grid_position
-from widgets.mouse_tools.edit_vertices import EditVertices
+from widgets.mouse_tools.editing.edit_vertices import EditVertices
+from widgets.mouse_tools.editing.select import Select
 from widgets.mouse_tools.gesture import REACH_PX
 from widgets.mouse_tools.menu_request import MenuRequest
 from widgets.mouse_tools.mouse_tool import DragShape, Hit, MouseTool
-from widgets.mouse_tools.select import Select
 from widgets.shared.cursor import PickedPosition
 from widgets.shared.sketch import Drawing, Note
 from widgets.shared.snap_state import SnapMark, SnapMode

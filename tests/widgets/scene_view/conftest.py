@@ -12,12 +12,12 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
-from processing.image.tile_cache import TileCache
-from processing.points.drive import Drive
+from processing.image.attributes.tile_cache import TileCache
+from processing.recording.drive import Drive
 from tests.mouse_events import NO_KEYS, move_mouse, turn_wheel
 from tests.widgets.builders import OpenMap
 from widgets.mouse_tools.mouse_tool import MouseTool
-from widgets.scene_view.camera import SceneCamera
+from widgets.scene_view.rendering.camera import SceneCamera
 from widgets.scene_view.view import SceneView
 from widgets.shared.cursor import PickedPosition
 

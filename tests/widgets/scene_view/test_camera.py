@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from widgets.scene_view.camera import SceneCamera
-from widgets.scene_view.projection import SceneProjection
+from widgets.scene_view.rendering.camera import SceneCamera
+from widgets.scene_view.rendering.projection import SceneProjection
 
 CAMERA = SceneCamera((3.0, -20.0, 8.0), heading_deg=15.0, pitch_deg=-25.0, distance_m=25.0)
 POSITION = np.array([6.0, 2.0, 1.0])

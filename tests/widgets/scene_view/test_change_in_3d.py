@@ -10,13 +10,13 @@ from numpy.typing import NDArray
 from PySide6.QtGui import QImage
 from vtkmodules.vtkRenderingCore import vtkRenderer
 
-from processing.earthwork.change_grid import ChangeGrid
-from processing.ground.cells import CellGrid
-from processing.image.clip import Clip
+from processing.image.search.clip import Clip
+from processing.methods.earthwork.maps.change_grid import ChangeGrid
+from processing.methods.ground.filters.cells import CellGrid
 from tests.widgets.builders import position_on
 from tests.widgets.scene_view.conftest import SceneViewUser
 from tests.widgets.scene_view.test_scene_view import image_of
-from widgets.scene_view.map.change_surface import MOST_FACES, ChangeSurface
+from widgets.scene_view.rendering.change_surface import MOST_FACES, ChangeSurface
 from widgets.shared.cursor import PickedPosition
 from widgets.shared.shown_volume import VolumeStyle
 

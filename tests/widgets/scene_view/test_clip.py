@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from processing.image.clip import Clip, planes_kernel
-from processing.image.corridor import Corridor, CorridorExtent, corridor_kernel
-from processing.points.drive import Drive
+from processing.image.search.clip import Clip, planes_kernel
+from processing.image.search.corridor import Corridor, CorridorExtent, corridor_kernel
+from processing.recording.drive import Drive
 
 Floats = NDArray[np.float64]
 

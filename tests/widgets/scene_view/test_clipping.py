@@ -11,11 +11,11 @@ from PySide6.QtCore import QPoint, QPointF, QRectF, Qt
 from PySide6.QtGui import QPolygonF
 from PySide6.QtWidgets import QDoubleSpinBox, QMenu
 
-from processing.image.attributes import colours
-from processing.image.clip import Clip
-from processing.image.corridor import Corridor, CorridorExtent
-from processing.points.drive import Drive
-from processing.project.catalogue import Geometry
+from processing.image.attributes.attributes import colours
+from processing.image.search.clip import Clip
+from processing.image.search.corridor import Corridor, CorridorExtent
+from processing.map.catalogue import Geometry
+from processing.recording.drive import Drive
 from tests.mouse_events import NO_KEYS
 from tests.widgets.builders import position_on
 from tests.widgets.scene_view.conftest import RIGHT, SceneViewUser

@@ -7,11 +7,11 @@ import pytest
 import shapely
 from numpy.typing import NDArray
 
-from processing.image.enclosed_points import Sight, enclosed_kernel, points_enclosed
 from processing.image.images_of_drives import image_of
-from processing.points.drive import Drive
-from widgets.scene_view.camera import SceneCamera
-from widgets.scene_view.projection import NEAR_M, SceneProjection
+from processing.image.search.enclosed_points import Sight, enclosed_kernel, points_enclosed
+from processing.recording.drive import Drive
+from widgets.scene_view.rendering.camera import SceneCamera
+from widgets.scene_view.rendering.projection import NEAR_M, SceneProjection
 
 Floats = NDArray[np.float64]
 

@@ -8,18 +8,18 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from processing.image.clip import Clip
+from processing.image.attributes.tile_cache import TileRequest
 from processing.image.images_of_drives import image_of
-from processing.image.kinds import ImageKind
-from processing.image.ray_hits import hits_kernel, merge_kernel
-from processing.image.tile_cache import TileRequest
-from processing.image.tiles import TileKey
-from processing.points.drive import Drive
+from processing.image.search.clip import Clip
+from processing.image.search.ray_hits import hits_kernel, merge_kernel
+from processing.image.tiles.tiles import TileKey
+from processing.recording.drive import Drive
+from processing.recording.kinds import ImageKind
 from tests.processing.image.recordings import small_drive
-from widgets.scene_view.camera import SceneCamera
 from widgets.scene_view.points.point_finder import PointFinder
-from widgets.scene_view.points.scene_tile import DrawnTile, SceneTile
-from widgets.scene_view.projection import NEAR_M, SceneProjection
+from widgets.scene_view.rendering.camera import SceneCamera
+from widgets.scene_view.rendering.projection import NEAR_M, SceneProjection
+from widgets.scene_view.rendering.scene_tile import DrawnTile, SceneTile
 from widgets.shared.view_settings import ViewSettings
 
 Floats = NDArray[np.float64]

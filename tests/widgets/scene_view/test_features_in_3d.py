@@ -7,13 +7,13 @@ import pytest
 from PySide6.QtCore import QRectF
 from PySide6.QtGui import QPolygonF
 
-from processing.project.catalogue import Geometry
-from processing.project.feature import Feature, Status, Vertex, new_feature_id
-from widgets.scene_view.camera import SceneCamera
+from processing.map.catalogue import Geometry
+from processing.map.feature import Feature, Status, Vertex, new_feature_id
+from widgets.feature_drawing.feature_hits import FeatureHit
+from widgets.feature_drawing.feature_shapes import FeatureShapes, flatten_shapes, segments_of
 from widgets.scene_view.map.feature_hits import feature_at, features_within
-from widgets.scene_view.projection import SceneProjection
-from widgets.shared.feature_hits import FeatureHit
-from widgets.shared.feature_shapes import FeatureShapes, flatten_shapes, segments_of
+from widgets.scene_view.rendering.camera import SceneCamera
+from widgets.scene_view.rendering.projection import SceneProjection
 from widgets.shared.view_settings import ViewSettings
 
 ORIGIN = np.array([-11_000.0, -35_000.0, 100.0])
@@ -130,7 +130,7 @@ def test_vertices_are_joined_by_the_shape(
 
 
 def test_dashes_cover_their_share_of_a_bent_line_and_stay_on_it() -> None:
-    from widgets.scene_view.map.feature_actors import dash_segments
+    from widgets.scene_view.rendering.feature_actors import dash_segments
 
     corners = np.array([[0.0, 0.0, 0.0], [4.3, 0.0, 0.0], [4.3, 5.7, 0.0]])
     dashes = dash_segments(corners, segments_of(Geometry.LINE, 3))

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from processing.image.ray_hits import RayHit, RayHits
-from widgets.scene_view.camera import SceneCamera
+from processing.image.search.ray_hits import RayHit, RayHits
 from widgets.scene_view.points.picking import entry_depths, pick, ray_at, sight_at
-from widgets.scene_view.projection import SceneProjection
+from widgets.scene_view.rendering.camera import SceneCamera
+from widgets.scene_view.rendering.projection import SceneProjection
 
 # Looks to the north; one metre is 500 / depth pixels wide.
 CAMERA = SceneCamera((0.0, 0.0, 0.0), heading_deg=0.0, pitch_deg=0.0, angle_deg=90.0)

@@ -11,14 +11,14 @@ from hypothesis import strategies as st
 from PySide6.QtCore import Qt
 from pytestqt.qtbot import QtBot
 
-from processing.image.kinds import ImageKind
-from processing.image.tile_cache import TileCache
-from processing.image.tiles import TileKey
-from processing.points.drive import Drive
-from widgets.scene_view.camera import SceneCamera
+from processing.image.attributes.tile_cache import TileCache
+from processing.image.tiles.tiles import TileKey
+from processing.recording.drive import Drive
+from processing.recording.kinds import ImageKind
 from widgets.scene_view.points.budget import FrameBudget
-from widgets.scene_view.points.scene_tile import TileAppearance, TileId, shown_tiles
 from widgets.scene_view.points.tile_feed import SceneRequest, TileFeed
+from widgets.scene_view.rendering.camera import SceneCamera
+from widgets.scene_view.rendering.scene_tile import TileAppearance, TileId, shown_tiles
 from widgets.shared.view_settings import PointStyle
 
 KIND = ImageKind.TRAJECTORY_CENTER

@@ -8,16 +8,16 @@ from PySide6.QtCore import QPoint, Qt
 from PySide6.QtGui import QColor, QImage
 from pytestqt.qtbot import QtBot
 
-from processing.image.tile_cache import TileCache
-from processing.points.drive import Drive
-from processing.project.catalogue import Geometry
-from processing.project.change import Change
-from processing.project.feature import Status
-from processing.text import Text
+from processing.core.text import Text
+from processing.image.attributes.tile_cache import TileCache
+from processing.map.catalogue import Geometry
+from processing.map.change import Change
+from processing.map.feature import Status
+from processing.recording.drive import Drive
 from tests.widgets.builders import OpenMap, path_tool, position_on
 from tests.widgets.scene_view.conftest import RIGHT, SceneViewUser
+from widgets.mouse_tools.editing.select import Select
 from widgets.mouse_tools.menu_request import MenuRequest
-from widgets.mouse_tools.select import Select
 from widgets.scene_view.view import SceneView
 from widgets.shared.cursor import PickedPosition
 

@@ -10,18 +10,18 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QPoint
 from PySide6.QtGui import QImage
 
-from processing.project.catalogue import Geometry
-from processing.project.change import Change, Replacement
-from processing.project.feature import Feature, Provenance, Status, Vertex, new_feature_id
-from processing.project.solids import Solid, solid_of
-from processing.text import Text
+from processing.core.text import Text
+from processing.map.catalogue import Geometry
+from processing.map.change import Change, Replacement
+from processing.map.feature import Feature, Provenance, Status, Vertex, new_feature_id
+from processing.map.solids import Solid, solid_of
 from tests.widgets.builders import KINDS, position_on
 from tests.widgets.scene_view.conftest import SceneViewUser
 from tests.widgets.scene_view.test_scene_view import image_of
-from widgets.mouse_tools.select import Select
+from widgets.feature_drawing.feature_shapes import FeatureShape
+from widgets.feature_drawing.feature_style import style_of
+from widgets.mouse_tools.editing.select import Select
 from widgets.shared.cursor import PickedPosition
-from widgets.shared.feature_shapes import FeatureShape
-from widgets.shared.feature_style import style_of
 
 HALF_M = np.array([[-0.5, -0.4, 0.0], [0.5, -0.4, 0.0], [0.5, 0.4, 0.0], [-0.5, 0.4, 0.0]])
 
@@ -128,8 +128,8 @@ def test_thousands_of_bodies_are_one_mesh_and_are_shaped_once(
 ) -> None:
     from vtkmodules.vtkRenderingCore import vtkRenderer
 
-    from widgets.scene_view.map import solid_actors
-    from widgets.scene_view.map.solid_actors import SolidActors, StyledSolid
+    from widgets.scene_view.rendering import solid_actors
+    from widgets.scene_view.rendering.solid_actors import SolidActors, StyledSolid
 
     made: list[float] = []
 
@@ -163,7 +163,7 @@ def test_thousands_of_bodies_are_one_mesh_and_are_shaped_once(
 def test_a_grating_has_bars_across_its_longer_side() -> None:
     from vtkmodules.vtkRenderingCore import vtkRenderer
 
-    from widgets.scene_view.map.solid_actors import SolidActors, StyledSolid
+    from widgets.scene_view.rendering.solid_actors import SolidActors, StyledSolid
 
     renderer = vtkRenderer()
     actors = SolidActors(renderer)

@@ -10,11 +10,11 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from pytestqt.qtbot import QtBot
 
-from processing.points.drive import Drive
-from processing.project.catalogue import Geometry
-from processing.project.change import Change
-from processing.project.feature import Feature, Vertex, new_feature_id
-from processing.text import Text
+from processing.core.text import Text
+from processing.map.catalogue import Geometry
+from processing.map.change import Change
+from processing.map.feature import Feature, Vertex, new_feature_id
+from processing.recording.drive import Drive
 from tests.builders import START
 from tests.mouse_events import NO_KEYS, move_mouse
 from tests.street_scene import CURB_AT_M

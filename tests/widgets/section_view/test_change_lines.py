@@ -11,11 +11,11 @@ from numpy.typing import NDArray
 from PySide6.QtGui import QColor, QImage
 from pytestqt.qtbot import QtBot
 
-from processing.earthwork.change_grid import ChangeGrid
-from processing.ground.cells import CellGrid
+from processing.methods.earthwork.maps.change_grid import ChangeGrid
+from processing.methods.ground.filters.cells import CellGrid
 from tests.widgets.builders import OpenMap, imported_drive
 from tests.widgets.section_view.conftest import SectionViewUser, shown
-from widgets.section_view.change_lines import ChangePainter
+from widgets.section_view.picture.change_lines import ChangePainter
 from widgets.shared.shown_volume import ShownVolume
 
 BEFORE, AFTER = QColor("#f0e442"), QColor("#ff8c5a")

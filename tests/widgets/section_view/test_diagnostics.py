@@ -11,14 +11,14 @@ from PySide6.QtCore import QPointF
 from PySide6.QtGui import QImage
 from pytestqt.qtbot import QtBot
 
-from processing.points.passes import passes_of
-from processing.road.diagnostics import Diagnostic, DiagnosticTest
-from processing.text import Text
+from processing.core.text import Text
+from processing.methods.road.diagnostics import Diagnostic, DiagnosticTest
+from processing.recording.passes import passes_of
 from tests.widgets.builders import OpenMap, imported_drive
 from tests.widgets.section_view.conftest import SectionViewUser, shown
-from widgets.section_view.diagnostic_marks import DiagnosticMarks
-from widgets.section_view.projection import SectionProjection
-from widgets.section_view.section_diagnostics import SectionDiagnostics, ShownDiagnostic
+from widgets.section_view.picture.diagnostic_marks import DiagnosticMarks
+from widgets.section_view.picture.projection import SectionProjection
+from widgets.section_view.picture.section_diagnostics import SectionDiagnostics, ShownDiagnostic
 from widgets.shared.cursor import PickedPosition
 
 BLUE = np.array([0x56, 0xB4, 0xE9])

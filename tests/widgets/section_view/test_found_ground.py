@@ -10,11 +10,16 @@ from numpy.typing import NDArray
 from PySide6.QtGui import QImage
 from pytestqt.qtbot import QtBot
 
-from processing.ground.cells import CellGrid
-from processing.ground.stored_surface import FILE_NAME, SurfaceTile, SurfaceWriter, keep_surface
 from processing.labels.label_column import make_column, write_labels
-from processing.points.counted_classes import class_columns
-from processing.project.run_findings import finding_path
+from processing.methods.ground.filters.cells import CellGrid
+from processing.methods.ground.stored_surface import (
+    FILE_NAME,
+    SurfaceTile,
+    SurfaceWriter,
+    keep_surface,
+)
+from processing.project.results.run_findings import finding_path
+from processing.recording.columns.counted_classes import class_columns
 from tests.widgets.builders import OpenMap, imported_drive
 from tests.widgets.section_view.conftest import SectionViewUser, shown
 

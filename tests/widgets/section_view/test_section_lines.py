@@ -9,11 +9,11 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QComboBox
 from pytestqt.qtbot import QtBot
 
-from processing.monitor import SilentMonitor
-from processing.points.drive import Drive
-from processing.project.change import Change
-from processing.project.importing import ImportRequest, import_drives
-from processing.text import Text
+from processing.core.monitor import SilentMonitor
+from processing.core.text import Text
+from processing.map.change import Change
+from processing.project.importing.importing import ImportRequest, import_drives
+from processing.recording.drive import Drive
 from tests.builders import START, simulated_drive, write_laz
 from tests.street_scene import CURB_AT_M
 from tests.widgets.builders import OpenMap

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from processing.section.cut import Cut
-from widgets.section_view.feed import distance_colours
-from widgets.section_view.projection import SectionProjection
+from widgets.section_view.picture.feed import distance_colours
+from widgets.section_view.picture.projection import SectionProjection
 from widgets.shared.snap_state import WorkingPlane
 
 PROJECTION = SectionProjection(Cut((10.0, 20.0, 100.0), (1.0, 0.0), 1.0, 15.0))

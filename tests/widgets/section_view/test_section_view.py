@@ -12,7 +12,7 @@ from PySide6.QtGui import QPolygonF
 from PySide6.QtWidgets import QApplication, QMenu
 from pytestqt.qtbot import QtBot
 
-from processing.project.feature import Vertex
+from processing.map.feature import Vertex
 from processing.section.cut import Cut
 from tests.builders import START
 from tests.mouse_events import NO_KEYS, move_mouse
@@ -26,9 +26,9 @@ from tests.widgets.section_view.conftest import (
     shown,
     station,
 )
-from widgets.mouse_tools.edit_vertices import EditVertices
+from widgets.mouse_tools.editing.edit_vertices import EditVertices
 from widgets.mouse_tools.snapping import SnappingTool
-from widgets.section_view.marks import mark_under
+from widgets.section_view.picture.marks import mark_under
 from widgets.shared.cursor import PickedPosition
 
 SHIFT = Qt.KeyboardModifier.ShiftModifier

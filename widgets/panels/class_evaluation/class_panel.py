@@ -21,18 +21,18 @@ from PySide6.QtWidgets import (
 )
 from typing_extensions import override
 
-from processing.image.colour_maps import ERROR_MAP_COLOURS
-from processing.points.error_map import ERROR_MAP, ErrorMapValue
-from processing.project.class_evaluation import ClassEvaluation
-from processing.project.truth_store import Truth
-from processing.score.asked_classes import ASKED
-from processing.score.confusion_matrix import ConfusionMatrix
-from processing.text import Language
+from processing.core.text import Language
+from processing.image.attributes.colour_maps import ERROR_MAP_COLOURS
+from processing.project.evaluation.class_evaluation import ClassEvaluation
+from processing.project.evaluation.truth_store import Truth
+from processing.recording.columns.error_map import ERROR_MAP, ErrorMapValue
+from processing.scoring.asked_classes import ASKED
+from processing.scoring.confusion_matrix import ConfusionMatrix
+from widgets.feature_drawing.swatch import SWATCH_PX, swatch_of
 from widgets.panels.class_evaluation.setting_words import moment_of, settings_words
 from widgets.panels.class_evaluation.truth_bar import TruthBar
 from widgets.panels.run_words import name_of_tool
 from widgets.shared.shared_state import SharedState
-from widgets.shared.swatch import SWATCH_PX, swatch_of
 
 _WAIT_MS = 400
 

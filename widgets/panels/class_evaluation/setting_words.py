@@ -6,10 +6,10 @@ from collections.abc import Mapping
 
 from PySide6.QtCore import QDateTime, QLocale
 
-from processing.project.runs import Run
-from processing.project.truth_store import Truth
-from processing.text import Language, Text
-from processing.tools.parameters import Parameter, ParameterValue, parameters_of
+from processing.core.parameters import Parameter, ParameterValue, parameters_of
+from processing.core.text import Language, Text
+from processing.project.evaluation.truth_store import Truth
+from processing.project.store.runs import Run
 from processing.tools.registry import TOOLS
 
 _MOMENT = Text("d MMM HH:mm", "M月d日 HH:mm")

@@ -13,8 +13,9 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from processing.score.asked_classes import ASKED
-from processing.score.parameter_study import (
+from processing.core.parameters import Parameter
+from processing.core.text import Language
+from processing.project.evaluation.parameter_study import (
     MOST_CELLS,
     MOST_STEPS,
     VariedParameter,
@@ -22,8 +23,7 @@ from processing.score.parameter_study import (
     steps_of,
     usual_range,
 )
-from processing.text import Language
-from processing.tools.parameters import Parameter
+from processing.scoring.asked_classes import ASKED
 from processing.tools.registry import TOOLS
 from widgets.panels.run_words import name_of_tool
 from widgets.parts.number_field import NumberField, decimals_for

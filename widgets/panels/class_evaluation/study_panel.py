@@ -19,10 +19,10 @@ from PySide6.QtWidgets import (
 )
 from typing_extensions import override
 
-from processing.project.study_store import KeptStudy
-from processing.score.asked_classes import ASKED
-from processing.text import Language
-from processing.tools.parameters import ParameterValue
+from processing.core.parameters import ParameterValue
+from processing.core.text import Language
+from processing.project.evaluation.study_store import KeptStudy
+from processing.scoring.asked_classes import ASKED
 from widgets.panels.class_evaluation.setting_words import (
     parameter_name,
     settings_words,

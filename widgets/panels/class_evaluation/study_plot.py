@@ -9,11 +9,11 @@ from dataclasses import dataclass
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPen
 
-from processing.score.asked_classes import ASKED
-from processing.score.confusion_matrix import ConfusionMatrix
-from processing.score.parameter_study import ParameterStudy, StudyCell
-from processing.text import Language
-from processing.tools.parameters import ParameterValue
+from processing.core.parameters import ParameterValue
+from processing.core.text import Language
+from processing.project.evaluation.parameter_study import ParameterStudy, StudyCell
+from processing.scoring.asked_classes import ASKED
+from processing.scoring.confusion_matrix import ConfusionMatrix
 from widgets.panels.class_evaluation.setting_words import parameter_name, value_words
 from widgets.panels.reliability_plot import PlotColours
 

@@ -16,9 +16,9 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from processing.project.truth_making import CheckedPoints
-from processing.project.truth_store import Truth
-from processing.text import Language
+from processing.core.text import Language
+from processing.project.evaluation.truth_making import CheckedPoints
+from processing.project.evaluation.truth_store import Truth
 from widgets.panels.class_evaluation.setting_words import name_of_truth
 
 

@@ -10,10 +10,10 @@ from typing import Any
 
 from PySide6.QtCore import QLocale
 
-from processing.project.catalogue import AttributeField, Catalogue, FeatureKind, Geometry
-from processing.project.feature import AttributeValue, Feature, Status
-from processing.project.feature_query import natural_key
-from processing.text import Language, Text
+from processing.core.text import Language, Text
+from processing.map.catalogue import AttributeField, Catalogue, FeatureKind, Geometry
+from processing.map.feature import AttributeValue, Feature, Status
+from processing.map.feature_query import natural_key
 from widgets.panels.feature_words import (
     HAND,
     STATUS_NAMES,

@@ -8,13 +8,13 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QKeySequence
 from PySide6.QtWidgets import QMenu, QWidget
 
-from processing.project.catalogue import Catalogue
-from processing.project.feature import Feature, Status
-from processing.text import Language
+from processing.core.text import Language
+from processing.map.catalogue import Catalogue
+from processing.map.feature import Feature, Status
+from widgets.feature_drawing.swatch import swatch_of
 from widgets.mouse_tools.removal import removal_of
 from widgets.panels.feature_changes import kind_change, kinds_for, status_change
 from widgets.parts.literal_text import literal
-from widgets.shared.swatch import swatch_of
 
 
 class FeatureMenu(QMenu):

@@ -11,9 +11,9 @@ from collections.abc import Callable, Iterable, Sequence
 from itertools import count
 from operator import attrgetter
 
-from processing.project.catalogue import Catalogue
-from processing.project.feature import Feature
-from processing.project.feature_query import FeatureQuery, QueryTest, SearchTexts
+from processing.map.catalogue import Catalogue
+from processing.map.feature import Feature
+from processing.map.feature_query import FeatureQuery, QueryTest, SearchTexts
 from widgets.panels.table.feature_columns import SortKey
 
 _Place = tuple[bool, SortKey, int]

@@ -28,7 +28,7 @@ from PySide6.QtWidgets import (
 )
 from typing_extensions import override
 
-from widgets.panels.feature_table_model import FeatureTableModel
+from widgets.panels.table.feature_table_model import FeatureTableModel
 
 _ROW_PX = 22
 _PAD_PX = 4

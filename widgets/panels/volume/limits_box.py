@@ -8,7 +8,7 @@ from enum import Enum
 from PySide6.QtCore import QSignalBlocker, Qt, Signal
 from PySide6.QtWidgets import QComboBox, QSizePolicy, QWidget
 
-from processing.text import Language, Text
+from processing.core.text import Language, Text
 
 
 class _Other(Enum):

@@ -8,8 +8,8 @@ from pathlib import Path
 from PySide6.QtCore import QCoreApplication, QSignalBlocker, Signal
 from PySide6.QtWidgets import QComboBox, QSizePolicy, QWidget
 
-from processing.project.epochs import Epoch
-from processing.project.volume import ChosenSide, SideKind
+from processing.project.volumes.epochs import Epoch
+from processing.project.volumes.volume import ChosenSide, SideKind
 
 _LEVEL = ChosenSide(SideKind.LEVEL)
 

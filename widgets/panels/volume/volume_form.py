@@ -20,10 +20,10 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from processing.project.epochs import Epoch
-from processing.project.volume import ChosenSide, SideKind
-from processing.text import Language, Text
-from widgets.panels.parameter_form import ParameterForm
+from processing.core.text import Language, Text
+from processing.project.volumes.epochs import Epoch
+from processing.project.volumes.volume import ChosenSide, SideKind
+from widgets.panels.processing.parameter_form import ParameterForm
 from widgets.panels.volume.side_box import SideBox
 from widgets.parts.number_field import NumberField
 from widgets.parts.scrolled import make_scrollable

@@ -19,8 +19,8 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from processing.project.volume import KeptVolume
-from processing.text import Language, Text
+from processing.core.text import Language, Text
+from processing.project.volumes.volume import KeptVolume
 from widgets.panels.volume.limits_box import LimitsBox
 from widgets.panels.volume.side_box import side_words
 from widgets.panels.volume.style_form import VolumeStyleForm

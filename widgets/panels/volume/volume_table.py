@@ -6,9 +6,9 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QFont
 from PySide6.QtWidgets import QGridLayout, QLabel, QPushButton, QVBoxLayout, QWidget
 
-from processing.earthwork.volume_result import Registration
-from processing.project.volume import KeptVolume
-from processing.text import Language
+from processing.core.text import Language
+from processing.methods.earthwork.volumes.volume_result import Registration
+from processing.project.volumes.volume import KeptVolume
 from widgets.parts.change_words import format_difference
 
 _MM = 1000.0

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from PySide6.QtGui import QPolygonF
 
-from widgets.scene_view.projection import SceneProjection
-from widgets.shared.feature_hits import FeatureHit, features_inside, segment_at, vertex_at
-from widgets.shared.feature_shapes import FlatShapes
+from widgets.feature_drawing.feature_hits import FeatureHit, features_inside, segment_at, vertex_at
+from widgets.feature_drawing.feature_shapes import FlatShapes
+from widgets.scene_view.rendering.projection import SceneProjection
 
 
 def feature_at(

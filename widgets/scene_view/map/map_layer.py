@@ -9,17 +9,17 @@ import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QObject, QTimer, Signal
 
-from processing.image.clip import Clip
-from processing.project.catalogue import Catalogue
-from processing.project.feature import Feature, Status
-from processing.project.solids import thickness_of
-from widgets.shared.feature_shapes import FeatureShapes, FlatShapes, flatten_shapes
-from widgets.shared.feature_style import style_of
+from processing.image.search.clip import Clip
+from processing.map.catalogue import Catalogue
+from processing.map.feature import Feature, Status
+from processing.map.solids import thickness_of
+from widgets.feature_drawing.feature_shapes import FeatureShapes, FlatShapes, flatten_shapes
+from widgets.feature_drawing.feature_style import style_of
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
 
 if TYPE_CHECKING:  # importing it imports VTK, which is done after the view was shown
-    from widgets.scene_view.scene_renderer import SceneRenderer
+    from widgets.scene_view.rendering.scene_renderer import SceneRenderer
 
 
 class MapLayer(QObject):
@@ -90,8 +90,8 @@ class MapLayer(QObject):
         volume = self._shared.volume
         scene_renderer.change.show(volume.drawn, volume.look, self._source.origin(), self._clip)
         # Imported here: it draws by VTK.
-        from widgets.scene_view.map.feature_actors import StyledShape
-        from widgets.scene_view.map.solid_actors import StyledSolid
+        from widgets.scene_view.rendering.feature_actors import StyledShape
+        from widgets.scene_view.rendering.solid_actors import StyledSolid
 
         catalogue, chosen = self._source.catalogue(), self._shared.selection.features
         styled = [

@@ -9,25 +9,25 @@ import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QObject, QTimer, Signal
 
-from processing.image.clip import Clip
+from processing.image.attributes.tile_cache import TileCache
 from processing.image.images_of_drives import image_of
-from processing.image.kinds import ImageKind
-from processing.image.tile_cache import TileCache
-from processing.image.tile_choice import Camera3D
-from processing.image.tiles import TileKey
-from processing.image.touched_tiles import TouchedTiles
-from processing.points.drive import Drive
+from processing.image.search.clip import Clip
+from processing.image.search.tile_choice import Camera3D
+from processing.image.search.touched_tiles import TouchedTiles
+from processing.image.tiles.tiles import TileKey
+from processing.recording.drive import Drive
+from processing.recording.kinds import ImageKind
+from widgets.feature_drawing.feature_style import ACCENT
 from widgets.scene_view.points.budget import FrameBudget
-from widgets.scene_view.points.scene_tile import (
+from widgets.scene_view.points.tile_feed import SceneRequest, TileFeed, TileSelection
+from widgets.scene_view.rendering.scene_renderer import SceneRenderer
+from widgets.scene_view.rendering.scene_tile import (
     DrawnTile,
     SceneTile,
     TileAppearance,
     TileId,
     shown_tiles,
 )
-from widgets.scene_view.points.tile_feed import SceneRequest, TileFeed, TileSelection
-from widgets.scene_view.scene_renderer import SceneRenderer
-from widgets.shared.feature_style import ACCENT
 from widgets.shared.view_settings import PointStyle
 
 Floats = NDArray[np.float64]

@@ -7,15 +7,15 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.image.ray_hits import TOLERANCE_PX, RayHit, RayHits, RaySight
-from processing.image.tile_descent import entry_depth
-from widgets.scene_view.projection import NEAR_M, SceneProjection
+from processing.image.search.ray_hits import TOLERANCE_PX, RayHit, RayHits, RaySight
+from processing.image.tiles.tile_descent import entry_depth
+from widgets.scene_view.rendering.projection import NEAR_M, SceneProjection
 
 Floats = NDArray[np.float64]
 
 
 def pick(entries: Floats, search: Callable[[int, RayHits], None], sight: RaySight) -> RayHit | None:
-    """The front-most measured point under a pixel; see :class:`processing.image.ray_hits.RayHits`.
+    """The front-most measured point under a pixel; see :class:`processing.image.search.ray_hits.RayHits`.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ def sight_at(projection: SceneProjection, origin: Floats, x: float, y: float) ->
 
 
 def ray_at(projection: SceneProjection, origin: Floats, x: float, y: float) -> Floats:
-    """(9,): the cone within reach of a pixel; see :mod:`processing.image.tile_descent`.
+    """(9,): the cone within reach of a pixel; see :mod:`processing.image.tiles.tile_descent`.
 
     Without perspective it is a tube, which begins far behind the camera.
     """

@@ -8,19 +8,19 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.image.clip import Clip
-from processing.image.enclosed_points import Sight, points_enclosed
 from processing.image.images_of_drives import image_of
-from processing.image.kinds import ImageKind
-from processing.image.ray_hits import RayHit, RayHits
-from processing.image.tile_descent import ray_kernel
-from processing.image.tiles import TILE, TileKey
-from processing.points.counted_classes import seen_points
-from processing.points.drive import Drive
-from processing.project.feature import PointReference
+from processing.image.search.clip import Clip
+from processing.image.search.enclosed_points import Sight, points_enclosed
+from processing.image.search.ray_hits import RayHit, RayHits
+from processing.image.tiles.tile_descent import ray_kernel
+from processing.image.tiles.tiles import TILE, TileKey
+from processing.map.feature import PointReference
+from processing.recording.columns.counted_classes import seen_points
+from processing.recording.drive import Drive
+from processing.recording.kinds import ImageKind
 from widgets.scene_view.points.picking import entry_depths, pick, ray_at, sight_at
-from widgets.scene_view.points.scene_tile import DrawnTile
-from widgets.scene_view.projection import NEAR_M, SceneProjection
+from widgets.scene_view.rendering.projection import NEAR_M, SceneProjection
+from widgets.scene_view.rendering.scene_tile import DrawnTile
 from widgets.shared.cursor import PickedPosition
 from widgets.shared.view_settings import ViewSettings
 

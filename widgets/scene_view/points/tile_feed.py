@@ -11,15 +11,15 @@ import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QObject, Signal
 
-from processing.errors import UserError
-from processing.image.attributes import colours, most_telling_attribute
+from processing.core.errors import UserError
+from processing.image.attributes.attributes import colours, most_telling_attribute
+from processing.image.attributes.tile_cache import TileCache, TilePixels, TileRequest
 from processing.image.images_of_drives import image_of
-from processing.image.kinds import ImageKind
-from processing.image.tile_cache import TileCache, TilePixels, TileRequest
-from processing.image.tile_choice import Camera3D, tiles_in_view
-from processing.points.drive import Drive
-from widgets.scene_view.points.scene_tile import SceneTile, TileAppearance, TileId
+from processing.image.search.tile_choice import Camera3D, tiles_in_view
+from processing.recording.drive import Drive
+from processing.recording.kinds import ImageKind
 from widgets.scene_view.points.tile_survey import TileSurvey
+from widgets.scene_view.rendering.scene_tile import SceneTile, TileAppearance, TileId
 from widgets.shared.view_settings import PointStyle
 
 _TOGETHER_S = 0.15

@@ -8,12 +8,12 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.errors import UserError
+from processing.core.errors import UserError
 from processing.image.images_of_drives import image_of
-from processing.image.kinds import ImageKind
-from processing.image.tile_choice import Camera3D
-from processing.image.tiles import TilePyramid
-from processing.points.drive import Drive
+from processing.image.search.tile_choice import Camera3D
+from processing.image.tiles.tiles import TilePyramid
+from processing.recording.drive import Drive
+from processing.recording.kinds import ImageKind
 
 DriveImage = tuple[Drive, ImageKind]
 

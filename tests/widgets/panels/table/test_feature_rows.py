@@ -7,9 +7,9 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from processing.project.catalogue import Geometry
-from processing.project.feature import Feature, Vertex
-from processing.project.feature_query import FeatureQuery
+from processing.map.catalogue import Geometry
+from processing.map.feature import Feature, Vertex
+from processing.map.feature_query import FeatureQuery
 from tests.widgets.builders import KINDS
 from widgets.panels.table.feature_columns import SortKey
 from widgets.panels.table.feature_rows import FeatureRows

@@ -1,1 +1,0 @@
-"""What users can do, as data, by menu."""

@@ -1,0 +1,1 @@
+"""Classes of points: labels, truths, evaluation."""

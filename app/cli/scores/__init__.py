@@ -1,0 +1,1 @@
+"""Scores as lines and tables of the terminal."""

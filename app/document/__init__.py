@@ -1,0 +1,1 @@
+"""The open project and the only way to change it."""

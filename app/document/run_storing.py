@@ -1,0 +1,157 @@
+"""What a tool's run gave, on its way from the worker into the project."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from pathlib import Path
+
+from processing.core.errors import report_as_user_error
+from processing.core.monitor import Monitor
+from processing.core.owned_files import make_marked, remove_folder
+from processing.core.safe_write import refuse_inputs
+from processing.methods.ground.stored_surface import FILE_NAME as SURFACE
+from processing.methods.ground.stored_surface import StoredSurface, keep_surface
+from processing.project.results.found_classes import found_classes
+from processing.project.results.found_features import FoundFeatures, found_features
+from processing.project.results.run_findings import adopt_finding, write_finding
+from processing.project.results.surface_files import delivered_files, surface_file_of, write_surface
+from processing.recording.drive import Drive
+from processing.scoring.asked_classes import ASKED
+from processing.tools.runner import RunRequest, drives_of, run, run_together, tool_of
+from processing.tools.tool import CandidateResult, FinishedColumns
+
+
+@dataclass(frozen=True)
+class FinishedRun:
+    """Columns for the drive, or candidates for the map and labels for points.
+
+    Attributes
+    ----------
+    columns : FinishedColumns or None
+        In a folder on the drive's disk; None for a tool that finds candidates or classes.
+    found : FoundFeatures or None
+        The run with its candidates or labels; None for a tool that makes columns.
+    kept : Path or None
+        A folder with what the drives keep of the run beside its labels.
+    """
+
+    columns: FinishedColumns | None = None
+    found: FoundFeatures | None = None
+    kept: Path | None = None
+
+    def keep_with(self, drive_of: Callable[[str], Drive]) -> None:
+        """Keep with its drives what the run said of their points, and the surface it found.
+
+        Raises
+        ------
+        NoSpace, InUse
+        """
+        if self.found is None or self.kept is None:
+            return
+        try:
+            drives = tuple(drive_of(id_) for id_ in self.found.run.drives)
+            for drive in drives:
+                said = self.kept / drive.id
+                if said.is_file():
+                    adopt_finding(drive, self.found.run.tool, self.found.run.id, said)
+            surface = self.kept / SURFACE
+            if surface.is_file():
+                keep_surface(surface, drives)
+        finally:
+            remove_folder(self.kept)
+
+    def remove(self) -> None:
+        """Nothing comes of it: its files go."""
+        if self.columns is not None:
+            self.columns.remove()
+        folders = [] if self.kept is None else [self.kept]
+        if self.found is not None and self.found.change.filed is not None:
+            folders.append(self.found.change.filed.folder)
+        for folder in folders:
+            remove_folder(folder)
+
+
+def finish_run(
+    request: RunRequest,
+    into: Path,
+    monitor: Monitor,
+    *,
+    labels_into: Path,
+    begin: Callable[[], None],
+) -> FinishedRun:
+    """Run a tool and make of what it gives what the project stores; for a worker's thread.
+
+    Parameters
+    ----------
+    into : Path
+        A new folder on the drive's disk, for columns.
+    labels_into : Path
+        A new folder of the project, for labels of many points.
+    begin : callable
+        Called when labels are looked at first: what is painted later counts more than the run.
+
+    Raises
+    ------
+    UserError
+        As :func:`processing.tools.runner.run`; `Cancelled`.
+    """
+    started = datetime.now(UTC)
+    tool, parameters = tool_of(request.tool), request.parameters
+    if tool.gives_classes:
+        return _classes(request, into, monitor, started, _Labels(labels_into, begin))
+    result = run(request, monitor, into=into)
+    if isinstance(result, CandidateResult):
+        times = {"started": started, "finished": datetime.now(UTC)}
+        drives = [drive.id for drive in drives_of(request)]
+        return FinishedRun(found=found_features(result, tool, parameters, drives, **times))
+    return FinishedRun(columns=result)
+
+
+@dataclass(frozen=True)
+class _Labels:
+    into: Path
+    begin: Callable[[], None]
+
+
+def _classes(
+    request: RunRequest, into: Path, monitor: Monitor, started: datetime, labels: _Labels
+) -> FinishedRun:
+    """Labels for the points of all drives that the run is about."""
+    tool, drives = tool_of(request.tool), drives_of(request)
+    surface_file = surface_file_of(request.parameters)
+    if surface_file is not None:
+        refuse_inputs(surface_file, delivered_files(drives, request.beside))
+    together = run_together(request, monitor, into=into)
+    kept = into.with_name(f"{into.name}-kept")
+    try:
+        with report_as_user_error(kept):
+            make_marked(kept)
+            for file in together.kept:
+                file.replace(kept / file.name)
+        results = list(zip(drives, together.columns, strict=True))
+        if tool.id in ASKED:
+            for drive, result in results:
+                write_finding(result, ASKED[tool.id].codes, kept / drive.id)
+        if surface_file is not None:
+            write_surface(
+                StoredSurface(kept / SURFACE), surface_file, delivered_files(drives), monitor
+            )
+        labels.begin()
+        found = found_classes(
+            results,
+            tool,
+            request.parameters,
+            labels.into,
+            monitor,
+            started=started,
+            finished=datetime.now(UTC),
+            note=together.note,
+        )
+    except BaseException:
+        remove_folder(kept)
+        raise
+    finally:
+        remove_folder(into)
+    return FinishedRun(found=found, kept=kept)

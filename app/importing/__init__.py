@@ -1,0 +1,1 @@
+"""Importing, and the files outside the project."""

@@ -1,0 +1,1 @@
+"""Keys, and the form that changes them."""

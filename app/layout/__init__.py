@@ -1,0 +1,1 @@
+"""How views and panels stand in the window."""

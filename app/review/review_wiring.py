@@ -1,0 +1,165 @@
+"""Wiring of the review: the queue, its panel, its keys, and the views that show each candidate."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QObject, Qt
+
+from app.review.review import Review
+from app.review.review_actions import QUEUE_KEYS
+from app.runs.process_actions import one_click_tools
+from app.window.window_parts import WindowParts
+from processing.map.catalogue import Geometry
+from processing.map.feature import Feature, Status
+from widgets.shared.cursor import PickedPosition
+
+QUEUE_ACTIONS = (*QUEUE_KEYS, "review-worst", "review-along", "review-end")
+"""Actions that can be done only while a queue is open."""
+
+_LEAST_IMAGE_ZOOM = 2.0
+"""Screen pixels of a pixel of the image."""
+
+_FARTHEST_M = 15.0
+_LEAST_MAP_SCALE = 12.0
+"""Screen pixels of a metre."""
+
+_LEAST_SECTION_SCALE = 200.0
+"""The same across a line or an area: a curb is a step of a few centimetres."""
+
+
+def connect_review(parts: WindowParts) -> None:
+    """Connect the review with the widgets of a window; again for new ones."""
+    wiring = _ReviewWiring(parts)
+    review, panel = parts.of(Review), parts.review_panel
+    review.shown.connect(wiring.on_review_shown)
+    review.coming.connect(parts.camera_view.prepare)
+    review.changed.connect(wiring.on_review_changed)
+    review.edit_requested.connect(wiring.on_review_edit_requested)
+    parts.document.shared.sketch.changed.connect(wiring.on_sketch_changed)
+    panel.open_requested.connect(review.open)
+    panel.order_requested.connect(review.put_in_order)
+    panel.accept_requested.connect(review.accept)
+    panel.reject_requested.connect(review.reject)
+    panel.accept_line_requested.connect(review.accept_line)
+    panel.reject_line_requested.connect(review.reject_line)
+    panel.edit_requested.connect(review.edit)
+    panel.next_requested.connect(review.next)
+    panel.back_requested.connect(review.back)
+    panel.accept_from_requested.connect(review.accept_from)
+    panel.evaluation_requested.connect(wiring.on_panel_evaluation_requested)
+    panel.processing_requested.connect(wiring.on_panel_processing_requested)
+    panel.ask_count_from(review.count_from)
+    parts.project_tree.review_requested.connect(wiring.on_tree_review_requested)
+    parts.document.shared.view_settings.shows_rejected_changed.connect(
+        wiring.on_settings_shows_rejected_changed
+    )
+    parts.document.shared.map_changes.candidates_found.connect(wiring.on_candidates_found)
+    wiring.keep_keys_to_views()
+    wiring.on_review_changed()
+
+
+class _ReviewWiring(QObject):
+    """What has to be translated between the queue and the window."""
+
+    def __init__(self, parts: WindowParts) -> None:
+        super().__init__(parts.window.centralWidget())  # goes with the widgets
+        self._parts = parts
+        self._edited = ""
+        self._is_near = False
+
+    def keep_keys_to_views(self) -> None:
+        """Enter and letters judge over the views and the queue only: in forms they are typed."""
+        parts = self._parts
+        for name in QUEUE_KEYS:
+            action = parts.window.actions_by_id[name]
+            action.setShortcutContext(Qt.ShortcutContext.WidgetWithChildrenShortcut)
+            parts.window.removeAction(action)
+            for widget in (*parts.views, parts.review_panel):
+                widget.addAction(action)
+
+    def on_review_shown(self, feature: Feature, position: PickedPosition) -> None:
+        """Every view has the candidate in its middle; the section cuts through it."""
+        if not self._is_near:
+            self._is_near = True
+            self._come_near(feature)
+        self._show_its_image(position)
+        for view in self._parts.views:
+            if view is not self._parts.camera_view:
+                view.center_on(position)
+        self._parts.camera_view.show_position(position)
+
+    def _show_its_image(self, position: PickedPosition) -> None:
+        """A candidate that the shown scanner didn't see is shown in the image of its own."""
+        settings = self._parts.document.shared.view_settings
+        if position.measured is None or position.measured.drive == settings.drive_id:
+            return
+        if self._parts.image_view.position_of(position) is None:
+            kinds = self._parts.document.drive(position.measured.drive).image_kinds
+            kind = settings.image_kind if settings.image_kind in kinds else kinds[0]
+            settings.show_image(position.measured.drive, kind)
+
+    def on_review_changed(self) -> None:
+        review = self._parts.of(Review)
+        self._parts.review_panel.show_review(review.progress, review.current, review.line_count)
+        self._allow_keys()
+        self._is_near = self._is_near and review.is_open
+        current = review.current
+        is_judged = current is None or current.status is not Status.CANDIDATE
+        if self._edited and (current is None or is_judged or current.id != self._edited):
+            # What was corrected is judged: the hand has the pointer again.
+            self._edited = ""
+            if self._parts.toolbox.name == "edit":
+                self._parts.toolbox.choose("select")
+
+    def on_review_edit_requested(self, feature: Feature) -> None:
+        self._parts.document.shared.selection.choose_features(frozenset({feature.id}))
+        self._parts.toolbox.choose("edit")
+        self._edited = feature.id
+
+    def on_sketch_changed(self) -> None:
+        self._allow_keys()
+
+    def on_settings_shows_rejected_changed(self) -> None:
+        is_shown = self._parts.document.shared.view_settings.shows_rejected
+        self._parts.window.actions_by_id["show-rejected"].setChecked(is_shown)
+
+    def on_candidates_found(self, tool: str, run: str) -> None:
+        """What was found by one click goes to the queue; the views stay where they are."""
+        if tool not in {one.tool for one in one_click_tools()}:
+            return
+        self._parts.window.show_panel("review")
+        if self._parts.of(Review).is_open:
+            self._parts.of(Review).add(run)
+
+    def on_panel_processing_requested(self) -> None:
+        self._parts.window.show_panel("processing")
+
+    def on_panel_evaluation_requested(self) -> None:
+        self._parts.window.show_panel("evaluation")
+
+    def on_tree_review_requested(self, run: str) -> None:
+        review = self._parts.of(Review)
+        self._parts.window.show_panel("review")
+        review.open((run,), review.progress.state.order)
+
+    def _come_near(self, feature: Feature) -> None:
+        """Show what is judged large enough; later the operator's own zoom is kept."""
+        image, scene, map_view = (
+            self._parts.image_view,
+            self._parts.scene_view,
+            self._parts.map_view,
+        )
+        image.zoom_by(max(_LEAST_IMAGE_ZOOM / image.viewport.zoom_v, 1.0))
+        scene.zoom_by(max(scene.camera.distance_m / _FARTHEST_M, 1.0))
+        map_view.zoom_by(max(_LEAST_MAP_SCALE / map_view.viewport.scale, 1.0))
+        if feature.geometry is not Geometry.POINT:  # trees and poles are looked at whole
+            for pane in self._parts.section_view.panes:
+                pane.zoom_by(max(_LEAST_SECTION_SCALE / pane.viewport.scale, 1.0))
+
+    def _allow_keys(self) -> None:
+        """While something is drawn, Enter and Delete belong to what is drawn."""
+        parts = self._parts
+        is_judging = parts.of(Review).is_open and not parts.toolbox.current_tool.is_busy
+        for name in QUEUE_ACTIONS:
+            is_key = name in QUEUE_KEYS
+            allowed = is_judging if is_key else parts.of(Review).is_open
+            parts.window.actions_made.allow(name, is_allowed=allowed)

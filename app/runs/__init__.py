@@ -1,0 +1,1 @@
+"""Running tools from the window."""

@@ -1,0 +1,140 @@
+"""Process actions: road tools run by one click, each tool's form, and the end of running jobs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from app.window.action import Action
+from app.window.window_parts import WindowParts
+from processing.core.text import Text
+from processing.tools.registry import TOOLS
+from processing.tools.volume import VOLUME
+
+
+@dataclass(frozen=True)
+class OneClick:
+    """A tool that is run by one click or key, as its form stands.
+
+    Attributes
+    ----------
+    tool : str
+        Id of the tool; it has no button where the program has no such tool.
+    """
+
+    tool: str
+    text: Text
+    key: str
+    icon: str
+
+    @property
+    def action(self) -> str:
+        """Id of the action that runs it."""
+        return f"run-{self.tool}"
+
+
+ONE_CLICK = (
+    OneClick("curbs", Text("Find curbs", "縁石を抽出"), "F9", "mdi6.stairs"),
+    OneClick(
+        "gutters",
+        Text("Find covered gutters", "蓋付き側溝を抽出"),
+        "Shift+F9",
+        "mdi6.view-parallel-outline",
+    ),
+)
+"""What takes most of a road map's time by hand."""
+
+_TOOLBAR = 5
+_HINT = Text("{explanation} {way}", "{explanation}{way}")
+_WAY = Text(
+    "Runs as the form in Processing stands; what is found goes to the review.",
+    "処理パネルの設定で実行し、結果は確認パネルに候補として並びます。",
+)
+
+
+def one_click_tools() -> tuple[OneClick, ...]:
+    """Those of :data:`ONE_CLICK` that the program has."""
+    return tuple(one for one in ONE_CLICK if one.tool in TOOLS)
+
+
+def process_actions(parts: WindowParts) -> tuple[Action, ...]:
+    """The process menu, from top to bottom."""
+
+    def running(one: OneClick) -> Action:
+        def run() -> None:
+            parts.processing_panel.run_tool(one.tool)
+
+        return Action(
+            one.action,
+            one.text,
+            run,
+            "process",
+            (one.key,),
+            one.icon,
+            toolbar=_TOOLBAR,
+            hint=_HINT.filled(explanation=TOOLS[one.tool].explanation, way=_WAY),
+            needs_project=True,
+        )
+
+    def showing(tool: str) -> Action:
+        def show() -> None:
+            parts.window.show_panel("processing")
+            parts.processing_panel.show_tool(tool)
+
+        return Action(
+            f"process-{tool}",
+            TOOLS[tool].name,
+            show,
+            "process",
+            hint=TOOLS[tool].explanation,
+            needs_project=True,
+        )
+
+    def cancel_all() -> None:
+        for status in parts.jobs.statuses:
+            parts.jobs.cancel(status.id)
+
+    cancel = Action(
+        "cancel-jobs", Text("Cancel all jobs", "すべてのジョブを中止"), cancel_all, "process"
+    )
+    return (
+        *(running(one) for one in one_click_tools()),
+        *(showing(tool) for tool in TOOLS),
+        *_volume_actions(parts),
+        cancel,
+    )
+
+
+def _volume_actions(parts: WindowParts) -> tuple[Action, ...]:
+    """Earth between two grounds: the panel that computes it, and its map."""
+
+    def show_volume() -> None:
+        parts.window.show_panel("volume")
+
+    def toggle_heat_map() -> None:
+        volume = parts.document.shared.volume
+        volume.use_look(replace(volume.look, is_shown=not volume.look.is_shown))
+
+    volume = Action(
+        "volume",
+        Text("Volume…", "土量計算…"),
+        show_volume,
+        "process",
+        ("Ctrl+F9",),
+        hint=VOLUME.explanation,
+        needs_project=True,
+    )
+    heat_map = Action(
+        "heat-map",
+        Text("Heat map of the volume", "土量のヒートマップ"),
+        toggle_heat_map,
+        "process",
+        ("Ctrl+Shift+F9",),
+        hint=Text(
+            "Shows the difference of heights in the map, in 3D and in the section, or hides it.",
+            "標高差を地図・3D・断面に表示、または非表示にします。",
+        ),
+        is_checkable=True,
+        is_checked=parts.document.shared.volume.look.is_shown,
+        needs_project=True,
+    )
+    return volume, heat_map

@@ -1,0 +1,1 @@
+"""The views' places and what is shown in them."""

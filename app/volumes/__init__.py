@@ -1,0 +1,1 @@
+"""Earthwork volumes and their reports."""

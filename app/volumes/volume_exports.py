@@ -1,0 +1,215 @@
+"""What a volume can be given out as: each kind of file by its id, and how it is written."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely.geometry.base import BaseGeometry
+
+from app.volumes.volume_reports import (
+    ExportedVolume,
+    is_judged,
+    write_form,
+    write_form_csv,
+    write_form_xlsx,
+    write_report,
+    write_report_csv,
+    write_report_xlsx,
+)
+from processing.core.errors import Unsuitable
+from processing.core.monitor import Monitor
+from processing.core.text import Text
+from processing.formats.drawings.earthwork_dxf import EarthworkPlan, PlanStyle, write_earthwork_dxf
+from processing.formats.drawings.section_sheet_dxf import SectionStyle, write_section_sheet_dxf
+from processing.formats.points.ground_las import write_ground_las
+from processing.formats.surfaces.change_geotiff import write_change_geotiff
+from processing.formats.surfaces.landxml_writing import LandXmlFacts, WrittenSurface, write_landxml
+from processing.methods.earthwork.geometry.triangle_surface import TriangleSurface
+from processing.methods.earthwork.geometry.triangulation import triangulate_ground
+from processing.methods.earthwork.maps.change_grid import ChangeGrid
+from processing.methods.earthwork.maps.heat_map import change_classes
+from processing.methods.earthwork.surfaces.sides import EpochGround
+from processing.methods.earthwork.volumes.volume_parameters import END_AREA, PRISMOIDAL
+from processing.project.volumes.volume import KeptVolume, SideKind
+
+_TITLE = Text("Cut {cut} m³, fill {fill} m³", "切土量 {cut} m³、盛土量 {fill} m³")
+_AFTER = Text("Ground after", "変化後の地盤")
+_MOST_CORNERS = 200_000
+_LONGEST_CELLS = 3.0
+
+Write = Callable[[Path, ExportedVolume, Monitor], None]
+
+
+def _has_epoch(kept: KeptVolume) -> bool:
+    return SideKind.EPOCH in (kept.request.before.kind, kept.request.after.kind)
+
+
+def _has_sections(kept: KeptVolume) -> bool:
+    return kept.method in (END_AREA, PRISMOIDAL)
+
+
+def _always(_kept: KeptVolume) -> bool:
+    return True
+
+
+@dataclass(frozen=True)
+class VolumeExport:
+    """One kind of file.
+
+    Attributes
+    ----------
+    ending : str
+        With its dot.
+    is_for : callable
+        Whether it can be made of a volume.
+    """
+
+    id: str
+    name: Text
+    ending: str
+    write: Write
+    is_for: Callable[[KeptVolume], bool] = _always
+
+
+def _write_geotiff(path: Path, given: ExportedVolume, monitor: Monitor) -> None:
+    write_change_geotiff(
+        path, given.result.change, crs=given.kept.crs, monitor=monitor, never=given.never
+    )
+
+
+def _write_plan(path: Path, given: ExportedVolume, monitor: Monitor) -> None:
+    volumes = given.kept.volumes
+    amounts = _TITLE.filled(cut=f"{volumes.cut_m3:,.1f}", fill=f"{volumes.fill_m3:,.1f}")
+    plan = EarthworkPlan(
+        title=(Text.same(given.details.work), amounts),
+        change=given.result.change,
+        classes=change_classes(given.limit_m),
+        contours=given.contours,
+        boundary=_rings_of(given.kept.request.boundary),
+        crs=given.kept.crs,
+    )
+    look = PlanStyle(language=given.language)
+    write_earthwork_dxf(path, plan, look, monitor=monitor, never=given.never)
+
+
+def _write_sections(path: Path, given: ExportedVolume, monitor: Monitor) -> None:
+    line = given.result.line
+    if line is None:
+        raise Unsuitable(
+            Text("The volume has no sections.", "この結果には断面がありません。"),
+            Text.same(given.details.work),
+            Text(
+                "Compute it by end areas or the prismoidal formula.",
+                "平均断面法またはプリズモイダル公式で計算してください。",
+            ),
+        )
+    look = SectionStyle(language=given.language)
+    write_section_sheet_dxf(
+        path, line.sections, Text.same(given.details.work), look, monitor=monitor, never=given.never
+    )
+
+
+def _write_surface(path: Path, given: ExportedVolume, monitor: Monitor) -> None:
+    surface = _later_ground(given.result.change, given.kept.request.boundary, monitor)
+    named = TriangleSurface(surface.xyz, surface.corners, _AFTER.in_language(given.language))
+    facts = LandXmlFacts(given.details.work, given.kept.crs, given.details.height_datum)
+    written = (WrittenSurface(named),)
+    line = given.result.line
+    write_landxml(path, written, facts, line=line, monitor=monitor, never=given.never)
+
+
+def _write_ground(path: Path, given: ExportedVolume, monitor: Monitor) -> None:
+    """The points of the later epoch, or of the only one."""
+    epochs = [side for side in given.sides(monitor) if isinstance(side, EpochGround)]
+    write_ground_las(path, epochs[-1], monitor, never=given.never)
+
+
+def _later_ground(
+    change: ChangeGrid, boundary: BaseGeometry | None, monitor: Monitor
+) -> TriangleSurface:
+    """Triangles between the middles of cells, as many of them as programs can read."""
+    grid = change.grid
+    step = max(1, int(np.ceil(np.sqrt(grid.rows * grid.columns / _MOST_CORNERS))))
+    rows, columns = (
+        part.reshape(-1)
+        for part in np.meshgrid(
+            np.arange(0, grid.rows, step), np.arange(0, grid.columns, step), indexing="ij"
+        )
+    )
+    is_there = np.isfinite(change.change_m[rows, columns])
+    rows, columns = rows[is_there], columns[is_there]
+    heights = change.after[rows, columns].astype(np.float64)
+    plan = np.column_stack([columns, rows]) + 0.5
+    xyz = grid.origin + np.column_stack([plan * grid.size_m, heights])
+    longest_m = _LONGEST_CELLS * step * grid.size_m
+    return triangulate_ground(xyz, (), monitor, longest_m=longest_m, boundary=boundary)
+
+
+VOLUME_EXPORTS: tuple[VolumeExport, ...] = (
+    VolumeExport("report", Text("Volume report (PDF)", "土量計算書（PDF）"), ".pdf", write_report),
+    VolumeExport(
+        "report-table",
+        Text("Volume report (XLSX)", "土量計算書（XLSX）"),
+        ".xlsx",
+        write_report_xlsx,
+    ),
+    VolumeExport(
+        "report-csv", Text("Volume report (CSV)", "土量計算書（CSV）"), ".csv", write_report_csv
+    ),
+    VolumeExport(
+        "form",
+        Text("As-built form 31-2 (PDF)", "様式-31-2 出来形合否判定総括表（PDF）"),
+        ".pdf",
+        write_form,
+        is_judged,
+    ),
+    VolumeExport(
+        "form-table",
+        Text("As-built form 31-2 (XLSX)", "様式-31-2 出来形合否判定総括表（XLSX）"),
+        ".xlsx",
+        write_form_xlsx,
+        is_judged,
+    ),
+    VolumeExport(
+        "form-csv",
+        Text("As-built form 31-2 (CSV)", "様式-31-2 出来形合否判定総括表（CSV）"),
+        ".csv",
+        write_form_csv,
+        is_judged,
+    ),
+    VolumeExport(
+        "surface", Text("Ground after (LandXML)", "変化後の地盤（LandXML）"), ".xml", _write_surface
+    ),
+    VolumeExport(
+        "ground",
+        Text("Ground points (LAZ)", "地面の点群（LAZ）"),
+        ".laz",
+        _write_ground,
+        _has_epoch,
+    ),
+    VolumeExport(
+        "geotiff", Text("Height difference (GeoTIFF)", "標高差（GeoTIFF）"), ".tif", _write_geotiff
+    ),
+    VolumeExport(
+        "plan",
+        Text("Heat map and contours (DXF)", "ヒートマップ・等高線図（DXF）"),
+        ".dxf",
+        _write_plan,
+    ),
+    VolumeExport(
+        "sections", Text("Sections (DXF)", "断面図（DXF）"), ".dxf", _write_sections, _has_sections
+    ),
+)
+"""In the order in which they are offered."""
+
+
+def _rings_of(boundary: BaseGeometry | None) -> tuple[NDArray[np.float64], ...]:
+    if boundary is None:
+        return ()
+    rings = shapely.get_rings(shapely.get_parts(boundary))
+    return tuple(shapely.get_coordinates(ring)[:-1] for ring in rings)

@@ -1,0 +1,80 @@
+"""Writing so that a file is either whole or not there: after an error, a kill or a full disk."""
+
+from __future__ import annotations
+
+import os
+import uuid
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from processing.core.errors import InUse, report_as_user_error
+from processing.core.text import Text
+
+
+@contextmanager
+def write_safely(path: Path, *, never: Iterable[Path] = ()) -> Iterator[Path]:
+    """A temporary name beside ``path``; it takes the real name when the body is through.
+
+    Parameters
+    ----------
+    path : Path
+        Where the result shall be; what is there already is replaced at the very end.
+    never : iterable of Path
+        Files that must not be overwritten: the inputs of the work.
+
+    Yields
+    ------
+    Path
+        To be written by the body. The folder is made if it is missing.
+
+    Raises
+    ------
+    InUse
+        ``path`` is one of ``never``.
+    NoSpace, MissingInput, BadFile
+        What the operating system says, of the body's own writing too.
+    """
+    refuse_inputs(path, never)
+    temporary = path.with_name(f".{path.stem}-{uuid.uuid4().hex[:8]}{path.suffix}")
+    with report_as_user_error(path):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        try:
+            yield temporary
+            _flush(temporary)
+            temporary.replace(path)
+        except BaseException:
+            with suppress(OSError):
+                temporary.unlink(missing_ok=True)
+            raise
+
+
+def refuse_inputs(path: Path, never: Iterable[Path]) -> None:
+    """Refuse to write where an input of the work is.
+
+    Raises
+    ------
+    InUse
+        ``path`` is one of ``never``.
+    """
+    with report_as_user_error(path):
+        for source in never:
+            is_same_name = source.resolve() == path.resolve()
+            if is_same_name or (path.exists() and source.exists() and path.samefile(source)):
+                raise InUse(
+                    Text(
+                        "The result would overwrite a file it is made from.",
+                        "結果の出力先が入力ファイルと同じです。",
+                    ),
+                    Text.same(str(path)),
+                    Text(
+                        "Choose another name or folder; nothing was written.",
+                        "別の名前かフォルダを指定してください。何も書き込まれていません。",
+                    ),
+                )
+
+
+def _flush(path: Path) -> None:
+    # Renamed before its content is on the disk, a file could be empty after a power cut.
+    with path.open("rb+") as file:
+        os.fsync(file.fileno())

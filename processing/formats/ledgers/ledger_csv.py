@@ -1,0 +1,213 @@
+"""Ledgers as tables that a spreadsheet opens: one row for each feature, one for each vertex."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TextIO
+
+from processing.core.errors import OutOfRange
+from processing.core.monitor import Monitor, SilentMonitor
+from processing.core.safe_write import write_safely
+from processing.core.text import Text
+from processing.formats.ledgers.ledger_columns import (
+    FEATURE_ID,
+    POSITION,
+    LedgerColumn,
+    TableStyle,
+    attribute_column,
+    crs_column,
+    fields_of,
+    guard_text,
+    header,
+    identity_columns,
+    kind_columns,
+    latitude_columns,
+    place_columns,
+    status_columns,
+)
+from processing.map.catalogue import Catalogue, FeatureKind
+from processing.map.feature import Feature
+
+_CHECK_EVERY = 256
+
+# Unicode has two of each, and Shift_JIS has the other one: every Japanese editor swaps them.
+_CP932_TWINS = str.maketrans("〜−—‖", "～－―∥")
+
+_VERTEX_TITLES = (
+    ("feature_id", FEATURE_ID, ""),
+    ("number", Text("Vertex", "頂点番号"), ""),
+    *POSITION,
+    ("drive", Text("Drive", "走行データ"), ""),
+    ("point", Text("Point", "点番号"), ""),
+)
+
+
+def write_features(
+    path: Path,
+    features: Sequence[Feature],
+    catalogue: Catalogue,
+    style: TableStyle,
+    *,
+    monitor: Monitor | None = None,
+    never: Iterable[Path] = (),
+) -> None:
+    """Write all features in one table, with every attribute that any of them has.
+
+    Raises
+    ------
+    OutOfRange
+        A character that the encoding lacks; names it and the feature.
+    UserError
+        What :func:`processing.core.safe_write.write_safely` raises; `Cancelled`.
+    """
+    columns = (
+        *identity_columns(),
+        *kind_columns(catalogue, style),
+        *status_columns(style),
+        *place_columns(features, style),
+        *(attribute_column(one, catalogue, style) for one in fields_of(features, catalogue)),
+        crs_column(style),
+    )
+    _write_rows(path, features, columns, style, monitor=monitor, never=never)
+
+
+def write_ledger(
+    path: Path,
+    features: Sequence[Feature],
+    kind: FeatureKind,
+    style: TableStyle,
+    *,
+    monitor: Monitor | None = None,
+    never: Iterable[Path] = (),
+) -> None:
+    """Write the ledger of one kind: its attributes first, then where each feature is.
+
+    Points get latitude and longitude too where the reference system is known.
+
+    Raises
+    ------
+    OutOfRange, UserError
+        As :func:`write_features`.
+    """
+    catalogue = Catalogue((kind,))
+    fields = {one.id: one for one in (*kind.attributes, *fields_of(features, catalogue))}
+    columns = (
+        *(attribute_column(one, catalogue, style) for one in fields.values()),
+        *place_columns(features, style),
+        *latitude_columns(features, style),
+        crs_column(style),
+        *status_columns(style),
+        *identity_columns(),
+    )
+    _write_rows(path, features, columns, style, monitor=monitor, never=never)
+
+
+def write_vertices(
+    path: Path,
+    features: Iterable[Feature],
+    style: TableStyle,
+    *,
+    monitor: Monitor | None = None,
+    never: Iterable[Path] = (),
+) -> None:
+    """Write every vertex in its order, with the measured point it rests on.
+
+    Raises
+    ------
+    OutOfRange, UserError
+        As :func:`write_features`.
+    """
+    monitor = monitor or SilentMonitor()
+    with _opened(path, style, never) as table:
+        table.write([header(*one, style.language) for one in _VERTEX_TITLES], "")
+        for number, feature in enumerate(features):
+            if number % _CHECK_EVERY == 0:
+                monitor.check()
+            for position, vertex in enumerate(feature.vertices, 1):
+                point = vertex.measured
+                cells = [guard_text(feature.id), str(position), *map(style.number, vertex.xyz)]
+                cells += [guard_text(point.drive), str(point.point)] if point else ["", ""]
+                table.write(cells, feature.id)
+
+
+def _write_rows(
+    path: Path,
+    features: Sequence[Feature],
+    columns: Sequence[LedgerColumn],
+    style: TableStyle,
+    *,
+    monitor: Monitor | None,
+    never: Iterable[Path],
+) -> None:
+    monitor = monitor or SilentMonitor()
+    with _opened(path, style, never) as table:
+        table.write(_distinct([column.header(style.language) for column in columns]), "")
+        for number, feature in enumerate(features):
+            if number % _CHECK_EVERY == 0:
+                monitor.check()
+                monitor.report(number / len(features))
+            table.write([column.cell(feature) for column in columns], feature.id)
+
+
+def _distinct(headers: Sequence[str]) -> list[str]:
+    """Headers of which no two are the same: readers find columns by them."""
+    distinct: dict[str, None] = {}
+    for words in headers:
+        own, number = words, 2
+        while own in distinct:
+            own, number = f"{words} ({number})", number + 1
+        distinct[own] = None
+    return list(distinct)
+
+
+class _Table:
+    """A file being written, row by row."""
+
+    def __init__(self, file: TextIO, style: TableStyle) -> None:
+        self._style = style
+        self._headers: Sequence[str] = ()
+        self._writer = csv.writer(file, lineterminator="\r\n")
+
+    def write(self, cells: Sequence[str], feature: str) -> None:
+        """Write a row, the headers first; ``feature`` is named with what can't be written."""
+        if self._style.encoding == "cp932":
+            cells = [cell.translate(_CP932_TWINS) for cell in cells]
+        self._headers = self._headers or cells
+        for column, cell in zip(self._headers, cells, strict=True):
+            try:
+                cell.encode(self._style.encoding)
+            except UnicodeEncodeError as error:
+                raise self._lacking(error, feature, column) from error
+        self._writer.writerow(cells)
+
+    def _lacking(self, error: UnicodeEncodeError, feature: str, column: str) -> OutOfRange:
+        character = error.object[error.start]
+        code = f"U+{ord(character):04X}"
+        shown = character if character.isprintable() else ""
+        name = {"cp932": "Shift_JIS (cp932)"}.get(self._style.encoding, "UTF-8")
+        return OutOfRange(
+            Text(
+                f"{name} has no character “{shown}” ({code}).",
+                f"{name}では文字「{shown}」（{code}）を表せません。",
+            ),
+            Text(f"feature {feature}, {column}", f"地物 {feature}、{column}")
+            if feature
+            else Text(f"header {column}", f"見出し {column}"),
+            Text(
+                "Replace the character, or export as UTF-8; nothing was written.",
+                "その文字を置き換えるか、UTF-8で書き出してください。何も書き込まれていません。",
+            ),
+        )
+
+
+@contextmanager
+def _opened(path: Path, style: TableStyle, never: Iterable[Path]) -> Iterator[_Table]:
+    encoding = "utf-8-sig" if style.encoding == "utf-8" else style.encoding
+    with (
+        write_safely(path, never=never) as temporary,
+        temporary.open("w", encoding=encoding, newline="") as file,
+    ):
+        yield _Table(file, style)

@@ -1,0 +1,46 @@
+"""Points as text: XYZ, PTS, TXT, CSV, with or without a header line."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from processing.formats.points.column_words import PASSED_OVER
+from processing.formats.points.delivered_floats import ColumnBlock, FloatFile
+from processing.formats.points.field_names import block_of
+from processing.formats.points.text_header import Heading, read_heading
+from processing.formats.points.text_numbers import TextPart, number_blocks
+
+
+def open_text_points(path: Path, columns: tuple[str, ...] = ()) -> FloatFile:
+    """A text file of points.
+
+    Parameters
+    ----------
+    path : Path
+        Lines of numbers, divided by blanks, tabs, commas or semicolons. A header line names the
+        columns; without one they are x y z, x y z intensity, x y z red green blue, or x y z
+        intensity red green blue (more are passed over). A first line with one whole number is
+        the number of points (PTS) and passed over.
+    columns : tuple of str
+        What the columns are, whatever the file says; ``-`` for one that is passed over.
+
+    Raises
+    ------
+    ColumnsNeeded
+        Its header is not understood for certain.
+    OutOfRange
+        The given columns don't fit.
+    MissingInput, NoSpace, BadFile
+        It can't be read, is not text, or doesn't begin with points.
+    """
+    heading = read_heading(path, columns)
+    taken = () if heading.is_named else heading.columns
+    return FloatFile(path, "text", lambda: _blocks(path, heading), taken)
+
+
+def _blocks(path: Path, heading: Heading) -> Iterator[ColumnBlock]:
+    wanted = {at: name for at, name in enumerate(heading.columns) if name != PASSED_OVER}
+    width = len(heading.columns) if heading.has_words else None
+    for numbers in number_blocks(TextPart(path, heading.start, width=width), tuple(wanted)):
+        yield block_of({name: numbers[:, i] for i, name in enumerate(wanted.values())})

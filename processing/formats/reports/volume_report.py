@@ -1,0 +1,269 @@
+"""The volume report (土量計算書) as PDF: numbers, their proof, the map of change, the sections."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+from processing.core.monitor import Monitor, SilentMonitor
+from processing.core.text import Language, Text
+from processing.formats.reports.pdf_page import (
+    A4_PORTRAIT,
+    THICK_MM,
+    Paper,
+    break_lines,
+    leading_mm,
+    width_of,
+    write_report_page,
+)
+from processing.formats.reports.pdf_table import Table, TableCell, TableRow
+from processing.formats.reports.plan_picture import (
+    PlanPicture,
+    change_plan,
+    draw_legend,
+    draw_plan,
+    plan_parts,
+)
+from processing.formats.reports.section_figures import draw_section
+from processing.formats.reports.volume_rows import (
+    MAP_TITLE,
+    QUANTITY_COLUMNS,
+    REMARKS,
+    SECTION_COLUMNS,
+    SURFACE_COLUMNS,
+    TITLE,
+    TOTAL,
+    VolumeFacts,
+    class_digits,
+    format_value,
+    method_rows,
+    quantities,
+    remarks,
+    section_rows,
+    section_sums,
+    surface_rows,
+    work_rows,
+)
+from processing.methods.earthwork.maps.heat_map import change_classes, change_limit
+from processing.methods.earthwork.volumes.volume_result import VolumeResult
+
+_MARGIN_MM, _GAP_MM = 14.0, 5.0
+_LABEL_MM = 30.0
+_HEAD_SIZE, _TYPE = 10.5, 8.5
+_LEGEND_ROWS = 5
+_LEGEND_MM = 27.0
+_FIGURE_MM, _HEADING_MM = 60.0, 6.0
+_PART = Text("{title}, part {number} of {count}", "{title} {number}/{count}")
+_WORK = Text("Work", "工事")
+_SURFACES = Text("Surfaces", "比較した地盤面")
+_METHOD = Text("Method", "計算方法")
+_QUANTITIES = Text("Quantities", "数量")
+_FILLED = Text("not measured, filled in", "未計測（補間）")
+_SECTIONS = Text("Sections along {name}", "断面（{name}）")
+_LINES = Text(
+    "Dashed: before. Solid: after. Blue: cut. Orange: fill. Offsets and heights in m.",
+    "破線: 変化前　実線: 変化後　青: 切土　橙: 盛土　単位: m",
+)
+
+
+def write_volume_report(
+    path: Path,
+    result: VolumeResult,
+    facts: VolumeFacts,
+    language: Language,
+    *,
+    monitor: Monitor | None = None,
+    never: Iterable[Path] = (),
+) -> None:
+    """Write the report.
+
+    Parameters
+    ----------
+    never : iterable of Path
+        Files that must not be overwritten: the inputs of the work.
+
+    Raises
+    ------
+    UserError
+        What :func:`processing.core.safe_write.written_safely` raises; `Cancelled`.
+    """
+    monitor = monitor or SilentMonitor()
+    monitor.check()
+    limit_m = change_limit(result.change.change_m)
+    plan = change_plan(result.change, change_classes(limit_m))
+    title = TITLE.in_language(language)
+    with write_report_page(path, A4_PORTRAIT, language, title, never=never) as paper:
+        _draw_numbers(paper, result, facts)
+        monitor.check()
+        _next_page(paper, facts)
+        _draw_map(paper, plan, limit_m, MAP_TITLE)
+        _draw_parts(paper, plan, limit_m, facts)
+        monitor.check()
+        _draw_section_table(paper, facts)
+        _draw_figures(paper, facts, monitor)
+        paper.foot(facts.work.software, _MARGIN_MM)
+        monitor.check()
+
+
+def _next_page(paper: Paper, facts: VolumeFacts) -> float:
+    """End a page; gives where the next one begins."""
+    paper.foot(facts.work.software, _MARGIN_MM)
+    paper.next_page()
+    return _MARGIN_MM
+
+
+def _width(paper: Paper) -> float:
+    return paper.width_mm - 2 * _MARGIN_MM
+
+
+def _bottom(paper: Paper) -> float:
+    return paper.height_mm - _MARGIN_MM - 4.0
+
+
+def _draw_heading(paper: Paper, y: float, words: Text) -> float:
+    paper.text(_MARGIN_MM, y + 2.5, words, _HEAD_SIZE, width=_width(paper))
+    return y + _HEADING_MM
+
+
+def _draw_numbers(paper: Paper, result: VolumeResult, facts: VolumeFacts) -> None:
+    paper.text(paper.width_mm / 2, _MARGIN_MM + 4.0, TITLE, 18.0, "centre")
+    y = _draw_heading(paper, _MARGIN_MM + 12.0, _WORK)
+    width = _width(paper)
+    half = width / 2
+    pairs = Table(_MARGIN_MM, (_LABEL_MM, half - _LABEL_MM) * 2, _TYPE)
+    y = pairs.draw(paper, y, _paired(work_rows(facts))) + _GAP_MM
+    y = _draw_heading(paper, y, _SURFACES)
+    surfaces = Table(_MARGIN_MM, (18.0, 42.0, 31.0, 52.0, width - 143.0), _TYPE)
+    rows: list[TableRow] = [[TableCell(words, "centre", is_head=True) for words in SURFACE_COLUMNS]]
+    for name, *values in surface_rows(facts):
+        cells = [TableCell(value) for value in values[:-1]]
+        rows.append([TableCell(name, is_head=True), *cells, TableCell(values[-1], "right")])
+    y = surfaces.draw(paper, y, rows) + _GAP_MM
+    y = _draw_heading(paper, y, _METHOD)
+    methods = Table(_MARGIN_MM, (_LABEL_MM, width - _LABEL_MM), _TYPE)
+    reported = [
+        (TableCell(name, is_head=True), TableCell(value))
+        for name, value in method_rows(result, facts)
+    ]
+    y = methods.draw(paper, y, reported) + _GAP_MM
+    y = _draw_quantities(paper, _draw_heading(paper, y, _QUANTITIES), result) + _GAP_MM
+    _draw_remarks(paper, y, remarks(result), facts)
+
+
+def _paired(facts: Sequence[tuple[Text, Text]]) -> list[TableRow]:
+    """The first fact over the whole width, the others two by two."""
+    (first, value), *others = facts
+    rows: list[TableRow] = [(TableCell(first, is_head=True), TableCell(value, columns=3))]
+    cells = [(TableCell(name, is_head=True), TableCell(reported)) for name, reported in others]
+    return rows + [(*cells[at], *cells[at + 1]) for at in range(0, len(cells), 2)]
+
+
+def _draw_quantities(paper: Paper, y: float, result: VolumeResult) -> float:
+    width = _width(paper)
+    table = Table(_MARGIN_MM, (62.0, 44.0, width - 122.0, 16.0), 10.0)
+    rows: list[TableRow] = [
+        [TableCell(words, "centre", is_head=True) for words in QUANTITY_COLUMNS]
+    ]
+    rows += [
+        (
+            TableCell(one.name, is_head=True),
+            TableCell(format_value(one, one.whole), "right"),
+            TableCell(format_value(one, one.measured), "right"),
+            TableCell(one.unit, "centre"),
+        )
+        for one in quantities(result)
+    ]
+    end = table.draw(paper, y, rows)
+    paper.box((_MARGIN_MM, y), (width, end - y), THICK_MM)
+    return end
+
+
+def _draw_remarks(paper: Paper, y: float, said: Sequence[Text], facts: VolumeFacts) -> None:
+    """Numbered sentences, on a page more where they don't fit."""
+    y = _draw_heading(paper, y, REMARKS)
+    step = leading_mm(_TYPE)
+    for number, one in enumerate(said, 1):
+        mark = f"{number}) "
+        indent = width_of(mark, _TYPE)
+        lines = break_lines(paper.in_language(one), _TYPE, _width(paper) - indent)
+        if y + len(lines) * step > _bottom(paper):
+            y = _next_page(paper, facts)
+        paper.lines(_MARGIN_MM, y, [mark], _TYPE)
+        y = paper.lines(_MARGIN_MM + indent, y, lines, _TYPE) + 0.8
+
+
+def _draw_parts(paper: Paper, plan: PlanPicture, limit_m: float, facts: VolumeFacts) -> None:
+    """A large site again, in parts that can be read."""
+    scale, parts = plan_parts(plan, _map_size(paper))
+    for number, part in enumerate(parts, 1):
+        _next_page(paper, facts)
+        title = _PART.filled(title=MAP_TITLE, number=number, count=len(parts))
+        _draw_map(paper, part, limit_m, title, scale)
+
+
+def _map_size(paper: Paper) -> tuple[float, float]:
+    return _width(paper), _bottom(paper) - _MARGIN_MM - _HEADING_MM - _LEGEND_MM
+
+
+def _draw_map(
+    paper: Paper, plan: PlanPicture, limit_m: float, title: Text, scale: int | None = None
+) -> None:
+    y = _draw_heading(paper, _MARGIN_MM, title)
+    size = _map_size(paper)
+    draw_plan(paper, (_MARGIN_MM, y), size, plan, scale)
+    classes = change_classes(limit_m)
+    unit = (class_digits(limit_m), "m")
+    top, half = y + size[1] + 3.0, _width(paper) / 2
+    width = half - _GAP_MM
+    draw_legend(paper, (_MARGIN_MM, top), classes[-_LEGEND_ROWS:], unit, width=width)
+    extra = ((_FILLED, None),)
+    right = (_MARGIN_MM + half, top)
+    draw_legend(paper, right, classes[:-_LEGEND_ROWS], unit, extra, width=width)
+
+
+def _draw_section_table(paper: Paper, facts: VolumeFacts) -> None:
+    rows = section_rows(facts)
+    if not rows or facts.line is None:
+        return
+    cells: list[TableRow] = [
+        (
+            TableCell(row.name),
+            *(
+                TableCell(_number(value), "right")
+                for value in (row.distance_m, row.cut_m2, row.cut_m3, row.fill_m2, row.fill_m3)
+            ),
+        )
+        for row in rows
+    ]
+    distance, cut, fill = (TableCell(_number(value), "right") for value in section_sums(rows))
+    cells.append(
+        (TableCell(TOTAL, is_head=True), distance, TableCell(""), cut, TableCell(""), fill)
+    )
+    width = _width(paper)
+    table = Table(_MARGIN_MM, (width - 5 * 29.0, *(29.0,) * 5), _TYPE)
+    head: TableRow = [TableCell(words, "centre", is_head=True) for words in SECTION_COLUMNS]
+    while cells:
+        y = _draw_heading(paper, _next_page(paper, facts), _SECTIONS.filled(name=facts.line.name))
+        y = table.draw(paper, y, [head])
+        fits = table.rows_that_fit(paper, cells, _bottom(paper) - y)
+        table.draw(paper, y, cells[:fits])
+        cells = cells[fits:]
+
+
+def _draw_figures(paper: Paper, facts: VolumeFacts, monitor: Monitor) -> None:
+    if facts.line is None:
+        return
+    y, width = math.inf, _width(paper)
+    for section in facts.line.sections:
+        monitor.check()
+        if y + _FIGURE_MM > _bottom(paper):
+            start = _next_page(paper, facts)
+            y = _draw_heading(paper, start, _SECTIONS.filled(name=facts.line.name))
+            paper.text(paper.width_mm - _MARGIN_MM, start + 2.5, _LINES, 7.5, "right")
+        draw_section(paper, (_MARGIN_MM, y), (width, _FIGURE_MM - 3.0), section)
+        y += _FIGURE_MM
+
+
+def _number(value: float) -> str:
+    return "" if math.isnan(value) else f"{value:,.2f}"

@@ -1,0 +1,1 @@
+"""Trajectories and lists of camera images."""

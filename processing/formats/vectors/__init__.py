@@ -1,0 +1,1 @@
+"""Features as files and texts of GIS programs."""

@@ -1,0 +1,198 @@
+"""One feature as a member of a GeoJSON collection, and back: exactly, where it is one of ours."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from processing.core.text import Text
+from processing.formats.vectors.geojson_shapes import GeoJsonGeometry, JsonObject, refusal, short
+from processing.map.catalogue import RESERVED_ATTRIBUTES, Geometry
+from processing.map.feature import (
+    AttributeValue,
+    Feature,
+    PointReference,
+    Provenance,
+    Status,
+    Vertex,
+    new_feature_id,
+)
+
+OURS = "zuka"
+"""The member of an object that holds what GeoJSON has no place for."""
+
+_OWN_PROPERTIES = ("kind", "status", "confidence", "tool")
+_ESCAPE = "attribute_"
+_LAST_POINT = (1 << 63) - 1
+
+
+def member_of(feature: Feature) -> JsonObject:
+    """A feature as GeoJSON with its attributes as properties."""
+    provenance = feature.provenance
+    properties: dict[str, AttributeValue] = {
+        "kind": feature.kind,
+        "confidence": provenance.confidence,
+        "status": feature.status.value,
+        "tool": provenance.tool,
+    }
+    for name, value in feature.attributes.items():
+        properties[_escaped(name)] = value
+    return {
+        "type": "Feature",
+        "id": feature.id,
+        "geometry": _geometry(feature),
+        "properties": properties,
+        OURS: {
+            "version": provenance.version,
+            "parameters": dict(provenance.parameters),
+            "run": provenance.run,
+            "measured": [
+                None if one.measured is None else [one.measured.drive, one.measured.point]
+                for one in feature.vertices
+            ],
+            "occluded": [at for at, one in enumerate(feature.vertices) if one.is_occluded],
+        },
+    }
+
+
+def features_of(
+    member: JsonObject, shapes: Sequence[GeoJsonGeometry], number: int
+) -> Iterator[Feature]:
+    """The features of a member, one for each of its shapes, with new ids.
+
+    Parameters
+    ----------
+    shapes : sequence of Shape
+        Of the member's geometry.
+    number : int
+        Of the member, from 1, for the message.
+
+    Yields
+    ------
+    Feature
+        Its kind is empty where another program wrote the member.
+
+    Raises
+    ------
+    BadFile
+        The member is one of ours, and damaged.
+    """
+    properties = member.get("properties")
+    if properties is None:
+        properties = {}
+    if not isinstance(properties, dict):
+        raise _damaged("properties", number)
+    if not all(name in properties for name in _OWN_PROPERTIES):
+        attributes = {name: _attribute(value) for name, value in properties.items()}
+        for shape in shapes:
+            vertices = tuple(map(Vertex, shape.positions))
+            yield Feature(new_feature_id(), "", shape.geometry, vertices, attributes)
+        return
+    own = member.get(OURS, {})
+    if not isinstance(own, dict):
+        raise _damaged(OURS, number)
+    kind, status = properties["kind"], properties["status"]
+    if not isinstance(kind, str) or not kind:
+        raise _damaged("kind", number)
+    if not isinstance(status, str) or status not in {one.value for one in Status}:
+        raise _damaged(f"status {status!r}", number)
+    for shape in shapes:
+        yield Feature(
+            new_feature_id(),
+            kind,
+            shape.geometry,
+            _vertices(shape, own, number),
+            {
+                _unescaped(name): _attribute(value)
+                for name, value in properties.items()
+                if name not in _OWN_PROPERTIES
+            },
+            Status(status),
+            _provenance(properties, own, number),
+        )
+
+
+def _geometry(feature: Feature) -> JsonObject:
+    positions = [vertex.xyz for vertex in feature.vertices]
+    match feature.geometry:
+        case Geometry.POINT:
+            return {"type": "Point", "coordinates": positions[0]}
+        case Geometry.LINE:
+            return {"type": "LineString", "coordinates": positions}
+        case Geometry.AREA:
+            return {"type": "Polygon", "coordinates": [[*positions, positions[0]]]}
+
+
+def _vertices(shape: GeoJsonGeometry, own: JsonObject, number: int) -> tuple[Vertex, ...]:
+    measured, occluded = own.get("measured", []), own.get("occluded", [])
+    if not isinstance(measured, list) or not isinstance(occluded, list):
+        raise _damaged("measured", number)
+    references = [_reference(one, number) for one in measured]
+    if len(references) != len(shape.positions):
+        # Another program added or removed vertices: nobody knows what they rest on.
+        return tuple(map(Vertex, shape.positions))
+    hidden = {one for one in occluded if isinstance(one, int)}
+    return tuple(
+        Vertex(position, reference, is_occluded=at in hidden)
+        for at, (position, reference) in enumerate(zip(shape.positions, references, strict=True))
+    )
+
+
+# What comes out of JSON has no types of its own.
+def _reference(value: Any, number: int) -> PointReference | None:
+    match value:
+        case None:
+            return None
+        case [str(drive), int(point)] if 0 <= point <= _LAST_POINT and point is not True:
+            return PointReference(drive, point)
+        case _:
+            raise _damaged("measured", number)
+
+
+def _provenance(properties: JsonObject, own: JsonObject, number: int) -> Provenance:
+    values = (
+        properties["tool"],
+        own.get("version", 0),
+        own.get("parameters", {}),
+        properties["confidence"],
+        own.get("run", ""),
+    )
+    match values:
+        case (str(tool), int(version), dict(parameters), int() | float() as confidence, str(run)):
+            if 0 <= confidence <= 1:
+                return Provenance(tool, version, parameters, float(confidence), run)
+    raise _damaged("tool", number)
+
+
+def _attribute(value: Any) -> AttributeValue:
+    """Lists and objects of other programs stay readable as JSON."""
+    if value is None or isinstance(value, (str, float, int)):
+        return value
+    return json.dumps(value, ensure_ascii=False)
+
+
+def _escaped(name: str) -> str:
+    """Our own properties and exports use the reserved names; escapes are escaped once more."""
+    return _ESCAPE + name if _is_reserved(name) else name
+
+
+def _unescaped(name: str) -> str:
+    is_escaped = name.startswith(_ESCAPE) and _is_reserved(name.removeprefix(_ESCAPE))
+    return name.removeprefix(_ESCAPE) if is_escaped else name
+
+
+def _is_reserved(name: str) -> bool:
+    while name.startswith(_ESCAPE):
+        name = name.removeprefix(_ESCAPE)
+    return name in RESERVED_ATTRIBUTES
+
+
+def _damaged(reason: str, number: int) -> Exception:
+    return refusal(
+        Text(
+            "The text of a feature is damaged: {reason}.",
+            "地物のテキストが壊れています（{reason}）。",
+        ).filled(reason=short(reason)),
+        number,
+    )

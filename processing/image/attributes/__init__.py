@@ -1,0 +1,1 @@
+"""What pixels show: attributes, colours, and the cache of coloured tiles."""

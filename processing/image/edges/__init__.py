@@ -1,0 +1,1 @@
+"""Edges of surfaces in the image, and the laser's line of sight."""

@@ -1,0 +1,1 @@
+"""Drives seen from above."""

@@ -1,0 +1,1 @@
+"""Points near each other in the image: normals, components, surroundings."""

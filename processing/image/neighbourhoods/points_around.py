@@ -1,0 +1,106 @@
+"""Points around a measured point, found by their pulses: in its row and in the rows beside it."""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.core.kernels import kernel
+from processing.recording.columns.counted_classes import class_columns
+
+if TYPE_CHECKING:  # processing.recording.drive makes images, so importing it here would be a circle
+    from processing.recording.drive import Drive
+
+_Floats = NDArray[np.float64]
+_Integers = NDArray[np.int64]
+
+_ROWS_ASIDE = 16
+
+
+def neighbours(drive: Drive, point: int, radius_m: float) -> _Integers:
+    """Points within a distance of a point, in rising order, taken from the rows around its own.
+
+    Rows are skipped where they are so close that others reach as far. Noise is no surface: of
+    points of that class only the one itself is among them.
+
+    Returns
+    -------
+    (k,) int64
+    """
+    pulses = drive.columns["pulse"]
+    period = _pulses_per_row(drive)
+    here, span = int(pulses[point]), max(2, int(period / 4))
+    stride, aside = rows_to_take(drive, point, radius_m)
+    middles = here + np.rint(period * stride * np.arange(-aside, aside + 1)).astype(np.int64)
+    edges = np.searchsorted(pulses, np.concatenate([middles - span, middles + span + 1]))
+    starts, stops = edges.reshape(2, -1)
+    starts[1:] = np.maximum(starts[1:], stops[:-1])
+    found = np.empty(int(np.maximum(0, stops - starts).sum()), np.int64)
+    integers, scale = np.asarray(drive.columns["xyz"]), np.array(drive.info.scale)
+    count = _near_kernel(
+        integers, scale, np.column_stack([starts, stops]), (point, radius_m), found
+    )
+    near = found[:count]
+    is_noise = class_columns(drive.columns).are_noise(near)
+    return np.asarray(near[~is_noise | (near == point)])
+
+
+def rows_to_take(drive: Drive, point: int, radius_m: float) -> tuple[int, int]:
+    """Stride between rows, and how many of them on each side reach as far as the radius."""
+    pulses = drive.columns["pulse"]
+    period = _pulses_per_row(drive)
+    here, position = int(pulses[point]), drive.xyz(np.array([point]))[0]
+    span = max(2, int(period / 8))
+    stride = 1
+    while stride < 256:
+        for side in (1, -1):
+            middle = here + round(side * stride * period)
+            start, stop = np.searchsorted(pulses, [middle - span, middle + span + 1])
+            if stop > start:
+                xyz = drive.xyz(slice(int(start), int(stop)))
+                gap = float(np.linalg.norm(xyz - position, axis=1).min())
+                if gap * _ROWS_ASIDE * 2 >= radius_m:
+                    return stride, min(2 * _ROWS_ASIDE, max(2, math.ceil(radius_m / gap)))
+        stride *= 2
+    return 1, _ROWS_ASIDE
+
+
+def _pulses_per_row(drive: Drive) -> float:
+    revolutions = drive.revolutions
+    return (
+        revolutions.pulses_per_revolution
+        if revolutions is not None
+        else float(drive.info.cells_per_row)
+    )
+
+
+@kernel
+def _near_kernel(
+    integers: NDArray[np.int32],
+    scale: _Floats,
+    stretches: _Integers,
+    near: tuple[int, float],
+    found: _Integers,
+) -> int:
+    """Points of some stretches within a distance of a point; gives their number."""
+    point, radius = near
+    count = 0
+    for k in range(stretches.shape[0]):
+        for i in range(stretches[k, 0], stretches[k, 1]):
+            square = 0.0
+            for j in range(3):
+                away = (float(integers[i, j]) - float(integers[point, j])) * scale[j]
+                square += away * away
+            if square <= radius * radius:
+                found[count] = i
+                count += 1
+    return count
+
+
+def warm_up() -> None:
+    """Compile the kernel."""
+    stretches, found = np.array([[0, 1]]), np.empty(1, np.int64)
+    _near_kernel(np.zeros((1, 3), np.int32), np.ones(3), stretches, (0, 1.0), found)

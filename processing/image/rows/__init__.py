@@ -1,0 +1,1 @@
+"""How pulses are folded into rows, and pixels into rasters."""

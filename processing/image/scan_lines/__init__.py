@@ -1,0 +1,1 @@
+"""Normalised scan lines: cross-sections at even steps, whatever the scanner."""

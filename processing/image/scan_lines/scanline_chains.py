@@ -1,0 +1,116 @@
+"""Crossings of the mesh put in order: from left to right along each section."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.core.kernels import kernel
+from processing.image.scan_lines.scanline_arrays import Crossings
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+ChainInput = tuple[
+    Integers, Floats, Floats, Floats, NDArray[np.float32], Integers, NDArray[np.bool_]
+]
+
+
+@kernel
+def _walk(
+    crossings: Crossings, start: int, is_done: NDArray[np.bool_], order: Integers, at: int
+) -> int:
+    """Follow a chain from an end, or round a loop; gives where the next one is written."""
+    here = start
+    while here >= 0:
+        is_done[here] = True
+        order[at] = here
+        at += 1
+        a, b = crossings[here].first, crossings[here].second
+        here = -1
+        if a >= 0 and not is_done[a]:
+            here = a
+        elif b >= 0 and not is_done[b]:
+            here = b
+    return at
+
+
+@kernel
+def _leftmost(crossings: Crossings, start: int) -> int:
+    """Where a loop is leftmost."""
+    leftmost, before, here = start, start, crossings[start].first
+    while here != start:
+        if crossings[here].across < crossings[leftmost].across:
+            leftmost = here
+        step = crossings[here].first
+        if step == before:
+            step = crossings[here].second
+        before, here = here, step
+    return int(leftmost)
+
+
+@kernel
+def chains_kernel(crossings: Crossings, last_level: int, order: Integers, chains: Integers) -> int:
+    """Chains of crossings up to a level, each from its left end; gives how many there are.
+
+    ``order`` (n,) gets the crossings chain by chain, ``chains`` (n, 2) where each begins in it and
+    its level; crossings that stand alone are left out.
+    """
+    count = crossings.shape[0]
+    is_done = np.zeros(count, np.bool_)
+    found, at = 0, 0
+    # Open chains first, from their ends; what is left then are loops, cut where they are leftmost.
+    for turn in range(2):
+        for vertex in range(count):
+            if is_done[vertex] or crossings[vertex].level > last_level:
+                continue
+            a, b = crossings[vertex].first >= 0, crossings[vertex].second >= 0
+            if a == b if turn == 0 else not (a and b):
+                continue
+            start = vertex if turn == 0 else _leftmost(crossings, vertex)
+            end = _walk(crossings, start, is_done, order, at)
+            if crossings[order[end - 1]].across < crossings[order[at]].across:
+                order[at:end] = order[at:end][::-1].copy()
+            chains[found, 0], chains[found, 1] = at, crossings[vertex].level
+            found += 1
+            at = end
+    chains[found, 0] = at
+    return found
+
+
+@kernel
+def kept_kernel(crossings: Crossings, count: int, last_level: int, moved: Integers) -> int:
+    """Move crossings above a level to the front; ``moved`` says where each went, −1: dropped."""
+    kept = 0
+    for vertex in range(count):
+        moved[vertex] = -1
+        if crossings[vertex].level > last_level:
+            moved[vertex] = kept
+            crossings[kept] = crossings[vertex]
+            kept += 1
+    for vertex in range(kept):
+        one = crossings[vertex]
+        if one.first >= 0:
+            one.first = moved[one.first]
+        if one.second >= 0:
+            one.second = moved[one.second]
+    return kept
+
+
+@kernel
+def gather_kernel(
+    crossings: Crossings, order: Integers, chains: Integers, given: ChainInput
+) -> None:
+    """Copy the crossings chain by chain; ``chains`` (k, 2) are their ends in the order.
+
+    ``given`` are level, across, height, time, intensity, point, and whether the line breaks before.
+    """
+    level, across, height, time, intensity, point, is_break = given
+    to = 0
+    for chain in range(chains.shape[0]):
+        for at in range(chains[chain, 0], chains[chain, 1]):
+            one = crossings[order[at]]
+            level[to] = one.level
+            across[to], height[to], time[to] = one.across, one.height, one.time
+            intensity[to], point[to] = one.intensity, one.point
+            is_break[to] = at == chains[chain, 0]
+            to += 1

@@ -1,0 +1,342 @@
+"""The mesh between neighbouring rows and where the sections cross it: the loops over pixels."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.core.kernels import kernel
+from processing.image.scan_lines.scanline_arrays import Crossings, MeshLimits, Pixels, PointArrays
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+MeshRule = tuple[float, float, int]
+CrossingLevels = tuple[int, int, int, int]
+
+
+@kernel
+def fill_row(
+    pixels: Pixels,
+    extent: Integers,
+    points: PointArrays,
+    ends: Integers,
+    row_station: float,
+    band: MeshLimits,
+) -> None:
+    """Put the points of a row into its pixels (w,), the last return of each pulse.
+
+    ``extent`` (2,) is the first filled column and the one behind the last; ``points`` are pulse,
+    place, (station, across, height above the way), time, intensity and whether it is noise;
+    ``ends`` the first and end point, the number in the drive of point 0, and the pulse of column
+    0; ``row_station`` is the vehicle's.
+    """
+    pulse, position, found, time, intensity, is_noise = points
+    for column in range(extent[0], extent[1]):
+        pixel = pixels[column]
+        pixel.point, pixel.crossing, pixel.is_short = -1, -1, False
+    low, high = pixels.shape[0], 0
+    for i in range(ends[0], ends[1]):
+        station, across, above = found[i, 0], found[i, 1], found[i, 2]
+        # Comparisons with NaN are false.
+        if not (abs(station - row_station) <= band.reach_m and abs(across) <= band.half_width_m):
+            continue
+        if not (band.lowest_m <= above <= band.highest_m) or is_noise[i]:
+            continue
+        column = pulse[i] - ends[3]
+        if not 0 <= column < pixels.shape[0]:
+            continue
+        pixel = pixels[column]
+        pixel.point = i + ends[2]
+        pixel.east, pixel.north, pixel.up = position[i, 0], position[i, 1], position[i, 2]
+        pixel.station, pixel.across = station, across
+        pixel.time, pixel.intensity = time[i], intensity[i]
+        level = np.floor(station / band.spacing_m)
+        pixel.level = int(min(max(level, band.first - 1), band.last))
+        low, high = min(low, column), max(high, column + 1)
+    extent[0], extent[1] = low, high
+
+
+@kernel
+def _square_between(pixels: Pixels, a: int, i: int, b: int, j: int) -> float:
+    one, other = pixels[a, i], pixels[b, j]
+    east, north, up = one.east - other.east, one.north - other.north, one.up - other.up
+    return float(east * east + north * north + up * up)
+
+
+@kernel
+def _join_row(pixels: Pixels, extents: Integers, which: int, longest: float) -> None:
+    """Tell which edges along a row are short."""
+    for c in range(extents[which, 0], extents[which, 1] - 1):
+        if pixels[which, c].point >= 0 and pixels[which, c + 1].point >= 0:
+            square = _square_between(pixels, which, c, which, c + 1)
+            pixels[which, c].is_short = square <= longest
+
+
+@kernel
+def strip_bound(pixels: Pixels, extents: Integers, old: int) -> int:
+    """At most so many crossings come from the strip between the old row and the new one."""
+    new = 1 - old
+    low, high = min(extents[0, 0], extents[1, 0]), max(extents[0, 1], extents[1, 1])
+    bound = 0
+    for column in range(low, high):
+        here, there = pixels[old, column].point >= 0, pixels[new, column].point >= 0
+        of_old, of_new = pixels[old, column].level, pixels[new, column].level
+        if here and there:
+            bound += abs(of_old - of_new)
+        if column + 1 == high:
+            continue
+        here_next = pixels[old, column + 1].point >= 0
+        there_next = pixels[new, column + 1].point >= 0
+        old_next, new_next = pixels[old, column + 1].level, pixels[new, column + 1].level
+        if here and here_next and pixels[old, column].crossing < 0:
+            bound += abs(of_old - old_next)
+        if there and there_next:
+            bound += abs(of_new - new_next)
+        most = 0
+        if here and there_next:
+            most = abs(of_old - new_next)
+        if there and here_next:
+            most = max(most, abs(of_new - old_next))
+        bound += most
+    return bound
+
+
+@kernel
+def _crossed(
+    pixels: Pixels,
+    edge: tuple[int, int, int, int],
+    spacing: float,
+    crossings: Crossings,
+    count: int,
+) -> int:
+    """Add the crossings of an edge; gives how many there are then."""
+    a, i, b, j = edge
+    one, other = pixels[a, i], pixels[b, j]
+    from_level, to_level = one.level, other.level
+    if from_level == to_level:
+        return count
+    start, length = one.station, other.station - one.station
+    rise = other.up - one.up
+    for level in range(min(from_level, to_level) + 1, max(from_level, to_level) + 1):
+        share = min(max((level * spacing - start) / length, 0.0), 1.0)
+        given = crossings[count]
+        given.level = level
+        given.across = one.across + share * (other.across - one.across)
+        given.height = one.up + share * rise
+        given.time = one.time + share * (other.time - one.time)
+        given.intensity = one.intensity + share * (other.intensity - one.intensity)
+        given.point = one.point if share < 0.5 else other.point
+        given.first, given.second = -1, -1
+        count += 1
+    return count
+
+
+@kernel
+def _link(crossings: Crossings, a: int, b: int) -> None:
+    if crossings[a].first < 0:
+        crossings[a].first = b
+    else:
+        crossings[a].second = b
+    if crossings[b].first < 0:
+        crossings[b].first = a
+    else:
+        crossings[b].second = a
+
+
+@kernel
+def _vertex(one: int, other: int, base: int, level: int) -> int:
+    """The crossing of a section on an edge by the levels of its ends; −1 where there is none."""
+    low = min(one, other)
+    return base + level - low - 1 if low < level <= max(one, other) else -1
+
+
+@kernel
+def _link_cell(
+    levels: CrossingLevels, bases: CrossingLevels, cut: int, crossings: Crossings
+) -> None:
+    """Join the crossings of a cell with two triangles, across its diagonal.
+
+    ``levels`` are those of the pixels old left, old right, new left, new right; ``bases`` the
+    first crossings on the old, new, left and right edges; ``cut`` is 1 where it is cut rising,
+    −1 falling.
+    """
+    oc, od, nc, nd = levels
+    for level in range(min(min(oc, od), min(nc, nd)) + 1, max(max(oc, od), max(nc, nd)) + 1):
+        a = _vertex(oc, od, bases[0], level)
+        b = _vertex(nc, nd, bases[1], level)
+        c = _vertex(oc, nc, bases[2], level)
+        d = _vertex(od, nd, bases[3], level)
+        # In the lower triangle with the old edge lies one side, in the upper one the other.
+        lower, upper = (d, c) if cut > 0 else (c, d)
+        if a >= 0 and lower >= 0:
+            _link(crossings, a, lower)
+            a, lower = -1, -1
+        if b >= 0 and upper >= 0:
+            _link(crossings, b, upper)
+            b, upper = -1, -1
+        if max(a, lower) >= 0 and max(b, upper) >= 0:
+            _link(crossings, max(a, lower), max(b, upper))
+
+
+@kernel
+def _link_triangle(
+    levels: tuple[int, int, int], bases: tuple[int, int, int], crossings: Crossings
+) -> None:
+    """Join the crossings on a triangle's edges 0–1, 1–2 and 2–0, section by section."""
+    a, b, c = levels
+    for level in range(min(a, b, c) + 1, max(a, b, c) + 1):
+        first = _vertex(a, b, bases[0], level)
+        second = _vertex(b, c, bases[1], level)
+        third = _vertex(c, a, bases[2], level)
+        if first < 0:
+            first = third
+        elif second < 0:
+            second = third
+        _link(crossings, first, second)
+
+
+@kernel
+def _spans(pixels: Pixels, a: int, c: int, third: int, most: int) -> bool:
+    """Whether a triangle on the edge (a, c)–(a, c + 1) crosses few sections.
+
+    Where stations jump, sections cross about the centre of a bend.
+    """
+    one, two, three = pixels[a, c].level, pixels[a, c + 1].level, pixels[1 - a, third].level
+    return bool(max(one, two, three) - min(one, two, three) <= most)
+
+
+@kernel
+def _triangles(
+    pixels: Pixels, old: int, c: int, sides: tuple[bool, bool], rule: MeshRule
+) -> tuple[bool, bool, bool]:
+    """How a cell is cut, and whether the triangles with its old and its new edge are there.
+
+    ``sides`` say whether its left and right edges are short. It is cut along the shorter diagonal,
+    rising from its old left pixel to its new right one, or falling.
+    """
+    new, d = 1 - old, c + 1
+    rising, falling = np.inf, np.inf
+    if pixels[old, c].point >= 0 and pixels[new, d].point >= 0:
+        rising = _square_between(pixels, old, c, new, d)
+    if pixels[old, d].point >= 0 and pixels[new, c].point >= 0:
+        falling = _square_between(pixels, old, d, new, c)
+    if min(rising, falling) > rule[1]:
+        return False, False, False
+    is_rising = rising <= falling
+    lower, upper = (sides[1], sides[0]) if is_rising else sides
+    lower = lower and pixels[old, c].is_short
+    upper = upper and pixels[new, c].is_short
+    lower = lower and _spans(pixels, old, c, d if is_rising else c, rule[2])
+    upper = upper and _spans(pixels, new, c, c if is_rising else d, rule[2])
+    return is_rising, lower, upper
+
+
+@kernel
+def _mesh_cell(
+    pixels: Pixels,
+    cell: tuple[int, int, bool, bool, bool],
+    left: int,
+    spacing: float,
+    crossings: Crossings,
+    count: int,
+) -> tuple[int, int]:
+    """Cross one cell; gives how many crossings there are then, and the first on its right edge.
+
+    ``cell`` is the old row, its left column, whether it is cut rising, and which triangles it has;
+    ``left`` the first crossing on its left edge, or −1.
+    """
+    old, c, is_rising, has_lower, has_upper = cell
+    new, d, right, cut = 1 - old, c + 1, -1, -1
+    if left < 0 and (has_upper if is_rising else has_lower):
+        left, count = count, _crossed(pixels, (old, c, new, c), spacing, crossings, count)
+    if has_lower if is_rising else has_upper:
+        right, count = count, _crossed(pixels, (old, d, new, d), spacing, crossings, count)
+    if has_lower and pixels[old, c].crossing < 0:
+        pixels[old, c].crossing = count
+        count = _crossed(pixels, (old, c, old, d), spacing, crossings, count)
+    if has_upper:
+        pixels[new, c].crossing = count
+        count = _crossed(pixels, (new, c, new, d), spacing, crossings, count)
+    bases = (pixels[old, c].crossing, pixels[new, c].crossing, left, right)
+    oc, od = pixels[old, c].level, pixels[old, d].level
+    nc, nd = pixels[new, c].level, pixels[new, d].level
+    if has_lower and has_upper:
+        _link_cell((oc, od, nc, nd), bases, 1 if is_rising else -1, crossings)
+        return count, right
+    diagonal = (old, c, new, d) if is_rising else (old, d, new, c)
+    cut, count = count, _crossed(pixels, diagonal, spacing, crossings, count)
+    if has_lower and is_rising:
+        _link_triangle((oc, od, nd), (bases[0], right, cut), crossings)
+    elif has_lower:
+        _link_triangle((oc, od, nc), (bases[0], cut, left), crossings)
+    elif is_rising:
+        _link_triangle((nc, nd, oc), (bases[1], cut, left), crossings)
+    else:
+        _link_triangle((nc, nd, od), (bases[1], right, cut), crossings)
+    return count, right
+
+
+@kernel
+def mesh_strip(
+    pixels: Pixels, extents: Integers, old: int, rule: MeshRule, crossings: Crossings, count: int
+) -> int:
+    """Cross the triangles between two rows; gives how many crossings there are then.
+
+    ``rule`` is the spacing, the square of the longest edge, and the most sections an edge may
+    cross. A section has vertices on the edges along and between rows, on diagonals only where the
+    mesh ends.
+    """
+    new = 1 - old
+    low, high = min(extents[0, 0], extents[1, 0]), max(extents[0, 1], extents[1, 1])
+    side, is_side = -1, False
+    for c in range(low - 1, high - 1):
+        d, left, side, is_left = c + 1, side, -1, is_side
+        is_side = pixels[old, d].point >= 0 and pixels[new, d].point >= 0
+        is_side = is_side and _square_between(pixels, old, d, new, d) <= rule[1]
+        if c < low or not (is_left or is_side):
+            continue
+        is_rising, has_lower, has_upper = _triangles(pixels, old, c, (is_left, is_side), rule)
+        if has_lower or has_upper:
+            cell = (old, c, is_rising, has_lower, has_upper)
+            count, side = _mesh_cell(pixels, cell, left, rule[0], crossings, count)
+    return count
+
+
+@kernel
+def mesh_rows(
+    image: tuple[Pixels, Integers],
+    state: Integers,
+    points: PointArrays,
+    rows: tuple[Integers, Floats],
+    band: MeshLimits,
+    crossings: Crossings,
+) -> None:
+    """Mesh rows from ``state[0]`` on, as long as there is room for crossings.
+
+    ``image`` are the pixels of two rows, (2, w), and the first filled column and the one behind the
+    last of each, (2, 2). ``state`` is the next row, which of the pixels' rows holds the last one,
+    the number of crossings, and whether the next row is filled already. ``rows`` are the ends of
+    each as in `fill_row` and whether the mesh breaks before it, (k, 5), and the station of each,
+    after that of the row before the first.
+    """
+    pixels, extents = image
+    ends, stations = rows
+    for row in range(state[0], ends.shape[0]):
+        old = state[1]
+        new = 1 - old
+        state[0] = row
+        if state[3] == 0:
+            fill_row(pixels[new], extents[new], points, ends[row], stations[row + 1], band)
+            _join_row(pixels, extents, new, band.longest_m * band.longest_m)
+            state[3] = 1
+        if ends[row, 4] == 0:
+            longest = max(band.longest_m, 1.5 * (stations[row + 1] - stations[row]))
+            most = int(4.0 * longest / band.spacing_m) + 1
+            room = crossings.shape[0] - state[2]
+            if room < 4 * most * pixels.shape[1] and room < strip_bound(pixels, extents, old):
+                return
+            rule = (band.spacing_m, longest * longest, most)
+            state[2] = mesh_strip(pixels, extents, old, rule, crossings, state[2])
+        state[1] = new
+        state[3] = 0
+    state[0] = ends.shape[0]

@@ -1,0 +1,1 @@
+"""The pyramid of tiles and their bounds."""

@@ -1,0 +1,1 @@
+"""Following an edge or a marking from one click to the next."""

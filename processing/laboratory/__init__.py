@@ -1,0 +1,1 @@
+"""What develops and judges methods, away from what a surveyor's work runs through."""

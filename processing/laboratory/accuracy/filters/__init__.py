@@ -1,0 +1,1 @@
+"""Noise and ground filters beside their peers."""

@@ -1,0 +1,1 @@
+"""Curbs and gutters on streets whose truth is known."""

@@ -1,0 +1,197 @@
+"""Streets on which curbs and gutters are scored: simulated ones and given deliveries, as drives."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import laspy
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.core.monitor import SilentMonitor
+from processing.laboratory.simulate.requests import StreetRequest
+from processing.laboratory.simulate.streets import simulate_street
+from processing.project.importing.importing import ImportRequest, import_drives
+from processing.recording.drive import Drive
+from processing.scoring.mapped_features import Floats, MappedFeature, MappedFile
+from processing.tools.registry import TOOLS
+from processing.tools.runner import RunRequest, drives_of, run
+from processing.tools.tool import Candidate, CandidateResult
+
+LENGTH_M = 120.0
+BOTH = "both"
+_CRS = "EPSG:6677"
+_STYLES = ("urban", "rural", "urban", "rural", "urban", "highway")
+_SENSORS = ("vq250", "vq450", "zf9012", "vmx2ha", "lynx")
+_TWICE_OF, _STOPS_OF = 4, 3  # every fourth street is driven twice, every third waits somewhere
+
+
+@dataclass(frozen=True)
+class RoadScene:
+    """A street that was recorded, and what is true of it.
+
+    Attributes
+    ----------
+    name : str
+    delivery : Path
+        Its LAZ files, with ``truth/`` beside them.
+    drives : tuple of Drive
+    """
+
+    name: str
+    delivery: Path
+    drives: tuple[Drive, ...]
+
+    @property
+    def points(self) -> int:
+        """How many were measured."""
+        return sum(drive.count for drive in self.drives)
+
+    def heads(self) -> dict[str, tuple[Drive, ...]]:
+        """Drives by the head that recorded them, over all passes; all of them under `BOTH`."""
+        found: dict[str, tuple[Drive, ...]] = {}
+        for drive in self.drives:
+            head = Path(drive.info.sources[0].path).stem.partition("_")[0]
+            found[head] = (*found.get(head, ()), drive)
+        return {**found, BOTH: self.drives}
+
+    def truth(self, tool: str) -> Path:
+        """The map that is true."""
+        return self.delivery / "truth" / f"{tool}.geojson"
+
+
+@dataclass(frozen=True)
+class StreetCloud:
+    """All points of a delivery with what they are.
+
+    Attributes
+    ----------
+    xyz : (n, 3) float64
+        m.
+    intensity : (n,) uint16
+    label : (n,) uint8
+        Codes of the contract.
+    instance : (n,) int32
+    """
+
+    xyz: Floats
+    intensity: NDArray[np.uint16]
+    label: NDArray[np.uint8]
+    instance: NDArray[np.int32]
+
+
+@dataclass(frozen=True)
+class RoadRun:
+    """What a tool found on a street.
+
+    Attributes
+    ----------
+    result : MappedFile
+        Its candidates, without what is for drawings only.
+    notes : tuple of str
+        Why few or nothing was found.
+    """
+
+    result: MappedFile
+    notes: tuple[str, ...]
+
+
+def options_of(number: int, seed: int, length_m: float = LENGTH_M) -> StreetRequest:
+    """The street of a seed: styles, sensors, waits and second passes take turns."""
+    return StreetRequest(
+        seed=seed,
+        length_m=length_m,
+        style=_STYLES[number % len(_STYLES)],
+        sensor=_SENSORS[number % len(_SENSORS)],
+        passes=2 if number % _TWICE_OF == _TWICE_OF - 1 else 1,
+        stops=number % _STOPS_OF == _STOPS_OF - 1,
+        images=False,
+    )
+
+
+def simulated_scenes(seeds: Sequence[int], length_m: float = LENGTH_M) -> Iterator[RoadScene]:
+    """Streets of seeds, one after the other; each is gone when the next one is asked for."""
+    for number, seed in enumerate(seeds):
+        options = options_of(number, seed, length_m)
+        name = f"{options.style} {options.sensor} {seed}" + (" twice" if options.passes > 1 else "")
+        with TemporaryDirectory(prefix="zuka-") as position:
+            folder = Path(position) / "street"
+            simulate_street(options, folder, SilentMonitor())
+            with opened_scene(name, folder) as scene:
+                yield scene
+
+
+def given_scenes(folders: Sequence[Path]) -> Iterator[RoadScene]:
+    """Deliveries: a folder with LAZ files, their trajectories as CSV, and ``truth/``."""
+    for folder in folders:
+        with opened_scene(folder.name, folder) as scene:
+            yield scene
+
+
+@contextmanager
+def opened_scene(name: str, delivery: Path) -> Iterator[RoadScene]:
+    """A delivery, imported for the moment.
+
+    Raises
+    ------
+    UserError
+        As an import does.
+    """
+    request = ImportRequest(
+        tuple(sorted(delivery.glob("*.laz"))),
+        tuple(sorted(delivery.glob("trajectory*.csv"))),
+        crs=_CRS,
+    )
+    with TemporaryDirectory(prefix="zuka-") as position:
+        folders = import_drives(request, Path(position) / "drives", SilentMonitor())
+        yield RoadScene(name, delivery, tuple(Drive(folder) for folder in folders))
+
+
+def cloud_of(delivery: Path) -> StreetCloud:
+    """All points of a delivery, file by file."""
+    paths = sorted(delivery.glob("*.laz"))
+    parts = [laspy.read(path) for path in paths]
+    truth = delivery / "truth"
+    return StreetCloud(
+        np.concatenate([np.asarray(one.xyz) for one in parts]),
+        np.concatenate([np.asarray(one.intensity) for one in parts]),
+        np.concatenate([np.load(truth / f"{path.stem}.labels.npy") for path in paths]),
+        np.concatenate([np.load(truth / f"{path.stem}.instances.npy") for path in paths]),
+    )
+
+
+def found_by(tool: str, drives: Sequence[Drive]) -> RoadRun:
+    """What a tool finds with its own parameters on drives of one street.
+
+    Raises
+    ------
+    UserError
+        As the runner does.
+    """
+    features: list[MappedFeature] = []
+    notes: list[str] = []
+    left = list(drives)
+    with TemporaryDirectory(prefix="zuka-") as position:
+        while left:
+            request = RunRequest(tool, left[0], TOOLS[tool].parameters(), tuple(left[1:]))
+            together = {drive.id for drive in drives_of(request)}
+            result = run(request, SilentMonitor(), into=Path(position) / left[0].id)
+            left = [drive for drive in left if drive.id not in together]
+            if isinstance(result, CandidateResult):
+                for one in result.candidates:
+                    if not one.is_drawing:
+                        features.append(map_candidate(one, len(features) + 1))
+                notes += [result.note.en] if result.note.en else []
+    return RoadRun(MappedFile(Path(f"{tool}.geojson"), _CRS, tuple(features)), (*notes,))
+
+
+def map_candidate(candidate: Candidate, number: int) -> MappedFeature:
+    """A candidate as a result file has it."""
+    facts = {"kind": candidate.kind, "confidence": candidate.confidence, "status": "candidate"}
+    return MappedFeature(
+        number, candidate.geometry, candidate.xyz, {**candidate.attributes, **facts}
+    )

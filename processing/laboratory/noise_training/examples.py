@@ -1,0 +1,216 @@
+"""Examples for the trees: features of points that are known to be noise or to be true."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.random import Generator
+from numpy.typing import NDArray
+
+from processing.core.monitor import SilentMonitor
+from processing.image.images_of_drives import image_of
+from processing.laboratory.noise_training.scenes import TrainingScene
+from processing.laboratory.noise_training.streets import FAR, GRASS, POST, RAIL, TREE, WIRE
+from processing.methods.noise.beams.beam_origins import beam_origins
+from processing.methods.noise.beams.beams_of_drives import beams_of
+from processing.methods.noise.features.features import (
+    BeamSearch,
+    Candidates,
+    candidates_in_space,
+    search_with_beams,
+)
+from processing.methods.noise.features.second_pass import OPEN_ODDS
+from processing.methods.noise.trees import Trees, log_odds
+from processing.recording.drive import Drive
+
+FeatureVectors = NDArray[np.float32]
+_Bools = NDArray[np.bool_]
+
+_POINTS_PER_SCENE = 8_000
+_MOST_POINTS = 200_000
+_CHUNKS = 4
+_FEWEST_ROWS = 50
+_KEPT_SHARES = (0.3, 0.1)
+_KEPT_PIECES = 4
+_FEWEST_POINTS = 100
+_THIN = (WIRE, POST, RAIL, GRASS, TREE, FAR)
+_EASILY_LOST = (WIRE, TREE)
+_LOST_WEIGHT, _THIN_WEIGHT, _TRUE_WEIGHT = 4.0, 2.2, 0.9
+_UNKNOWN_LIGHT_SHARE, _SHIFTED_LIGHT_SHARE = 0.4, 0.4
+
+
+@dataclass(frozen=True)
+class Examples:
+    """Rows of features with what they are.
+
+    Attributes
+    ----------
+    rows : (k, f) float32
+    is_noise : (k,) bool
+    weights : (k,) float64
+        How much each counts: doubt is in favour of thin things.
+    """
+
+    rows: FeatureVectors
+    is_noise: _Bools
+    weights: NDArray[np.float64]
+
+    def chosen(self, rows: _Bools) -> Examples:
+        """Some of them."""
+        return Examples(self.rows[rows], self.is_noise[rows], self.weights[rows])
+
+    @classmethod
+    def joined(cls, parts: Iterable[Examples]) -> Examples:
+        """All in one."""
+        all_of = list(parts)
+        return cls(
+            np.vstack([one.rows for one in all_of]),
+            np.concatenate([one.is_noise for one in all_of]),
+            np.concatenate([one.weights for one in all_of]),
+        )
+
+
+@dataclass(frozen=True)
+class LabelledCloud:
+    """A cloud whose truth is known.
+
+    Attributes
+    ----------
+    noise, kinds : (n,) int64
+        Of every point: kind of noise, 0 none; what was met, −1 for noise.
+    search : BeamSearch or None
+        Where its beams are known.
+    intensity : (n,) uint16
+    candidates : Candidates or None
+        In space.
+    seed : int
+        Chance is drawn from it, so that every pass sees the same.
+    """
+
+    noise: NDArray[np.int64]
+    kinds: NDArray[np.int64]
+    seed: int
+    search: BeamSearch | None = None
+    intensity: NDArray[np.uint16] | None = None
+    candidates: Candidates | None = None
+
+    def alone(self) -> tuple[Examples, Examples]:
+        """Examples of points by themselves: what the first look sees of each, and everything.
+
+        The first has no columns in space.
+        """
+        if self.candidates is not None:
+            rows, points = self.candidates.features, self.candidates.points
+            cheap = np.zeros((points.size, 0), np.float32)
+        else:
+            search = self._search()
+            points, cheap = search.points, search.cheap_features(SilentMonitor())
+            rows = self._with_beams(cheap, np.ones(points.size, np.bool_)).features
+        return self._some(cheap, points), self._some(rows, points)
+
+    def again(self, first: Trees | None, own: Trees) -> Examples:
+        """Examples of points with what ``own`` said of them and of others."""
+        candidates, monitor = self._candidates(first), SilentMonitor()
+        odds = log_odds(own, candidates.features, monitor)
+        is_open = np.flatnonzero(odds > OPEN_ODDS)
+        rows = candidates.seen_again(odds, is_open, monitor)
+        return self._some(rows, candidates.points[is_open])
+
+    def _candidates(self, first: Trees | None) -> Candidates:
+        if self.candidates is not None:
+            return self.candidates
+        if first is None:
+            raise ValueError("beams need the trees of the first look")
+        cheap = self._search().cheap_features(SilentMonitor())
+        return self._with_beams(cheap, log_odds(first, cheap, SilentMonitor()) > 0)
+
+    def _with_beams(self, cheap: FeatureVectors, is_doubtful: _Bools) -> Candidates:
+        if self.intensity is None:
+            raise ValueError("beams come with intensities")
+        search, monitor = self._search(), SilentMonitor()
+        candidates = search.candidates(cheap, is_doubtful, self.intensity, monitor)
+        self._change_light(candidates)
+        return candidates
+
+    def _search(self) -> BeamSearch:
+        if self.search is None:
+            raise ValueError("only places are known of this cloud")
+        return self.search
+
+    def _change_light(self, candidates: Candidates) -> None:
+        """Make intensity unknown or other than simulated, so that the trees don't lean on it."""
+        random, light = np.random.default_rng(self.seed), candidates.features[:, -1]
+        way, kinds = random.random(), self.kinds[candidates.points]
+        shifted_share = _SHIFTED_LIGHT_SHARE if self.noise.any() else 0.0
+        if way < _UNKNOWN_LIGHT_SHARE:
+            light[:] = random.normal(0, 0.3, light.size)
+        elif way < _UNKNOWN_LIGHT_SHARE + shifted_share:
+            light += np.where(kinds < 0, 0.0, random.normal(-0.7, 1.3, 12)[kinds])
+
+    def _some(self, rows: FeatureVectors, points: NDArray[np.int64]) -> Examples:
+        """Some of the rows, thin things twice as often as others."""
+        random = np.random.default_rng(self.seed + 1)
+        is_thin = np.isin(self.kinds[points], _THIN)
+        often = np.where(is_thin, 2.0, 1.0) * _POINTS_PER_SCENE / max(1, points.size)
+        chosen = random.random(points.size) < often
+        is_noise = self.noise[points] > 0
+        weights = np.where(is_noise, 1.0, _TRUE_WEIGHT)
+        weights[is_thin] = _THIN_WEIGHT
+        weights[np.isin(self.kinds[points], _EASILY_LOST)] = _LOST_WEIGHT
+        return Examples(rows[chosen], is_noise[chosen], weights[chosen])
+
+
+def case_with_beams(scene: TrainingScene, turn: float, seed: int) -> LabelledCloud:
+    """A scene whose beams are known."""
+    search = search_with_beams(scene.beams(turn), SilentMonitor())
+    return LabelledCloud(scene.noise, scene.kinds, seed, search, scene.intensity)
+
+
+def case_in_space(scene: TrainingScene, seed: int) -> LabelledCloud:
+    """A scene of which only places are known."""
+    xyz = scene.xyz - scene.xyz.mean(axis=0)
+    candidates = candidates_in_space(xyz, SilentMonitor())
+    return LabelledCloud(scene.noise, scene.kinds, seed, candidates=candidates)
+
+
+def sample_with_beams(drive: Drive, seed: int) -> Iterator[LabelledCloud]:
+    """A recording all of whose points are taken for true; none without beams."""
+    origins = beam_origins(drive)
+    if origins is None:
+        return
+    image = image_of(drive, drive.pixel_kind)
+    parts = max(1, min(_CHUNKS, image.rows // _FEWEST_ROWS))
+    cuts = np.linspace(0, image.rows, parts + 1).astype(np.int64)
+    for number in range(parts):
+        most = np.searchsorted(image.row_starts, image.row_starts[cuts[number]] + _MOST_POINTS)
+        rows = range(int(cuts[number]), int(min(cuts[number + 1], most)))
+        beams, points = beams_of(drive, image, rows, origins)
+        intensity = np.asarray(drive.columns["intensity"][points])
+        noise = np.zeros(beams.ranges.size, np.int64)
+        search = search_with_beams(beams, SilentMonitor())
+        yield LabelledCloud(noise, noise + TREE, seed + number, search, intensity)
+
+
+def sample_in_space(drive: Drive, seed: int) -> Iterator[LabelledCloud]:
+    """A recording all of whose points are taken for true, as it is, thinned, and in pieces."""
+    xyz = drive.xyz(slice(0, min(drive.count, 4 * _MOST_POINTS)))
+    random = np.random.default_rng(seed)
+    for number, cloud in enumerate(_as_delivered_elsewhere(xyz - xyz.mean(axis=0), random)):
+        noise = np.zeros(cloud.shape[0], np.int64)
+        candidates = candidates_in_space(np.ascontiguousarray(cloud), SilentMonitor())
+        yield LabelledCloud(noise, noise + TREE, seed + number, candidates=candidates)
+
+
+def _as_delivered_elsewhere(
+    xyz: NDArray[np.float64], random: Generator
+) -> list[NDArray[np.float64]]:
+    """A cloud as it is, thinned twice, and some small pieces of it."""
+    clouds = [xyz]
+    clouds += [xyz[random.random(xyz.shape[0]) < share] for share in _KEPT_SHARES]
+    for _ in range(_KEPT_PIECES):
+        away = np.abs(xyz[:, :2] - xyz[random.integers(xyz.shape[0]), :2]).max(axis=1)
+        count = min(xyz.shape[0], int(10 ** random.uniform(2, 4)))
+        clouds.append(xyz[np.argpartition(away, count - 1)[:count]])
+    return [one for one in clouds if one.shape[0] >= _FEWEST_POINTS]

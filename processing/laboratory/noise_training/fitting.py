@@ -1,0 +1,77 @@
+"""Trees from examples, by scikit-learn's gradient boosting."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.core.monitor import SilentMonitor
+from processing.laboratory.noise_training.examples import Examples, FeatureVectors
+from processing.methods.noise.trees import Trees, log_odds
+
+_BINS = 64
+_LEAST_IN_A_LEAF = 60
+_RIDGE = 5.0
+
+
+@dataclass(frozen=True)
+class TreesSize:
+    """How many trees of how many leaves, and how much each may say."""
+
+    trees: int
+    leaves: int
+    rate: float
+
+
+def fit_trees(examples: Examples, shape: TreesSize) -> Trees:
+    """Trees that give the log-odds of being noise.
+
+    References
+    ----------
+    Friedman, "Greedy function approximation: a gradient boosting machine", 2001, section 4.4;
+    in the form of scikit-learn's ``HistGradientBoostingClassifier``.
+    """
+    from sklearn.ensemble import HistGradientBoostingClassifier
+
+    model = HistGradientBoostingClassifier(
+        max_iter=shape.trees,
+        max_leaf_nodes=shape.leaves,
+        learning_rate=shape.rate,
+        max_bins=_BINS,
+        l2_regularization=_RIDGE,
+        min_samples_leaf=_LEAST_IN_A_LEAF,
+        early_stopping=False,
+        random_state=0,
+    )
+    model.fit(np.nan_to_num(examples.rows), examples.is_noise, sample_weight=examples.weights)
+    return _trees_of(model)
+
+
+def shift_to_keep(
+    trees: Trees, rows: FeatureVectors, is_noise: NDArray[np.bool_], lost_share: float
+) -> Trees:
+    """Trees whose sum is above zero for all noise but a small share."""
+    odds = log_odds(trees, rows, SilentMonitor())[is_noise]
+    return trees._replace(base=trees.base - float(np.quantile(odds, lost_share)))
+
+
+# scikit-learn has no types here.
+def _trees_of(model: Any) -> Trees:
+    nodes = [one[0].nodes for one in model._predictors]  # noqa: SLF001 - the only way to the nodes
+    starts = np.cumsum([0, *(one.size for one in nodes)])[:-1].astype(np.int32)
+    joined = np.concatenate(nodes)
+    firsts = np.repeat(starts, [one.size for one in nodes])
+    is_leaf = joined["is_leaf"].astype(bool)
+    values = np.where(is_leaf, joined["value"], joined["num_threshold"])
+    base = model._baseline_prediction  # noqa: SLF001 - the only way to it
+    return Trees(
+        np.where(is_leaf, -1, joined["feature_idx"]).astype(np.int32),
+        values.astype(np.float32).astype(np.float64),
+        (firsts + joined["left"]).astype(np.int32),
+        (firsts + joined["right"]).astype(np.int32),
+        starts,
+        float(np.ravel(base)[0]),
+    )

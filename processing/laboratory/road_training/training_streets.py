@@ -1,0 +1,44 @@
+"""Streets that something is learnt from, and others that it is checked with, as a command asks."""
+
+from __future__ import annotations
+
+import argparse
+import itertools
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from processing.laboratory.accuracy.road.road_scenes import (
+    RoadScene,
+    given_scenes,
+    simulated_scenes,
+)
+
+
+@dataclass(frozen=True)
+class TrainingStreets:
+    """Both kinds of streets, made one after the other when they are asked for."""
+
+    learnt: Iterator[RoadScene]
+    check: Iterator[RoadScene]
+
+
+def training_streets(module: str, arguments: Sequence[str] | None) -> TrainingStreets:
+    """What the command of a module of `processing.score` was told."""
+    parser = argparse.ArgumentParser(prog=f"python -m processing.score.{module}")
+    parser.add_argument("--seeds", default="500-529", help="streets to learn from")
+    parser.add_argument("--check", default="530-539", help="streets to check with")
+    parser.add_argument("--length", type=float, default=60.0, help="m of each")
+    parser.add_argument("--deliveries", type=Path, nargs="*", default=[])
+    asked = parser.parse_args(arguments)
+    simulated = simulated_scenes(_seeds(asked.seeds), asked.length)
+    return TrainingStreets(
+        itertools.chain(simulated, given_scenes(asked.deliveries)),
+        simulated_scenes(_seeds(asked.check), asked.length),
+    )
+
+
+def _seeds(text: str) -> range:
+    """Numbers from one to another; of nothing none."""
+    first, _, last = text.partition("-")
+    return range(int(first), int(last or first) + 1) if first else range(0)

@@ -1,0 +1,1 @@
+"""Streets put together from their makers."""

@@ -1,0 +1,163 @@
+"""What a user orders: the fields of the form in the window and of the command line."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from processing.core.parameters import ParameterChoice, choice, count, file, length, ratio, switch
+from processing.core.text import Text
+from processing.laboratory.simulate.scanning.sensors import SENSORS
+from processing.laboratory.simulate.street.styles import STYLES
+
+_SEED = Text("Seed", "シード値")
+_SEED_MEANING = Text(
+    "A whole number; the same number gives the same street, to the last bit.",
+    "整数。同じ値からは、まったく同じ道路が得られます。",
+)
+_STYLE = Text("Style", "種類")
+_SENSOR = Text("Sensor", "センサー")
+_OWN_SENSOR = Text("Own sensor file", "独自のセンサー定義ファイル")
+_OWN_SENSOR_MEANING = Text(
+    "Rates, beam and mounting of another sensor, in the form of the program's sensors.toml.",
+    "別のセンサーの計測レート・ビーム・取付けを、付属のsensors.tomlの書式で指定します。",
+)
+
+
+def _sensors(kind: str) -> tuple[ParameterChoice, ...]:
+    return tuple(ParameterChoice(one.id, one.name) for one in SENSORS.values() if one.kind == kind)
+
+
+@dataclass(frozen=True)
+class StreetRequest:
+    """A street to be made and recorded.
+
+    Attributes
+    ----------
+    own_sensor : str
+        A file that describes another sensor; empty for none.
+    speed_km_h : float
+        0 for what is usual in this style.
+    pulses, turns_per_s : int, float
+        0 for those of the sensor.
+    passes : int
+        The second one comes back on the other side, and so on.
+    drift_m : float
+        Standard deviation of the delivered trajectory's error, which changes over minutes.
+    """
+
+    seed: int = count(1, low=0, high=2**31 - 1, name=_SEED, explanation=_SEED_MEANING)
+    length_m: float = length(
+        120.0,
+        low=10.0,
+        high=100_000.0,
+        name=Text("Length", "延長"),
+        explanation=Text("How far the vehicle drives.", "車両が走行する距離。"),
+    )
+    style: str = choice(
+        "urban",
+        choices=tuple(ParameterChoice(one.id, one.name) for one in STYLES.values()),
+        name=_STYLE,
+    )
+    sensor: str = choice("vq250", choices=_sensors("mobile"), name=_SENSOR)
+    own_sensor: str = file(name=_OWN_SENSOR, explanation=_OWN_SENSOR_MEANING)
+    speed_km_h: float = ratio(
+        0.0,
+        low=0.0,
+        high=130.0,
+        name=Text("Speed (km/h)", "走行速度 (km/h)"),
+        explanation=Text(
+            "0: what is usual on such a street.", "0 の場合は、その種類の道路で一般的な速度。"
+        ),
+    )
+    passes: int = count(
+        1,
+        low=1,
+        high=4,
+        name=Text("Passes", "走行回数"),
+        explanation=Text(
+            "Every second one drives back on the other side.", "2回目は反対側の車線を戻ります。"
+        ),
+    )
+    stops: bool = switch(
+        default=False,
+        name=Text("Waits at lights", "信号で停車する"),
+        explanation=Text(
+            "The vehicle stands still once or more while it scans.",
+            "走行中に1回以上、計測しながら停車します。",
+        ),
+    )
+    pulses: int = count(
+        0,
+        low=0,
+        high=20_000,
+        name=Text("Pulses per turn", "1回転のパルス数"),
+        explanation=Text("0: those of the sensor.", "0 の場合はセンサーの値。"),
+    )
+    turns_per_s: float = ratio(
+        0.0,
+        low=0.0,
+        high=400.0,
+        name=Text("Turns per second", "1秒あたりの回転数"),
+        explanation=Text("0: those of the sensor.", "0 の場合はセンサーの値。"),
+    )
+    drift_m: float = length(
+        0.005,
+        low=0.0,
+        high=1.0,
+        name=Text("Drift of the trajectory", "走行軌跡の誤差"),
+        explanation=Text(
+            "Standard deviation of the delivered positions; it changes over minutes.",
+            "成果の位置の標準偏差。数分かけて変化します。",
+        ),
+    )
+    images: bool = switch(
+        default=True,
+        name=Text("Camera images", "カメラ画像"),
+        explanation=Text(
+            "Photographs with places and angles, every ten metres.",
+            "10 m ごとの、位置・姿勢付きの写真。",
+        ),
+    )
+
+
+@dataclass(frozen=True)
+class SiteRequest:
+    """An earthwork site of two dates, scanned from tripods.
+
+    Attributes
+    ----------
+    length_m : float
+        Of the longer side of the site.
+    spacing_m : float
+        From beam to beam, 10 m away.
+    """
+
+    seed: int = count(1, low=0, high=2**31 - 1, name=_SEED, explanation=_SEED_MEANING)
+    length_m: float = length(
+        60.0, low=20.0, high=500.0, name=Text("Length", "長さ"),
+        explanation=Text("Of the longer side.", "現場の長辺。"),
+    )  # fmt: skip
+    style: str = choice(
+        "levee",
+        choices=(
+            ParameterChoice("levee", Text("Levee", "堤防")),
+            ParameterChoice("cutting", Text("Road cutting and embankment", "道路の切土・盛土")),
+            ParameterChoice("pad", Text("Building land", "宅地造成")),
+        ),
+        name=_STYLE,
+    )
+    sensor: str = choice("p40", choices=_sensors("standing"), name=_SENSOR)
+    own_sensor: str = file(name=_OWN_SENSOR, explanation=_OWN_SENSOR_MEANING)
+    stations: int = count(
+        0,
+        low=0,
+        high=12,
+        name=Text("Stations", "器械点の数"),
+        explanation=Text("0: as many as the site needs.", "0 の場合は現場の広さから決めます。"),
+    )
+    spacing_m: float = length(
+        0.02,
+        low=0.002,
+        high=0.2,
+        name=Text("Point spacing at 10 m", "10 m 先の点間隔"),
+    )

@@ -1,0 +1,261 @@
+"""Points that no surface gave: arcs and folds of phase-based scanners, mirrors, sun, rain.
+
+Kinds and looks follow Kogure et al. 2022 (arcs about the vehicle's path, of one range each) and what
+recordings of phase-based profilers show.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.laboratory.simulate.scanning.beams import Beams, ScanPattern
+from processing.laboratory.simulate.scanning.casting import NOWHERE, RaycastScene
+from processing.laboratory.simulate.scanning.returns import (
+    HIGH_NOISE,
+    LOW_NOISE,
+    NO_EVIDENCE,
+    BeamHits,
+    Returns,
+    number_returns,
+    shares_of,
+    weakest_of,
+)
+from processing.laboratory.simulate.scanning.sensors import Sensor
+from processing.laboratory.simulate.scene.chance import chance
+from processing.laboratory.simulate.scene.materials import Material
+from processing.laboratory.simulate.scene.mesh import Floats, Integers
+
+_GROUND_LABELS = (2, 3, 11, 67)
+_SLOT_S = 1.0
+_LEAST_M = 0.6
+_MIRRORS = (Material.GLASS, Material.MIRROR, Material.WATER)
+_MIRRORED_SHARE = 0.25
+_MIRRORED_POWER = 0.008  # of a white surface seen in a pane, twice through a tenth of the light
+_LEVEL = 0.7  # of a normal's z: water and wet ground rather than windows
+_WEAK = 0.02  # of the power that a white surface 10 m away gives
+_JUMPING_SHARE = 0.02
+_FINER_WAVES = 60.0  # in the range of unambiguity
+_OWN_LIKE_M = 0.05  # noise that falls so near to the true surface is none
+
+
+@dataclass(frozen=True)
+class NoiseOptions:
+    """How much noise a recording has, as shares of pulses.
+
+    Attributes
+    ----------
+    arcs_per_s : float
+        Arcs that begin in a second.
+    folded : float
+        Of what lies beyond the range of unambiguity.
+    streaks : float
+        Of pulses on retro-reflecting plates.
+    drops : float
+        Of all pulses: rain, dust, insects.
+    """
+
+    arcs_per_s: float
+    folded: float
+    streaks: float
+    drops: float
+
+
+def noise_options(seed: int, sensor: Sensor) -> NoiseOptions:
+    """How noisy a recording of this seed is."""
+    random = chance(seed, "noise")
+    if sensor.measures_by == "phase":
+        return NoiseOptions(
+            float(random.uniform(0.5, 6.0)),
+            float(random.uniform(0.3, 0.9)),
+            float(random.uniform(0.1, 0.4)),
+            float(10 ** random.uniform(-4, -2.7)),
+        )
+    return NoiseOptions(
+        0.0, 0.0, float(random.uniform(0.0, 0.03)), float(10 ** random.uniform(-5.5, -3.5))
+    )
+
+
+@dataclass(frozen=True)
+class PulseHits:
+    """A stretch of pulses and what they truly met.
+
+    Attributes
+    ----------
+    beams : Beams
+    met : Met
+        Of each beam.
+    returns : Returns
+        Without this noise.
+    scene : Scene
+    """
+
+    beams: Beams
+    met: BeamHits
+    returns: Returns
+    scene: RaycastScene
+
+
+class NoiseSource:
+    """The noise of one head during one pass.
+
+    Parameters
+    ----------
+    position : tuple of int
+        Number of the pass, number of the head.
+    """
+
+    def __init__(
+        self, seed: int, position: tuple[int, int], sensor: Sensor, scan_pattern: ScanPattern
+    ) -> None:
+        self._seed, self._position, self._sensor, self._scan_pattern = (
+            seed,
+            position,
+            sensor,
+            scan_pattern,
+        )
+        self._request = noise_options(seed, sensor)
+        self._key = int(chance(seed, "noise key", *position).integers(1 << 40))
+
+    def added(self, recorded: PulseHits) -> Returns:
+        """The returns with some replaced by noise, and noise where nothing came back."""
+        beams, met = recorded.beams, recorded.met
+        ranges = np.full(met.ranges.size, np.nan)
+        self._arcs(beams, ranges)
+        self._folded(beams, met, ranges)
+        self._jumps(recorded, ranges)
+        self._streaks(beams, met, ranges)
+        self._drops(beams, met, ranges)
+        is_level = self._mirrored(recorded, ranges)
+        known = np.where(np.isfinite(met.ranges), met.ranges, NOWHERE)
+        ranges[np.abs(ranges - known) < _OWN_LIKE_M] = np.nan
+        return self._merged(recorded, ranges, is_level)
+
+    def _chosen(self, beams: Beams, rows: Integers, share: float, salt: int) -> Integers:
+        return rows[shares_of(beams.first + rows, self._key + salt) < share]
+
+    def _normal(self, beams: Beams, rows: Integers, salt: int) -> Floats:
+        """Nearly normal numbers with standard deviation 1, each of its pulse."""
+        total: Floats = np.full(rows.size, -2.0)
+        for one in range(4):
+            total += shares_of(beams.first + rows, self._key + salt + one)
+        return total * math.sqrt(3.0)
+
+    def _arcs(self, beams: Beams, ranges: Floats) -> None:
+        """One range over a part of the turn, for some turns: begun in slots of a second."""
+        if self._request.arcs_per_s <= 0 or beams.time_s.size == 0:
+            return
+        first = int(beams.time_s[0] // _SLOT_S)
+        for slot in range(max(0, first - 1), int(beams.time_s[-1] // _SLOT_S) + 1):
+            random = chance(self._seed, "arcs", *self._position, slot)
+            for _ in range(random.poisson(self._request.arcs_per_s)):
+                start = (slot + random.random()) * _SLOT_S
+                long_s = float(np.exp(random.uniform(np.log(0.01), np.log(_SLOT_S))))
+                reach, drift = random.uniform(1.5, 18.0), random.normal(0, 0.3)
+                middle, half = random.random(), random.uniform(0.01, 0.2)
+                share = float(random.choice([0.02, 0.06, 0.15, 0.4]))
+                salt = int(random.integers(1000, 1 << 30))
+                low, high = np.searchsorted(beams.time_s, [start, start + long_s])
+                rows = np.arange(low, high)
+                turned = (beams.first + rows) / self._scan_pattern.pulses - middle
+                rows = rows[np.abs(turned - np.round(turned)) < half]
+                rows = self._chosen(beams, rows, share, salt)
+                spread = 0.002 + 0.02 * (salt % 7) / 7
+                there = reach + drift * (beams.time_s[rows] - start)
+                ranges[rows] = there + spread * self._normal(beams, rows, salt + 1)
+
+    def _folded(self, beams: Beams, met: BeamHits, ranges: Floats) -> None:
+        """What lies beyond the range of unambiguity, brought nearer by it."""
+        if self._request.folded <= 0:
+            return
+        most = self._sensor.most_m
+        rows = np.flatnonzero((met.ranges > most) & (met.ranges < 2 * most))
+        rows = self._chosen(beams, rows, self._request.folded, 100)
+        ranges[rows] = met.ranges[rows] - most + 0.01 * self._normal(beams, rows, 110)
+
+    def _jumps(self, recorded: PulseHits, ranges: Floats) -> None:
+        """Weak returns of phase-based scanners whose finer wave is counted wrongly."""
+        if self._sensor.measures_by != "phase":
+            return
+        returns, met = recorded.returns, recorded.met
+        rows = returns.pulse[returns.strength < _WEAK] - recorded.beams.first
+        rows = self._chosen(recorded.beams, rows, _JUMPING_SHARE, 600)
+        waves = np.round(2 * self._normal(recorded.beams, rows, 610))
+        ranges[rows] = met.ranges[rows] + waves * self._sensor.most_m / _FINER_WAVES
+
+    def _streaks(self, beams: Beams, met: BeamHits, ranges: Floats) -> None:
+        """Ranges spread along the beam at plates that shine back too strongly."""
+        rows = np.flatnonzero((met.material == Material.SIGN_FACE) & np.isfinite(met.ranges))
+        rows = self._chosen(beams, rows, self._request.streaks, 200)
+        ranges[rows] = met.ranges[rows] + 0.5 * self._normal(beams, rows, 210)
+
+    def _drops(self, beams: Beams, met: BeamHits, ranges: Floats) -> None:
+        """Rain, dust and insects: single points, most of them near the scanner."""
+        rows = self._chosen(beams, np.arange(met.ranges.size), self._request.drops, 300)
+        away = _LEAST_M - 4.0 * np.log(np.maximum(shares_of(beams.first + rows, 301), 1e-9))
+        is_free = away < met.ranges[rows]
+        ranges[rows[is_free]] = away[is_free]
+
+    def _mirrored(self, recorded: PulseHits, ranges: Floats) -> Integers:
+        """Glass and water: some beams come back from what they mirror; rows of level mirrors."""
+        beams, met, scene = recorded.beams, recorded.met, recorded.scene
+        rows = np.flatnonzero(np.isin(met.material, _MIRRORS) & np.isfinite(met.ranges))
+        rows = self._chosen(beams, rows, _MIRRORED_SHARE, 400)
+        if rows.size == 0:
+            return rows
+        positions = beams.origins[rows] + beams.directions[rows] * met.ranges[rows, None]
+        hits = scene.cast(beams.origins[rows], beams.directions[rows])
+        is_same = (np.abs(hits.ranges - met.ranges[rows]) < 1e-3) & (hits.triangles >= 0)
+        rows, positions, found = rows[is_same], positions[is_same], hits.triangles[is_same]
+        corners = scene.mesh.vertices[scene.mesh.triangles[found]]
+        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        normals /= np.maximum(np.linalg.norm(normals, axis=1), 1e-12)[:, None]
+        directions = beams.directions[rows]
+        turned = directions - 2 * np.einsum("ij,ij->i", directions, normals)[:, None] * normals
+        beyond = scene.cast(positions + 0.01 * turned, turned).ranges
+        away = np.where(np.isfinite(beyond), met.ranges[rows] + beyond, NOWHERE)
+        lucky = 0.5 + shares_of(beams.first + rows, self._key + 401)
+        is_back = _MIRRORED_POWER * (10.0 / away) ** 2 > weakest_of(self._sensor) * lucky
+        is_back &= away < self._sensor.most_m
+        ranges[rows[is_back]] = met.ranges[rows[is_back]] + beyond[is_back]
+        return rows[is_back & (np.abs(normals[:, 2]) > _LEVEL)]
+
+    def _merged(self, recorded: PulseHits, ranges: Floats, is_level: Integers) -> Returns:
+        beams, met, returns = recorded.beams, recorded.met, recorded.returns
+        rows = np.flatnonzero((ranges > _LEAST_M) & (ranges < self._sensor.most_m))
+        if rows.size == 0:
+            return returns
+        is_below = np.isin(met.label[rows], _GROUND_LABELS) & (ranges[rows] > met.ranges[rows])
+        is_below |= np.isin(rows, is_level)
+        positions = beams.origins[rows] + beams.directions[rows] * ranges[rows, None]
+        is_below |= _under_ground(recorded.scene, positions)
+        label = np.where(is_below, LOW_NOISE, HIGH_NOISE).astype(np.uint8)
+        weak = 10.0 ** (-3.0 + 2.5 * shares_of(beams.first + rows, self._key + 500))
+        ones = np.ones(rows.size, np.uint8)
+        noise = Returns(
+            beams.first + rows,
+            beams.time_s[rows],
+            positions,
+            weak,
+            ones,
+            ones,
+            label,
+            np.full(rows.size, NO_EVIDENCE, np.int64),
+        )
+        is_replaced = np.zeros(ranges.size, np.bool_)
+        is_replaced[rows] = True
+        kept = returns.chosen(~is_replaced[returns.pulse - beams.first])
+        joined = Returns.joined([kept, noise])
+        return number_returns(joined.chosen(np.argsort(joined.pulse, kind="stable")))
+
+
+def _under_ground(scene: RaycastScene, positions: Floats) -> NDArray[np.bool_]:
+    """Whether ground is the first thing above places: what panes mirror may seem to lie there."""
+    hits = scene.cast(positions, np.broadcast_to([0.0, 0.0, 1.0], positions.shape))
+    is_hit = hits.triangles >= 0
+    under: NDArray[np.bool_] = np.zeros(is_hit.size, np.bool_)
+    under[is_hit] = np.isin(scene.mesh.label[hits.triangles[is_hit]], _GROUND_LABELS)
+    return under

@@ -1,0 +1,1 @@
+"""What scenes are made of: meshes, materials, things, streams of chance."""

@@ -1,0 +1,1 @@
+"""Values of the map: features, catalogue, changes."""

@@ -1,0 +1,1 @@
+"""Methods: arithmetic that knows no project and no file."""

@@ -1,0 +1,1 @@
+"""As-built control of faces against the design."""

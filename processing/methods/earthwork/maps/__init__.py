@@ -1,0 +1,1 @@
+"""Grids of change and what is drawn from them."""

@@ -1,0 +1,1 @@
+"""Cross-sections of two grounds, and volumes by them."""

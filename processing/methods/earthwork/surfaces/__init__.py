@@ -1,0 +1,1 @@
+"""The two surfaces that are compared: measured, filled in, or designed."""

@@ -1,0 +1,248 @@
+"""GroundCells: the ground points of an epoch counted into cells, one mean height in each."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.core.errors import OutOfRange
+from processing.core.kernels import kernel
+from processing.core.monitor import Monitor
+from processing.core.text import Text
+from processing.methods.earthwork.surfaces.low_growth import lift_of_growth
+from processing.methods.earthwork.surfaces.sides import EpochGround
+from processing.methods.ground.filters.cells import MOST_CELLS, CellGrid
+
+Floats = NDArray[np.float64]
+
+_X, _Y, _Z = range(3)
+_AMONG_M = 3.0
+_FEW_OF_MANY = 0.05
+_NEAR_M = 0.6
+_SCATTER_M = 0.08
+_FEWEST = 6
+_HELD_SHARE = 0.3
+_LINE = 0.1
+
+
+@dataclass(frozen=True)
+class GroundCells:
+    """Ground points of one epoch by cell; row = north, column = east.
+
+    Attributes
+    ----------
+    grid : CellGrid
+    counts : (rows, columns) int32
+        Points in a cell.
+    heights : (rows, columns) float64
+        Mean height, m above the grid's origin, carried to the middle of the cell along the
+        ground's slope and freed of what low growth lifts it by; NaN without a point.
+    """
+
+    grid: CellGrid
+    counts: NDArray[np.int32]
+    heights: Floats
+
+    @property
+    def is_counted(self) -> NDArray[np.bool_]:
+        """Cells with a point: (rows, columns) bool."""
+        is_counted: NDArray[np.bool_] = self.counts > 0
+        return is_counted
+
+
+def grid_over(
+    low: tuple[float, float], high: tuple[float, float], size_m: float, height_m: float
+) -> CellGrid:
+    """Cells over a rectangle, their corners on whole multiples of the mesh.
+
+    So the same place falls into the same cell, whatever else was measured.
+
+    Parameters
+    ----------
+    low, high : (float, float)
+        Corners, m, project CRS.
+    height_m : float
+        What heights are counted from.
+
+    Raises
+    ------
+    OutOfRange
+        More cells than memory holds.
+    """
+    first = np.floor(np.asarray(low) / size_m + 1e-9).astype(np.int64)
+    last = np.ceil(np.asarray(high) / size_m - 1e-9).astype(np.int64)
+    columns, rows = (int(count) for count in np.maximum(last - first, 1))
+    if rows * columns > MOST_CELLS:
+        raise OutOfRange(
+            Text("The mesh is too fine for so large an area.", "範囲に対して格子が細かすぎます。"),
+            Text(
+                f"{rows * columns:,} cells of {size_m:g} m; {MOST_CELLS:,} are possible.",
+                f"{size_m:g} mの格子が{rows * columns:,}個（上限{MOST_CELLS:,}個）",
+            ),
+            Text(
+                "Choose a larger mesh, or a boundary around the work.",
+                "格子間隔を大きくするか、施工範囲の境界を指定してください。",
+            ),
+        )
+    origin = np.array([first[0] * size_m, first[1] * size_m, height_m])
+    return CellGrid(origin, size_m, rows, columns)
+
+
+def ground_cells(
+    epoch: EpochGround,
+    grid: CellGrid,
+    monitor: Monitor,
+    shift_m: tuple[float, float, float] = (0.0, 0.0, 0.0),
+) -> GroundCells:
+    """Count the ground points of an epoch into cells.
+
+    Parameters
+    ----------
+    shift_m : (float, float, float)
+        Taken from every point first.
+    """
+    counts = np.zeros((grid.rows, grid.columns), np.int32)
+    sums = np.zeros((grid.rows, grid.columns, 3))
+    origin = grid.origin + np.asarray(shift_m)
+    for block in epoch.blocks():
+        monitor.check()
+        _sum_kernel(np.ascontiguousarray(block.xyz), origin, grid.size_m, counts, sums)
+    _drop_strays(counts, sums, grid.size_m)
+    planes = _planes(counts, sums, grid.size_m)
+    shifted = replace(grid, origin=origin)
+    heights: Floats = planes[0] - lift_of_growth(epoch, shifted, planes, monitor)
+    return GroundCells(grid, counts, heights)
+
+
+def _drop_strays(counts: NDArray[np.int32], sums: Floats, size_m: float) -> None:
+    """Forget cells that hold only strays, in place.
+
+    Where the ground was hidden, a few points that came by way of a mirror or a puddle are all
+    there is: few among many about them, at any height, or at the height that was filled in there,
+    and then in one cell of several only.
+    """
+    from scipy.ndimage import maximum_filter, uniform_filter
+
+    reach = max(1, round(_AMONG_M / size_m))
+    most = maximum_filter(counts, 2 * reach + 1)
+    thin = (counts > 0) & (counts < _FEW_OF_MANY * most)
+    if not thin.any():
+        return
+    heights = np.where(thin, sums[..., _Z] / np.maximum(counts, 1), np.nan)
+    near = max(1, round(_NEAR_M / size_m))
+    strays = np.zeros(counts.shape, np.bool_)
+    _stray_kernel(heights, near, (_FEWEST, _SCATTER_M), strays)
+    empty = uniform_filter((counts == 0).astype(np.float32), 2 * near + 1)
+    held = uniform_filter(thin.astype(np.float32), 2 * near + 1)
+    strays |= thin & (held < _HELD_SHARE * (held + empty))
+    counts[strays] = 0
+    sums[strays] = 0.0
+
+
+def _planes(
+    counts: NDArray[np.int32], sums: Floats, size_m: float
+) -> tuple[Floats, Floats, Floats]:
+    """Heights at the middles of cells and slopes to the east and north.
+
+    Where points lie to one side of a cell, their mean says the height of that side.
+    """
+    with np.errstate(invalid="ignore"):
+        means = sums / counts[..., None]
+    heights = means[..., _Z]
+    slope_x, slope_y = (_slope(heights, size_m, axis) for axis in (1, 0))
+    carried: Floats = heights - slope_x * means[..., _X] - slope_y * means[..., _Y]
+    return carried, slope_x, slope_y
+
+
+def _slope(heights: Floats, size_m: float, axis: int) -> Floats:
+    """Rise per metre along an axis from the neighbours that there are; 0 where there is none."""
+    z = np.moveaxis(heights, axis, 0)
+    step = np.full((z.shape[0] + 1, *z.shape[1:]), np.nan)
+    step[1:-1] = (z[1:] - z[:-1]) / size_m
+    back, ahead = step[:-1], step[1:]
+    both = np.where(np.isnan(back), ahead, np.where(np.isnan(ahead), back, (back + ahead) / 2))
+    return np.moveaxis(np.nan_to_num(both), 0, axis)
+
+
+@kernel
+def _sum_kernel(
+    xyz: Floats, origin: Floats, size_m: float, counts: NDArray[np.int32], sums: Floats
+) -> None:
+    rows, columns = counts.shape
+    for point in range(xyz.shape[0]):
+        x, y = xyz[point, 0] - origin[0], xyz[point, 1] - origin[1]
+        # NaN fails each of these tests.
+        if not (x >= 0.0 and y >= 0.0 and x < columns * size_m and y < rows * size_m):
+            continue
+        column, row = min(int(x / size_m), columns - 1), min(int(y / size_m), rows - 1)
+        counts[row, column] += 1
+        sums[row, column, 0] += x - (column + 0.5) * size_m
+        sums[row, column, 1] += y - (row + 0.5) * size_m
+        sums[row, column, 2] += xyz[point, 2] - origin[2]
+
+
+@kernel
+def _stray_kernel(
+    heights: Floats, near: int, limits: tuple[int, float], strays: NDArray[np.bool_]
+) -> None:
+    """Cells (NaN: passed over) with few others about them, or on no plane with those."""
+    fewest, scatter_m = limits
+    rows, columns = heights.shape
+    for row in range(rows):
+        for column in range(columns):
+            if not np.isnan(heights[row, column]):
+                window = (
+                    max(0, row - near),
+                    min(rows, row + near + 1),
+                    max(0, column - near),
+                    min(columns, column + near + 1),
+                )
+                count, apart = _apart_kernel(heights, window, heights[row, column])
+                strays[row, column] = count < fewest or apart > scatter_m
+
+
+@kernel
+def _apart_kernel(
+    heights: Floats, window: tuple[int, int, int, int], base: float
+) -> tuple[int, float]:
+    """How many cells of a window are known, and how far they lie from their plane on average."""
+    sums = np.zeros(9)
+    for row in range(window[0], window[1]):
+        for column in range(window[2], window[3]):
+            z = heights[row, column] - base
+            if not np.isnan(z):
+                x, y = float(column - window[2]), float(row - window[0])
+                sums[0] += 1.0
+                sums[1] += x
+                sums[2] += y
+                sums[3] += z
+                sums[4] += x * x
+                sums[5] += x * y
+                sums[6] += y * y
+                sums[7] += x * z
+                sums[8] += y * z
+    count = sums[0]
+    x, y, z = sums[1] / count, sums[2] / count, sums[3] / count
+    xx, xy, yy = sums[4] / count - x * x, sums[5] / count - x * y, sums[6] / count - y * y
+    xz, yz = sums[7] / count - x * z, sums[8] / count - y * z
+    # What lies in one line of cells says nothing of the slope across it.
+    xx, yy = xx + _LINE, yy + _LINE
+    spread = xx * yy - xy * xy
+    slope_x, slope_y = (yy * xz - xy * yz) / spread, (xx * yz - xy * xz) / spread
+    apart = 0.0
+    for row in range(window[0], window[1]):
+        for column in range(window[2], window[3]):
+            miss = heights[row, column] - base - z
+            miss -= slope_x * (column - window[2] - x) + slope_y * (row - window[0] - y)
+            if not np.isnan(miss):
+                apart += abs(miss)
+    return int(count), apart / count
+
+
+def warm_up() -> None:
+    """Compile the kernels of this file."""
+    counts, sums = np.zeros((1, 1), np.int32), np.zeros((1, 1, 3))
+    _sum_kernel(np.zeros((1, 3)), np.zeros(3), 1.0, counts, sums)
+    _stray_kernel(np.zeros((2, 2)), 1, (1, 1.0), np.zeros((2, 2), np.bool_))

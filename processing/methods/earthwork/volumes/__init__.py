@@ -1,0 +1,1 @@
+"""Comparison of two surfaces: cut, fill, registration and uncertainty."""

@@ -1,0 +1,81 @@
+"""Cut and fill from a map of change, told apart from the noise of both measurements.
+
+Summing what is positive and what is negative counts noise twice: ground that didn't change seems
+to be cut here and filled there. So whether a cell was cut or filled is asked of its neighbours,
+whose noise is not its own, and by how much of the cell itself: what is summed is then right on
+average, in both sums, whatever the noise.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.methods.earthwork.maps.change_grid import ChangeGrid
+
+Floats = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+
+_NEIGHBOURS_M = 0.25
+
+
+@dataclass(frozen=True)
+class ChangeSums:
+    """Cut and fill over some cells, m³; neither is negative but for what noise leaves."""
+
+    cut_m3: float
+    fill_m3: float
+
+
+def is_filled(change: ChangeGrid) -> Mask:
+    """Whether a cell counts as filled rather than cut: (rows, columns) bool.
+
+    Told by the mean change of the cells around it, without its own, a quarter of a metre to each
+    side. Where a cell is larger than that, or has no neighbours, its own change tells.
+    """
+    reach = round(_NEIGHBOURS_M / change.grid.size_m)
+    own = change.change_m.astype(np.float64)
+    if reach == 0:
+        return np.asarray(own > 0)
+    known = np.isfinite(own)
+    values = np.where(known, own, 0.0)
+    sums = _window_sums(values, reach) - values
+    counts = _window_sums(known.astype(np.float64), reach) - known
+    told: Mask = np.where(counts > 0, sums > 0, own > 0)
+    return told
+
+
+def change_sums(change: ChangeGrid, filled: Mask, counted: Mask) -> ChangeSums:
+    """Sum change over cells, each by the share of it that lies inside.
+
+    Parameters
+    ----------
+    filled : (rows, columns) bool
+        As :func:`is_filled` says.
+    counted : (rows, columns) bool
+        Which cells to sum.
+    """
+    volumes = change.change_m.astype(np.float64) * change.inside * change.grid.size_m**2
+    known = counted & np.isfinite(volumes)
+    return ChangeSums(
+        cut_m3=-float(volumes[known & ~filled].sum()),
+        fill_m3=float(volumes[known & filled].sum()),
+    )
+
+
+def _window_sums(values: Floats, reach: int) -> Floats:
+    """Sums over the cells up to ``reach`` to each side, beyond the edge as nothing."""
+    for axis in (0, 1):
+        sums = np.cumsum(np.pad(values, _to_sides(axis, reach + 1, reach)), axis=axis)
+        width = 2 * reach + 1
+        high = np.take(sums, np.arange(width, sums.shape[axis]), axis=axis)
+        low = np.take(sums, np.arange(sums.shape[axis] - width), axis=axis)
+        values = high - low
+    return values
+
+
+def _to_sides(axis: int, before: int, after: int) -> tuple[tuple[int, int], tuple[int, int]]:
+    sides = (before, after), (0, 0)
+    return sides if axis == 0 else (sides[1], sides[0])

@@ -1,0 +1,1 @@
+"""Filters that tell ground from what stands on it."""

@@ -1,0 +1,370 @@
+"""The ground's own band: its mean height, its roughness, and what stands in it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.core.kernels import kernel
+from processing.methods.ground.filters.cell_positions import Blocks
+from processing.methods.ground.filters.cells import CellGrid
+from processing.methods.ground.filters.feet import attached_feet
+from processing.methods.ground.filters.morphology import steepness_of
+from processing.methods.ground.filters.walls import column_tops, faces
+
+_UNIT_M = 1e-4
+_BIN_M = 0.1
+_WINDOW = 5
+_LEAST_PER_CELL = 0.2
+_ROUNDS = 2
+_OWN_POINTS = 3
+_FOOT_REACH_M = 0.4
+_FINE_CELL_M = 0.5
+
+
+@dataclass(frozen=True)
+class GroundBand:
+    """Where ground lies, cell by cell.
+
+    Attributes
+    ----------
+    heights : (rows, columns) float32
+        Ground at the cells' centres, m above the grid's origin.
+    below, above : (rows, columns) float32
+        A point no farther under or over that surface is ground, m; ``above`` is smaller where
+        something stands.
+    face_low, face_high : (rows, columns) float32
+        Between these heights points on the face of a step are ground; empty elsewhere.
+    feet : (rows, columns) uint16
+        Bit ``4 r + c`` is set where a thing stands on that sixteenth of a cell, over whose foot
+        no point is ground.
+    roughness_m : float
+        Standard deviation of ground points about the surface, in the median of the cells.
+    """
+
+    heights: NDArray[np.float32]
+    below: NDArray[np.float32]
+    above: NDArray[np.float32]
+    face_low: NDArray[np.float32]
+    face_high: NDArray[np.float32]
+    feet: NDArray[np.uint16]
+    roughness_m: float
+
+
+@dataclass(frozen=True)
+class Tolerances:
+    """How far from its surface ground reaches.
+
+    Attributes
+    ----------
+    near_m, near_share : float
+        What is averaged at first lies within ``near_m`` and this share of a cell's side.
+    deviations : float
+        Thickness in standard deviations of the ground's own roughness.
+    side_share, slope_share : float
+        What is added for the surface between cells: this share of a side, and of its rise.
+    foot_deviations : float
+        Thickness where something stands.
+    face_slope : float
+        Rise over run from which a cell holds the face of a step.
+    """
+
+    near_m: float = 0.04
+    near_share: float = 0.10
+    deviations: float = 3.0
+    side_share: float = 0.10
+    slope_share: float = 0.30
+    foot_deviations: float = 1.5
+    face_slope: float = 1.0
+
+
+def ground_band(
+    blocks: Blocks,
+    grid: CellGrid,
+    surface: NDArray[np.float32],
+    ground: NDArray[np.bool_],
+    tolerances: Tolerances,
+) -> GroundBand:
+    """Fit the surface to the ground's points and measure how far they scatter.
+
+    Parameters
+    ----------
+    surface : (rows, columns) float32
+        Lowest ground without holes, m above the grid's origin.
+    ground : (rows, columns) bool
+        Cells in which it was measured.
+    """
+    import cv2
+
+    size_m = grid.size_m
+    steepness = steepness_of(surface, size_m)
+    reach = tolerances.near_m + size_m * (tolerances.near_share + 0.5 * steepness)
+    reach = np.where(ground, reach, 0.0).astype(np.float32)
+    # Larger cells hold no face of a step, but the jump from a roof to the ground.
+    is_level = (steepness <= tolerances.face_slope) | (size_m > _FINE_CELL_M)
+    for _ in range(_ROUNDS):
+        counts, totals, _ = _sums(blocks, grid, surface, reach)
+        # Beside a step the mean swings more from round to round; the lowest heights serve there.
+        surface = surface + np.where(is_level, _mean_offset(counts, totals), np.float32(0.0))
+    counts, _, squares = _sums(blocks, grid, surface, reach)
+    roughness, typical = _roughness(counts, squares)
+    rise = size_m * steepness
+    spread = tolerances.deviations * roughness
+    thick: NDArray[np.float32] = (
+        spread + tolerances.side_share * size_m + tolerances.slope_share * rise
+    ).astype(np.float32)
+    bins, feet = _what_stands(blocks, grid, surface, thick)
+    foot = tolerances.foot_deviations * roughness + tolerances.slope_share * rise
+    above = np.where(_stands(bins, thick) | ~ground, np.minimum(thick, foot), thick)
+    lowest = cv2.erode(surface, np.ones((3, 3), np.uint8))
+    highest = cv2.dilate(surface, np.ones((3, 3), np.uint8))
+    upper = faces(surface, ground, column_tops(bins), size_m)
+    face = np.isfinite(upper)
+    face_low = np.where(face, lowest - thick, np.where(is_level, np.inf, lowest))
+    face_high = np.where(is_level, -np.inf, highest)
+    face_high = np.where(face, np.maximum(upper + thick, face_high), face_high)
+    return GroundBand(
+        surface,
+        thick,
+        above.astype(np.float32),
+        face_low.astype(np.float32),
+        face_high.astype(np.float32),
+        feet,
+        typical,
+    )
+
+
+def _what_stands(
+    blocks: Blocks, grid: CellGrid, surface: NDArray[np.float32], thick: NDArray[np.float32]
+) -> tuple[NDArray[np.uint64], NDArray[np.uint16]]:
+    """Columns of points by tenths of a metre, and the parts of cells over which things stand."""
+    bins = np.zeros(surface.shape, np.uint64)
+    feet = np.zeros(surface.shape, np.uint16)
+    for xyz in blocks():
+        _columns_kernel(
+            np.ascontiguousarray(xyz), grid.origin, grid.size_m, surface, thick, (bins, feet)
+        )
+    if grid.size_m > _FINE_CELL_M:
+        feet[:] = 0
+    elif feet.any():
+        feet = _held_feet(blocks, grid, surface, thick, feet)
+    return bins, feet
+
+
+def _held_feet(
+    blocks: Blocks,
+    grid: CellGrid,
+    surface: NDArray[np.float32],
+    thick: NDArray[np.float32],
+    feet: NDArray[np.uint16],
+) -> NDArray[np.uint16]:
+    def offsets() -> Iterator[tuple[NDArray[np.float64], NDArray[np.float64]]]:
+        for xyz in blocks():
+            yield xyz, xyz[:, 2] - grid.origin[2] - heights_at(xyz[:, :2], level, surface)
+
+    level = replace(grid, origin=np.append(grid.origin[:2], 0.0))
+    return attached_feet(offsets(), grid, thick, thick + np.float32(_FOOT_REACH_M), feet)
+
+
+def classify(xyz: NDArray[np.float64], grid: CellGrid, band: GroundBand) -> NDArray[np.bool_]:
+    """Which points lie in the band: (n,) bool; those that aren't finite do not."""
+    is_ground = np.zeros(len(xyz), np.bool_)
+    _classify_kernel(
+        np.ascontiguousarray(xyz),
+        grid.origin,
+        grid.size_m,
+        (band.heights, band.below, band.above, band.face_low, band.face_high),
+        band.feet,
+        is_ground,
+    )
+    return is_ground
+
+
+def heights_at(
+    xy: NDArray[np.float64], grid: CellGrid, surface: NDArray[np.float32]
+) -> NDArray[np.float64]:
+    """Height of a grid's surface at places: (n,) m; NaN outside the grid."""
+    heights = np.full(len(xy), np.nan)
+    _heights_kernel(np.ascontiguousarray(xy), grid.origin, grid.size_m, surface, heights)
+    return heights
+
+
+def _sums(
+    blocks: Blocks,
+    grid: CellGrid,
+    surface: NDArray[np.float32],
+    reach: NDArray[np.float32],
+) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
+    """Points near the surface, their offsets and squared offsets, in whole tenths of a mm.
+
+    Whole numbers add up to the same whatever the order of the points.
+    """
+    counts = np.zeros(surface.shape, np.int64)
+    totals = np.zeros(surface.shape, np.int64)
+    squares = np.zeros(surface.shape, np.int64)
+    for xyz in blocks():
+        _sums_kernel(
+            np.ascontiguousarray(xyz),
+            grid.origin,
+            grid.size_m,
+            surface,
+            reach,
+            (counts, totals, squares),
+        )
+    return counts, totals, squares
+
+
+def _mean_offset(counts: NDArray[np.int64], totals: NDArray[np.int64]) -> NDArray[np.float32]:
+    has_points = counts > 0
+    own = np.where(has_points, totals / np.maximum(counts, 1) * _UNIT_M, 0.0)
+    weight = _smooth(has_points.astype(np.float64), 3)
+    around = np.where(weight > 0.05, _smooth(own, 3) / np.maximum(weight, 1e-9), 0.0)
+    return np.where(counts >= _OWN_POINTS, own, around).astype(np.float32)
+
+
+def _roughness(
+    counts: NDArray[np.int64], squares: NDArray[np.int64]
+) -> tuple[NDArray[np.float64], float]:
+    per_cell = _smooth(counts.astype(np.float64), _WINDOW)
+    mean_square = _smooth(squares.astype(np.float64) * _UNIT_M**2, _WINDOW) / np.maximum(
+        per_cell, 1e-9
+    )
+    deviation = np.sqrt(np.maximum(mean_square, 0.0))
+    enough = per_cell > _LEAST_PER_CELL
+    with_points = deviation[enough & (counts > 0)]
+    typical = float(np.median(with_points)) if len(with_points) else 0.0
+    # A cell of grass must not widen the band by its own grass.
+    return np.clip(np.where(enough, deviation, typical), 0.5 * typical, 1.5 * typical), typical
+
+
+def _smooth(values: NDArray[np.float64], window: int) -> NDArray[np.float64]:
+    import cv2
+
+    smoothed = cv2.blur(values, (window, window), borderType=cv2.BORDER_REFLECT_101)
+    return smoothed.astype(np.float64, copy=False)
+
+
+def _stands(bins: NDArray[np.uint64], thick: NDArray[np.float32]) -> NDArray[np.bool_]:
+    """Where points go on above the band without a gap of two tenths of a metre."""
+    first = np.minimum(np.ceil(thick / _BIN_M), 62).astype(np.uint64)
+    stands: NDArray[np.bool_] = ((bins >> first) & np.uint64(3)) > 0
+    return stands
+
+
+@kernel
+def _at(surface: NDArray[np.float32], y: float, x: float) -> float:
+    rows, columns = surface.shape
+    r = min(max(int(np.floor(y - 0.5)), 0), max(rows - 2, 0))
+    c = min(max(int(np.floor(x - 0.5)), 0), max(columns - 2, 0))
+    r1, c1 = min(r + 1, rows - 1), min(c + 1, columns - 1)
+    v, u = y - 0.5 - r, x - 0.5 - c
+    low = (1 - u) * surface[r, c] + u * surface[r, c1]
+    high = (1 - u) * surface[r1, c] + u * surface[r1, c1]
+    return float((1 - v) * low + v * high)
+
+
+@kernel
+def _sums_kernel(
+    xyz: NDArray[np.float64],
+    origin: NDArray[np.float64],
+    size_m: float,
+    surface: NDArray[np.float32],
+    reach: NDArray[np.float32],
+    sums: tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]],
+) -> None:
+    counts, totals, squares = sums
+    for point in range(xyz.shape[0]):
+        x = (xyz[point, 0] - origin[0]) / size_m
+        y = (xyz[point, 1] - origin[1]) / size_m
+        z = xyz[point, 2] - origin[2]
+        if np.isfinite(z) and 0.0 <= x < surface.shape[1] and 0.0 <= y < surface.shape[0]:
+            row, column = int(y), int(x)
+            offset = z - _at(surface, y, x)
+            if abs(offset) < reach[row, column]:
+                units = int(np.rint(offset / 1e-4))
+                counts[row, column] += 1
+                totals[row, column] += units
+                squares[row, column] += units * units
+
+
+@kernel
+def _columns_kernel(
+    xyz: NDArray[np.float64],
+    origin: NDArray[np.float64],
+    size_m: float,
+    surface: NDArray[np.float32],
+    thick: NDArray[np.float32],
+    held: tuple[NDArray[np.uint64], NDArray[np.uint16]],
+) -> None:
+    bins, feet = held
+    for point in range(xyz.shape[0]):
+        x = (xyz[point, 0] - origin[0]) / size_m
+        y = (xyz[point, 1] - origin[1]) / size_m
+        z = xyz[point, 2] - origin[2]
+        if np.isfinite(z) and 0.0 <= x < surface.shape[1] and 0.0 <= y < surface.shape[0]:
+            offset = z - _at(surface, y, x)
+            if 0.0 <= offset < 6.4:
+                row, column = int(y), int(x)
+                bins[row, column] |= np.uint64(1) << np.uint64(int(offset / 0.1))
+                if thick[row, column] < offset < thick[row, column] + _FOOT_REACH_M:
+                    part = int(4 * (y - row)) * 4 + int(4 * (x - column))
+                    feet[row, column] |= np.uint16(1) << np.uint16(part)
+
+
+@kernel
+def _classify_kernel(
+    xyz: NDArray[np.float64],
+    origin: NDArray[np.float64],
+    size_m: float,
+    grids: tuple[
+        NDArray[np.float32],
+        NDArray[np.float32],
+        NDArray[np.float32],
+        NDArray[np.float32],
+        NDArray[np.float32],
+    ],
+    feet: NDArray[np.uint16],
+    is_ground: NDArray[np.bool_],
+) -> None:
+    surface, below, above, face_low, face_high = grids
+    for point in range(xyz.shape[0]):
+        x = (xyz[point, 0] - origin[0]) / size_m
+        y = (xyz[point, 1] - origin[1]) / size_m
+        z = xyz[point, 2] - origin[2]
+        if np.isfinite(z) and 0.0 <= x < surface.shape[1] and 0.0 <= y < surface.shape[0]:
+            row, column = int(y), int(x)
+            offset = z - _at(surface, y, x)
+            in_band = -below[row, column] <= offset <= above[row, column]
+            on_face = face_low[row, column] <= z <= face_high[row, column]
+            part = int(4 * (y - row)) * 4 + int(4 * (x - column))
+            if (feet[row, column] >> np.uint16(part)) & np.uint16(1):
+                in_band = False
+            is_ground[point] = in_band or on_face
+
+
+@kernel
+def _heights_kernel(
+    xy: NDArray[np.float64],
+    origin: NDArray[np.float64],
+    size_m: float,
+    surface: NDArray[np.float32],
+    heights: NDArray[np.float64],
+) -> None:
+    for position in range(xy.shape[0]):
+        x = (xy[position, 0] - origin[0]) / size_m
+        y = (xy[position, 1] - origin[1]) / size_m
+        if 0.0 <= x < surface.shape[1] and 0.0 <= y < surface.shape[0]:
+            heights[position] = origin[2] + _at(surface, y, x)
+
+
+def warm_up() -> None:
+    """Compile the kernels of this file."""
+    grid = CellGrid(np.zeros(3), 1.0, 2, 2)
+    flat = np.zeros((2, 2), np.float32)
+    xyz = np.array([[0.5, 0.5, 0.0]])
+    band = ground_band(lambda: [xyz], grid, flat, np.ones((2, 2), np.bool_), Tolerances())
+    classify(xyz, grid, band)
+    heights_at(xyz[:, :2], grid, flat)

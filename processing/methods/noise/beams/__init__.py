@@ -1,0 +1,1 @@
+"""Beams: where they began, and what lies behind what they met."""

@@ -1,0 +1,65 @@
+"""The beams of a drive's points: rows, columns and ranges from where each beam began."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.image.point_image import PointCloudImage
+from processing.methods.noise.beams.beam_kernels import PointBeams
+from processing.methods.noise.beams.beam_origins import BeamOrigins
+from processing.recording.drive import Drive
+
+_NEAREST_M = 1e-3
+_SAMPLE = 20_000
+
+
+def along_rows(origins: BeamOrigins, row_starts: NDArray[np.int64]) -> NDArray[np.float64]:
+    """(rows,) m: how far the scanner had come at the first point of each row."""
+    firsts = np.minimum(row_starts[:-1], row_starts[-1] - 1)
+    positions = origins.of(firsts)
+    steps = np.linalg.norm(np.diff(positions, axis=0), axis=1)
+    return np.concatenate([[0.0], np.cumsum(steps)])
+
+
+def beams_of(
+    drive: Drive, image: PointCloudImage, rows: range, origins: BeamOrigins
+) -> tuple[PointBeams, slice]:
+    """The beams of a chunk of rows, and which points of the drive they are.
+
+    Coordinates are about the middle of the stretch.
+    """
+    grid, points = image.grid(rows)
+    xyz, positions = drive.xyz(points), origins.of(np.arange(points.start, points.stop))
+    middle = np.median(xyz[:: max(1, xyz.shape[0] // _SAMPLE)], axis=0)
+    xyz -= middle
+    positions -= middle
+    away = xyz - positions
+    ranges = np.maximum(np.sqrt((away * away).sum(axis=1)), _NEAREST_M)
+    columns = np.ascontiguousarray(grid.columns)
+    revolutions = drive.revolutions
+    turn = (
+        2 * np.pi / revolutions.pulses_per_revolution
+        if revolutions is not None
+        else _turn(away / ranges[:, None], columns, grid.width)
+    )
+    beams = PointBeams(
+        xyz,
+        positions,
+        ranges,
+        columns,
+        np.ascontiguousarray(grid.row_starts),
+        np.ascontiguousarray(grid.segments),
+        turn,
+    )
+    return beams, points
+
+
+def _turn(directions: NDArray[np.float64], columns: NDArray[np.int32], width: int) -> float:
+    """Radians from column to column, measured between points of neighbouring columns."""
+    firsts = np.flatnonzero(np.diff(columns) == 1)
+    firsts = firsts[:: max(1, firsts.size // _SAMPLE)]
+    if not firsts.size:
+        return 2 * np.pi / max(width, 1)
+    gaps = np.linalg.norm(directions[firsts + 1] - directions[firsts], axis=1)
+    return float(max(np.median(gaps), 1e-6))

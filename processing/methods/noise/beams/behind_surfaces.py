@@ -1,0 +1,208 @@
+"""Points behind a surface that the same scanner saw: echoes that came back by way of a mirror.
+
+Seen from where a scanner stood, ground and walls are closed: a beam that went on through them did
+not. A point is such an echo where the beams next above it and next below it all ended clearly
+nearer. Ground beyond a crest has open air above it, ground beneath a boom has ground below it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.core.kernels import kernel
+from processing.core.monitor import Monitor
+from processing.methods.noise.beams.scanner_positions import scanner_position_of
+from processing.recording.drive import Drive
+
+Floats = NDArray[np.float64]
+
+_AT_ONCE = 1 << 22
+_FINEST_RAD, _COARSEST_RAD = np.radians(0.1), np.radians(1.5)
+_POINTS_IN_BIN = 3
+_ROWS_BESIDE = 3
+_MARGIN_M = 0.05
+_FEWEST = 8
+_FARTHER_SHARE = 0.15
+_DEVIATIONS = 3.0
+_ROUNDS = 2
+
+
+def echoes_of(drive: Drive, monitor: Monitor) -> NDArray[np.bool_] | None:
+    """Which points of a drive lie behind a surface: (n,) bool; None where nobody knows.
+
+    That is so where the scanner moved, and where nothing tells its place.
+
+    Raises
+    ------
+    Cancelled
+    """
+    stand = scanner_position_of(drive)
+    if stand is None:
+        return None
+    behind = np.zeros(drive.count, np.bool_)
+    for start in range(0, drive.count, _AT_ONCE):
+        monitor.check()
+        part = slice(start, min(start + _AT_ONCE, drive.count))
+        behind[part] = behind_surfaces(drive.xyz(part), stand)
+    return behind
+
+
+def behind_surfaces(xyz: Floats, stand: Floats) -> NDArray[np.bool_]:
+    """Which points lie behind a surface as seen from where they were measured: (n,) bool.
+
+    Parameters
+    ----------
+    xyz : (n, 3) float64
+        Measured from one place, in the order of the recording, m; rows with NaN are passed over.
+    stand : (3,) float64
+        Where the scanner stood, m, in the same frame.
+
+    Notes
+    -----
+    Beams are kept in bins of equal angles, about three in each; those next to a point are the
+    three bins above and below it and their neighbours. At least eight beams on either side have
+    to end nearer than the point, all but 15 % of them by more than 5 cm, and by more than three
+    times as much as they differ among themselves: ground seen through grass or a hedge is not
+    behind a surface. What was found no longer counts in a second round.
+    """
+    xyz = np.ascontiguousarray(xyz)
+    beams = _beams(xyz, stand, _FINEST_RAD)
+    size = _FINEST_RAD
+    while size < _COARSEST_RAD and _middle_count(beams) < _POINTS_IN_BIN:
+        size *= np.sqrt(2.0)
+        beams = _beams(xyz, stand, size)
+    limits = (_MARGIN_M, _FARTHER_SHARE, _DEVIATIONS, _FEWEST)
+    grid = (beams.columns, beams.starts, beams.bins)
+    found = np.zeros(beams.bins.size, np.bool_)
+    for _ in range(_ROUNDS):
+        _behind_kernel(grid, beams.ranges, limits, found.copy(), found)
+    behind = np.zeros(len(xyz), np.bool_)
+    behind[beams.order[found]] = True
+    return behind
+
+
+@dataclass(frozen=True)
+class _Beams:
+    """Beams in bins of equal angles, row by row from below; ``order`` sorts points by bin."""
+
+    columns: int
+    starts: NDArray[np.int64]
+    order: NDArray[np.int64]
+    bins: NDArray[np.int64]
+    ranges: NDArray[np.float32]
+
+
+def _middle_count(beams: _Beams) -> float:
+    """How many points the bin of a point holds, in the median of all points."""
+    of_points = np.diff(beams.starts)[beams.bins]
+    return float(np.median(of_points)) if of_points.size else np.inf
+
+
+def _beams(xyz: Floats, stand: Floats, size: float) -> _Beams:
+    columns = int(np.ceil(2 * np.pi / size))
+    rows = int(np.ceil(np.pi / size)) + 1
+    bins = np.empty(len(xyz), np.int64)
+    ranges = np.empty(len(xyz), np.float32)
+    frame = (float(stand[0]), float(stand[1]), float(stand[2]))
+    _bins_kernel(xyz, frame, (rows, columns), bins, ranges)
+    counts = np.bincount(bins + 1, minlength=rows * columns + 1)
+    # Bin 0 of the counts holds what isn't finite, and is left out.
+    starts = np.cumsum(counts) - counts[0]
+    order = np.empty(int(starts[-1]), np.int64)
+    _order_kernel(bins, starts[:-1].copy(), order)
+    return _Beams(columns, starts, order, bins[order], ranges[order])
+
+
+@kernel
+def _bins_kernel(
+    xyz: Floats,
+    stand: tuple[float, float, float],
+    grid: tuple[int, int],
+    bins: NDArray[np.int64],
+    ranges: NDArray[np.float32],
+) -> None:
+    rows, columns = grid
+    for point in range(xyz.shape[0]):
+        x, y = xyz[point, 0] - stand[0], xyz[point, 1] - stand[1]
+        z = xyz[point, 2] - stand[2]
+        away = np.sqrt(x * x + y * y + z * z)
+        ranges[point] = away
+        bins[point] = -1
+        if np.isfinite(away):
+            turn = np.arctan2(y, x) / (2 * np.pi)
+            column = min(int((turn - np.floor(turn)) * columns), columns - 1)
+            rise = np.arctan2(z, np.hypot(x, y)) / np.pi + 0.5
+            bins[point] = min(int(rise * (rows - 1)), rows - 1) * columns + column
+
+
+@kernel
+def _order_kernel(
+    bins: NDArray[np.int64], following: NDArray[np.int64], order: NDArray[np.int64]
+) -> None:
+    for point in range(bins.size):
+        own = bins[point]
+        if own >= 0:
+            order[following[own]] = point
+            following[own] += 1
+
+
+@kernel
+def _behind_kernel(
+    grid: tuple[int, NDArray[np.int64], NDArray[np.int64]],
+    ranges: NDArray[np.float32],
+    limits: tuple[float, float, float, int],
+    gone: NDArray[np.bool_],
+    found: NDArray[np.bool_],
+) -> None:
+    columns, _, bins = grid
+    for point in range(ranges.size):
+        if not found[point]:
+            row, column = bins[point] // columns, bins[point] % columns
+            above = _ends_nearer(grid, ranges, limits, gone, (row, column, 1, ranges[point]))
+            found[point] = above and _ends_nearer(
+                grid, ranges, limits, gone, (row, column, -1, ranges[point])
+            )
+
+
+@kernel
+def _ends_nearer(
+    grid: tuple[int, NDArray[np.int64], NDArray[np.int64]],
+    ranges: NDArray[np.float32],
+    limits: tuple[float, float, float, int],
+    gone: NDArray[np.bool_],
+    beam: tuple[int, int, int, float],
+) -> bool:
+    """Whether the beams to one side of another ended nearer, and together."""
+    columns, starts, _ = grid
+    margin_m, share, deviations, fewest = limits
+    row, column, side, away = beam
+    count, farther, total, squares = 0, 0, 0.0, 0.0
+    for step in range(1, 4):
+        first = (row + side * step) * columns
+        if first < 0 or first + columns >= starts.size:
+            continue
+        for beside in range(-1, 2):
+            own = first + (column + beside) % columns
+            for other in range(starts[own], starts[own + 1]):
+                if gone[other]:
+                    continue
+                count += 1
+                nearer = away - ranges[other]
+                if nearer <= margin_m:
+                    farther += 1
+                else:
+                    total += nearer
+                    squares += nearer * nearer
+    if count < fewest or farther > share * count:
+        return False
+    mean = total / (count - farther)
+    spread = max(squares / (count - farther) - mean * mean, 0.0)
+    return mean * mean >= deviations * deviations * spread
+
+
+def warm_up() -> None:
+    """Compile the kernels of this file."""
+    behind_surfaces(np.ones((2, 3)), np.zeros(3))

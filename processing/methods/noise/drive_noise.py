@@ -1,0 +1,143 @@
+"""The noise of a whole drive, by each of the methods, with bounded memory.
+
+Neighbours in space may have been measured minutes apart: the two methods of the study read the
+drive by tiles of space. The combined one follows the recording where its beams are known.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import count
+from pathlib import Path
+from threading import Lock
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.core.monitor import Monitor, PartMonitor
+from processing.image.images_of_drives import image_of
+from processing.methods.noise.beams.beam_origins import beam_origins
+from processing.methods.noise.beams.beams_of_drives import along_rows, beams_of
+from processing.methods.noise.combined import noise_codes_in_space, noise_codes_with_beams
+from processing.methods.noise.neighbours.sharing import share_out
+from processing.methods.noise.noise_codes import part_noise_by_ground
+from processing.methods.noise.row_chunks import POINTS, row_chunks_of
+from processing.methods.noise.tiles_of_space import TiledCloud
+from processing.methods.noise.whole_clouds import (
+    radius_outliers_by_parts,
+    statistical_outliers_by_parts,
+)
+from processing.recording.columns.ordering import read_chunk
+from processing.recording.drive import Drive
+
+_TILE_M = 1.0
+_SORTING, _FINDING = 0.1, 0.9
+_REACH_SPACINGS = 40.0
+_LEAST_REACH_M, _MOST_REACH_M = 1.0, 10.0
+_POINTS_IN_SPACE = 2_000_000
+
+
+@dataclass(frozen=True)
+class NoiseSearch:
+    """A drive whose noise is looked for.
+
+    Attributes
+    ----------
+    drive : Drive
+    codes : (n,) uint8
+        Zero; gets 7 for noise below the ground, 18 for noise elsewhere.
+    scratch : Path
+        A folder for files meanwhile; the caller deletes it.
+    points_at_once : int
+        What the methods of the study hold in memory at a time.
+    points_per_chunk : int
+        The combined method's own; its results near the cuts depend a little on it.
+    """
+
+    drive: Drive
+    codes: NDArray[np.uint8]
+    scratch: Path
+    points_at_once: int
+    points_per_chunk: int = POINTS
+
+    def by_radius(self, radius_m: float, neighbours: int, monitor: Monitor) -> None:
+        """Radius outlier removal."""
+        cloud = self._tiled(monitor)
+        radius_outliers_by_parts(
+            cloud,
+            self.codes,
+            radius_m,
+            neighbours,
+            monitor=PartMonitor(monitor, _SORTING, _FINDING),
+            points_per_part=self.points_at_once,
+        )
+        self._tell_low_from_high(cloud, monitor)
+
+    def by_statistics(self, neighbours: int, deviations: float, monitor: Monitor) -> None:
+        """Statistical outlier removal."""
+        cloud = self._tiled(monitor)
+        statistical_outliers_by_parts(
+            cloud,
+            self.codes,
+            neighbours,
+            deviations,
+            scratch=self.scratch,
+            monitor=PartMonitor(monitor, _SORTING, _FINDING),
+            points_per_part=self.points_at_once,
+        )
+        self._tell_low_from_high(cloud, monitor)
+
+    def combined(self, strictness: float, monitor: Monitor) -> None:
+        """By everything that is known; see :mod:`processing.methods.noise.combined`."""
+        origins = beam_origins(self.drive)
+        if origins is None:
+            self._combined_in_space(strictness, monitor)
+            return
+        drive = self.drive
+        image = image_of(drive, drive.pixel_kind)
+        starts = image.row_starts
+        along = along_rows(origins, starts)
+        chunks = list(row_chunks_of(starts, along, self.points_per_chunk))
+        told, ended = Lock(), count(1)
+
+        def look(number: int, _: int) -> None:
+            chunk = chunks[number]
+            drive.columns.give_back()
+            beams, points = beams_of(drive, image, chunk.with_overlap, origins)
+            intensity = read_chunk(drive.folder, "intensity", points.start, points.stop)
+            codes = noise_codes_with_beams(beams, intensity, strictness, monitor=monitor)
+            first, end = int(starts[chunk.rows.start]), int(starts[chunk.rows.stop])
+            skipped = first - int(starts[chunk.with_overlap.start])
+            self.codes[first:end] = codes[skipped : skipped + end - first]
+            with told:
+                monitor.report(next(ended) / len(chunks))
+
+        share_out(look, len(chunks), 1, monitor)
+
+    def _combined_in_space(self, strictness: float, monitor: Monitor) -> None:
+        cloud = self._tiled(monitor)
+        reach = min(max(_REACH_SPACINGS * cloud.spacing_m, _LEAST_REACH_M), _MOST_REACH_M)
+        rest = PartMonitor(monitor, _SORTING, 1.0)
+        done = 0
+        for part in cloud.parts(reach, _POINTS_IN_SPACE):
+            rest.report(done / cloud.count)
+            xyz = np.concatenate([cloud.read(part.own), cloud.read(part.around)])
+            codes = noise_codes_in_space(xyz, strictness, monitor=rest)
+            self.codes[part.own] = codes[: part.own.size]
+            done += part.own.size
+
+    def _tiled(self, monitor: Monitor) -> TiledCloud:
+        drive = self.drive
+
+        def read(points: NDArray[np.int64] | slice) -> NDArray[np.float64]:
+            drive.columns.give_back()
+            return drive.xyz(points)
+
+        sorting = PartMonitor(monitor, 0.0, _SORTING)
+        return TiledCloud(read, drive.count, self.scratch / "order", _TILE_M, monitor=sorting)
+
+    def _tell_low_from_high(self, cloud: TiledCloud, monitor: Monitor) -> None:
+        monitor.report(_FINDING)
+        part_noise_by_ground(
+            cloud, self.codes, monitor=monitor, points_per_part=self.points_at_once
+        )

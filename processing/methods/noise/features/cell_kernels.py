@@ -1,0 +1,367 @@
+"""Loops over nested cells: what lies around a cell, above and below it, and what hangs together."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.core.kernels import kernel
+
+_Floats = NDArray[np.float64]
+_Integers = NDArray[np.int64]
+
+_X = 0x1249249249249249
+SUMS = 11  # points, sure points, x y z, xx xy xz yy yz zz
+AROUND = 9  # see around_kernel
+COLUMN = 6  # see column_kernel
+_COLUMN_CELLS = 16
+
+
+class CellLevel(NamedTuple):
+    """``codes`` (c,) rising; ``sums`` (c, 11); ``side`` m; ``slots``: where a code is found."""
+
+    codes: _Integers
+    sums: _Floats
+    side: float
+    slots: NDArray[np.int32]
+
+
+@kernel
+def number_kernel(codes: _Integers, numbers: NDArray[np.int32]) -> int:
+    """Number codes that don't decrease, equal ones alike; how many there are."""
+    number = -1
+    for position in range(codes.size):
+        if position == 0 or codes[position] != codes[position - 1]:
+            number += 1
+        numbers[position] = number
+    return number + 1
+
+
+@kernel
+def slots_kernel(codes: _Integers, slots: NDArray[np.int32]) -> None:
+    """Enter every code at the first free slot from its own on."""
+    mask = slots.size - 1
+    for cell in range(codes.size):
+        slot = _slot(codes[cell], mask)
+        while slots[slot] >= 0:
+            slot = (slot + 1) & mask
+        slots[slot] = cell
+
+
+@kernel
+def point_sums_kernel(
+    xyz: _Floats, is_sure: NDArray[np.bool_], group: NDArray[np.int32], sums: _Floats
+) -> None:
+    """Add every point to the sums of its cell."""
+    for point in range(xyz.shape[0]):
+        row = sums[group[point]]
+        x, y, z = xyz[point, 0], xyz[point, 1], xyz[point, 2]
+        row[0] += 1
+        row[1] += is_sure[point]
+        row[2] += x
+        row[3] += y
+        row[4] += z
+        row[5] += x * x
+        row[6] += x * y
+        row[7] += x * z
+        row[8] += y * y
+        row[9] += y * z
+        row[10] += z * z
+
+
+@kernel
+def cell_sums_kernel(below: _Floats, group: NDArray[np.int32], sums: _Floats) -> None:
+    """Add the sums of every cell to those of the cell that holds it."""
+    for cell in range(group.size):
+        for m in range(SUMS):
+            sums[group[cell], m] += below[cell, m]
+
+
+@kernel
+def around_kernel(level: CellLevel, codes: _Integers, around: _Floats) -> None:
+    """What lies in the 27 cubes around each of some cubes, which rise.
+
+    ``around`` (k, 9): points, sure points, linearity, planarity, thickness in cells, then normal
+    (3); the last is the normal's distance from the origin, so that n · p − it is a point's offset.
+    """
+    total = np.empty(SUMS)
+    covariance = np.empty((3, 3))
+    for i in range(codes.size):
+        total[:] = 0
+        _add_around(level, codes[i], total)
+        count = max(total[0], 1.0)
+        around[i, 0] = total[0]
+        around[i, 1] = total[1]
+        mx, my, mz = total[2] / count, total[3] / count, total[4] / count
+        _covariance(total, covariance)
+        large, middle, small = _eigenvalues(covariance)
+        around[i, 2] = (large - middle) / max(large, 1e-12)
+        around[i, 3] = (middle - small) / max(large, 1e-12)
+        around[i, 4] = math.sqrt(max(small, 0.0)) / level.side
+        nx, ny, nz = _eigenvector(covariance, small)
+        around[i, 5], around[i, 6], around[i, 7] = nx, ny, nz
+        around[i, 8] = nx * mx + ny * my + nz * mz
+
+
+@kernel
+def mean_around_kernel(
+    level: CellLevel, codes: _Integers, totals: _Floats, found: NDArray[np.float32]
+) -> None:
+    """The mean of a value over the points in the 27 cubes around each of some cubes.
+
+    ``totals`` (c,): the value's sum over the points of each cube of the level; ``found`` (k,).
+    """
+    for i in range(codes.size):
+        total, count = 0.0, 0.0
+        for side in range(27):
+            cell = _beside(level, codes[i], side)
+            if cell >= 0:
+                total += totals[cell]
+                count += level.sums[cell, 0]
+        found[i] = total / max(count, 1.0)
+
+
+@kernel
+def point_features_kernel(
+    level: CellLevel,
+    around: _Floats,
+    cells: _Integers,
+    local_xyz: _Floats,
+    positions: _Integers,
+    directions: _Floats,
+    found: NDArray[np.float32],
+) -> None:
+    """Numbers of points from what lies around their cells.
+
+    ``around`` (k, 9) as from :func:`around_kernel`; ``cells`` (m,) into it; ``positions`` (m,) into
+    ``local_xyz``; ``directions`` (m, 3), or no rows where beams aren't known. ``found`` (m, 8): log2 of
+    points and of sure points, linearity, planarity, thickness, distance from the plane in cells,
+    how level the plane is, and how squarely the beam met it.
+    """
+    for i in range(positions.size):
+        mine, xyz = around[cells[i]], local_xyz[positions[i]]
+        nx, ny, nz = mine[5], mine[6], mine[7]
+        found[i, 0] = math.log2(1 + mine[0])
+        found[i, 1] = math.log2(1 + mine[1])
+        found[i, 2], found[i, 3], found[i, 4] = mine[2], mine[3], mine[4]
+        found[i, 5] = abs(nx * xyz[0] + ny * xyz[1] + nz * xyz[2] - mine[8]) / level.side
+        found[i, 6] = abs(nz)
+        if directions.shape[0]:
+            found[i, 7] = abs(nx * directions[i, 0] + ny * directions[i, 1] + nz * directions[i, 2])
+        else:
+            found[i, 7] = 0.0
+
+
+@kernel
+def column_kernel(level: CellLevel, codes: _Integers, found: NDArray[np.float32]) -> None:
+    """What lies straight above and straight below each of some cells.
+
+    ``found`` (k, 6): upwards, then downwards: cells that are occupied without a break; cells to
+    the first occupied one after a break, 0 where there is none; log2 of the points in that one.
+    """
+    zs = _X << 2
+    for i in range(codes.size):
+        rest, height = codes[i] & ~zs, codes[i] & zs
+        for way in range(2):
+            value, run, gap, points = height, 0, 0, 0.0
+            for step in range(1, _COLUMN_CELLS + 1):
+                value = _stepped(value, 1 - 2 * way, zs, 4)
+                if value < 0:
+                    break
+                cell = _cell_of(level, rest | value)
+                if cell >= 0 and run == step - 1:
+                    run = step
+                elif cell >= 0:
+                    gap, points = step, level.sums[cell, 0]
+                    break
+            found[i, 3 * way] = run
+            found[i, 3 * way + 1] = gap
+            found[i, 3 * way + 2] = math.log2(1 + points)
+
+
+@kernel
+def join_kernel(level: CellLevel, joins: NDArray[np.bool_], parents: _Integers) -> None:
+    """Give every cell the number of the first cell of its part; only cells that join are joined."""
+    for cell in range(level.codes.size):
+        if not joins[cell]:
+            continue
+        for side in range(13):
+            other = _beside(level, level.codes[cell], side)
+            if other >= 0 and joins[other]:
+                a, b = _root(parents, cell), _root(parents, other)
+                if a < b:
+                    parents[b] = a
+                elif b < a:
+                    parents[a] = b
+    for cell in range(level.codes.size):
+        parents[cell] = _root(parents, cell)
+
+
+@kernel
+def largest_kernel(
+    level: CellLevel, joins: NDArray[np.bool_], totals: _Floats, found: _Floats
+) -> None:
+    """Each cell's total, or the largest beside it where the cell itself doesn't join."""
+    for cell in range(level.codes.size):
+        found[cell] = totals[cell] if joins[cell] else 0.0
+        if joins[cell]:
+            continue
+        for side in range(27):
+            other = _beside(level, level.codes[cell], side)
+            if other >= 0 and joins[other]:
+                found[cell] = max(found[cell], totals[other])
+
+
+@kernel
+def spread_kernel(sums: _Floats, found: _Floats) -> None:
+    """Standard deviations (m) along the three main axes of points, falling, from their sums."""
+    covariance = np.empty((3, 3))
+    for i in range(sums.shape[0]):
+        _covariance(sums[i], covariance)
+        values = _eigenvalues(covariance)
+        for axis in range(3):
+            found[i, axis] = math.sqrt(max(values[axis], 0.0))
+
+
+@kernel
+def _root(parents: _Integers, cell: int) -> int:
+    while parents[cell] != cell:
+        parents[cell] = parents[parents[cell]]
+        cell = parents[cell]
+    return cell
+
+
+@kernel
+def _beside(level: CellLevel, code: int, side: int) -> int:
+    """The cell on one of 27 sides, of which 13 is the cell itself, or −1."""
+    ys, zs = _X << 1, _X << 2
+    x = _stepped(code & _X, side % 3 - 1, _X, 1)
+    y = _stepped(code & ys, side // 3 % 3 - 1, ys, 2)
+    z = _stepped(code & zs, side // 9 - 1, zs, 4)
+    if x < 0 or y < 0 or z < 0:
+        return -1
+    return _cell_of(level, x | y | z)
+
+
+@kernel
+def _slot(code: int, mask: int) -> int:
+    mixed = code * 0x1E3779B97F4A7C15
+    return (mixed ^ (mixed >> 29)) & mask
+
+
+@kernel
+def _cell_of(level: CellLevel, code: int) -> int:
+    mask = level.slots.size - 1
+    slot = _slot(code, mask)
+    while level.slots[slot] >= 0:
+        cell = int(level.slots[slot])
+        if level.codes[cell] == code:
+            return cell
+        slot = (slot + 1) & mask
+    return -1
+
+
+@kernel
+def _add_around(level: CellLevel, code: int, total: _Floats) -> None:
+    ys, zs = _X << 1, _X << 2
+    x0, y0, z0 = code & _X, code & ys, code & zs
+    for i in range(-1, 2):
+        x = _stepped(x0, i, _X, 1)
+        for j in range(-1, 2):
+            y = _stepped(y0, j, ys, 2)
+            for k in range(-1, 2):
+                z = _stepped(z0, k, zs, 4)
+                if x < 0 or y < 0 or z < 0:
+                    continue
+                cell = _cell_of(level, x | y | z)
+                if cell >= 0:
+                    for m in range(SUMS):
+                        total[m] += level.sums[cell, m]
+
+
+@kernel
+def _stepped(value: int, step: int, mask: int, one: int) -> int:
+    """A cube's index along one axis, its bits spread, one further or one back; −1 below zero."""
+    if step == 0:
+        return value
+    if step < 0:
+        return (value - one) & mask if value > 0 else -1
+    return ((value | ~mask) + one) & mask
+
+
+@kernel
+def _covariance(sums: _Floats, covariance: _Floats) -> None:
+    """The spread of points from their sums; the upper triangle only."""
+    count = max(sums[0], 1.0)
+    mx, my, mz = sums[2] / count, sums[3] / count, sums[4] / count
+    covariance[0, 0] = sums[5] / count - mx * mx
+    covariance[0, 1] = sums[6] / count - mx * my
+    covariance[0, 2] = sums[7] / count - mx * mz
+    covariance[1, 1] = sums[8] / count - my * my
+    covariance[1, 2] = sums[9] / count - my * mz
+    covariance[2, 2] = sums[10] / count - mz * mz
+
+
+@kernel
+def _eigenvalues(a: _Floats) -> tuple[float, float, float]:
+    p1 = a[0, 1] ** 2 + a[0, 2] ** 2 + a[1, 2] ** 2
+    q = (a[0, 0] + a[1, 1] + a[2, 2]) / 3
+    p2 = (a[0, 0] - q) ** 2 + (a[1, 1] - q) ** 2 + (a[2, 2] - q) ** 2 + 2 * p1
+    if p2 <= 1e-18:
+        return q, q, q
+    p = math.sqrt(p2 / 6)
+    b00, b11, b22 = (a[0, 0] - q) / p, (a[1, 1] - q) / p, (a[2, 2] - q) / p
+    b01, b02, b12 = a[0, 1] / p, a[0, 2] / p, a[1, 2] / p
+    half = b00 * (b11 * b22 - b12 * b12) - b01 * (b01 * b22 - b12 * b02)
+    half = (half + b02 * (b01 * b12 - b11 * b02)) / 2
+    phi = math.acos(min(1.0, max(-1.0, half))) / 3
+    large = q + 2 * p * math.cos(phi)
+    small = q + 2 * p * math.cos(phi + 2 * math.pi / 3)
+    return large, 3 * q - large - small, small
+
+
+@kernel
+def _eigenvector(a: _Floats, value: float) -> tuple[float, float, float]:
+    """Unit vector across the rows of a − value · 1: the longest cross product of two of them."""
+    x0, y0, z0 = a[0, 0] - value, a[0, 1], a[0, 2]
+    x1, y1, z1 = a[0, 1], a[1, 1] - value, a[1, 2]
+    x2, y2, z2 = a[0, 2], a[1, 2], a[2, 2] - value
+    best, nx, ny, nz = 0.0, 0.0, 0.0, 1.0
+    for pair in range(3):
+        if pair == 0:
+            cx, cy, cz = y0 * z1 - z0 * y1, z0 * x1 - x0 * z1, x0 * y1 - y0 * x1
+        elif pair == 1:
+            cx, cy, cz = y0 * z2 - z0 * y2, z0 * x2 - x0 * z2, x0 * y2 - y0 * x2
+        else:
+            cx, cy, cz = y1 * z2 - z1 * y2, z1 * x2 - x1 * z2, x1 * y2 - y1 * x2
+        length = math.sqrt(cx * cx + cy * cy + cz * cz)
+        if length > best:
+            best, nx, ny, nz = length, cx / length, cy / length, cz / length
+    return nx, ny, nz
+
+
+def warm_up() -> None:
+    """Compile the kernels."""
+    codes = np.array([0, 3], np.int64)
+    slots = np.full(16, -1, np.int32)
+    slots_kernel(codes, slots)
+    sums, numbers = np.zeros((2, SUMS)), np.zeros(2, np.int32)
+    number_kernel(codes, numbers)
+    point_sums_kernel(np.zeros((2, 3)), np.ones(2, np.bool_), numbers, sums)
+    cell_sums_kernel(sums, numbers, np.zeros((2, SUMS)))
+    level = CellLevel(codes, sums, 1.0, slots)
+    around, found = np.zeros((2, AROUND)), np.empty((2, 8), np.float32)
+    around_kernel(level, codes, around)
+    for directions in (np.zeros((0, 3)), np.zeros((2, 3))):
+        point_features_kernel(
+            level, around, codes // 3, np.zeros((2, 3)), codes // 3, directions, found
+        )
+    mean_around_kernel(level, codes, sums[:, 0].copy(), np.empty(2, np.float32))
+    column_kernel(level, codes, np.empty((2, COLUMN), np.float32))
+    parents = np.arange(2)
+    join_kernel(level, sums[:, 0] > 0, parents)
+    largest_kernel(level, sums[:, 0] > 0, sums[:, 0], np.empty(2))
+    spread_kernel(sums, np.empty((2, 3)))

@@ -1,0 +1,66 @@
+"""How points lie around a place, at several sizes at once: sums over nested cells.
+
+A level keeps, for every occupied cube, the number of points, of points on sure surfaces, and the
+first and second moments. Twenty-seven cubes around a place are added up and their spread is taken
+apart into line, plane and scatter.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.methods.noise.features.cell_kernels import (
+    SUMS,
+    CellLevel,
+    cell_sums_kernel,
+    number_kernel,
+    point_sums_kernel,
+    slots_kernel,
+)
+from processing.methods.noise.neighbours.morton import NestedCells
+
+_Floats = NDArray[np.float64]
+_Integers = NDArray[np.int64]
+
+
+def cell_levels(
+    cells: NestedCells, is_sure: NDArray[np.bool_], count: int
+) -> tuple[list[CellLevel], list[NDArray[np.int32]]]:
+    """Levels 0 … count − 1 of points in nested cells.
+
+    Parameters
+    ----------
+    is_sure : (n,) bool
+        In the cells' order.
+
+    Returns
+    -------
+    levels : list of CellLevel
+    numbers : list of (…,) int32
+        The cell of level 0 of each point along the curve; then, for each cell of a level, the one
+        of the next that holds it.
+    """
+    codes, positions = cells.codes, np.empty(cells.codes.size, np.int32)
+    used = number_kernel(codes, positions)
+    sums, kept = np.zeros((used, SUMS)), np.empty(used, np.int64)
+    point_sums_kernel(cells.local_xyz, is_sure, positions, sums)
+    kept[positions] = codes
+    levels, numbers = [_level_of(kept, sums, cells.cell_m)], [positions]
+    for _ in range(1, count):
+        below = levels[-1]
+        parents, positions = below.codes >> 3, np.empty(below.codes.size, np.int32)
+        used = number_kernel(parents, positions)
+        sums, kept = np.zeros((used, SUMS)), np.empty(used, np.int64)
+        cell_sums_kernel(below.sums, positions, sums)
+        kept[positions] = parents
+        levels.append(_level_of(kept, sums, below.side * 2))
+        numbers.append(positions)
+    return levels, numbers
+
+
+def _level_of(codes: _Integers, sums: _Floats, side: float) -> CellLevel:
+    size = 1 << max(4, int(2 * max(codes.size, 1)).bit_length())
+    slots = np.full(size, -1, np.int32)
+    slots_kernel(codes, slots)
+    return CellLevel(codes, sums, side, slots)

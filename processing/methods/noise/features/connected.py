@@ -1,0 +1,82 @@
+"""How much hangs together: cubes that touch, joined, and what such a part looks like."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.methods.noise.features.cell_kernels import (
+    CellLevel,
+    join_kernel,
+    largest_kernel,
+    spread_kernel,
+)
+
+PART_FEATURES = 5
+
+
+@dataclass(frozen=True)
+class Parts:
+    """The parts of a cloud whose cubes of one size touch by a face, an edge or a corner.
+
+    Attributes
+    ----------
+    numbers : (c,) int64
+        Each cube's part.
+    sizes : (p,) float64
+        Points of each part.
+    features : (p, PART_FEATURES) float32
+        Of each part: log2 of its points and of its sure points, log2 of its length in cubes, and
+        how much it is a line and a plane, 0 to 1.
+    """
+
+    numbers: NDArray[np.int64]
+    sizes: NDArray[np.float64]
+    features: NDArray[np.float32]
+
+
+def sure_counts(level: CellLevel) -> NDArray[np.float64]:
+    """How many sure points there are in the part to which each cube belongs.
+
+    Cubes join only through cubes that hold such points. Others take the largest part beside them,
+    0 where there is none.
+
+    Returns
+    -------
+    (c,) float64
+    """
+    joins = level.sums[:, 1] > 0
+    parents = np.arange(level.codes.size)
+    join_kernel(level, joins, parents)
+    totals = np.bincount(parents, weights=level.sums[:, 1], minlength=parents.size)
+    found = np.empty(parents.size)
+    largest_kernel(level, joins, totals[parents].astype(np.float64), found)
+    return found
+
+
+def parts_of(level: CellLevel, joins: NDArray[np.bool_] | None = None) -> Parts:
+    """The parts of everything that was measured, or of the cubes that join, (c,) bool.
+
+    Cubes that don't join are parts of their own.
+    """
+    parents = np.arange(level.codes.size)
+    join_kernel(level, np.ones(parents.size, np.bool_) if joins is None else joins, parents)
+    roots, numbers = np.unique(parents, return_inverse=True)
+    sums = np.column_stack(
+        [np.bincount(numbers, weights=one, minlength=roots.size) for one in level.sums.T]
+    )
+    spreads = np.empty((roots.size, 3))
+    spread_kernel(np.ascontiguousarray(sums), spreads)
+    length = np.maximum(spreads[:, 0], 1e-9)
+    features = np.column_stack(
+        [
+            np.log2(1 + sums[:, 0]),
+            np.log2(1 + sums[:, 1]),
+            np.log2(0.1 + spreads[:, 0] / level.side),
+            (spreads[:, 0] - spreads[:, 1]) / length,
+            (spreads[:, 1] - spreads[:, 2]) / length,
+        ]
+    )
+    return Parts(numbers, sums[:, 0].astype(np.float64), features.astype(np.float32))

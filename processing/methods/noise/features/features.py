@@ -1,0 +1,245 @@
+"""What is known about a point that may be noise, in numbers that don't depend on the scanner.
+
+Sizes are taken relative to the spacing that the scanner should have there: the distance between
+neighbouring beams at the point's range, or, where no beams are known, between the points around.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.core.monitor import Monitor
+from processing.methods.noise.beams.beam_kernels import (
+    SQUARE,
+    SURE,
+    PointBeams,
+    spacing_kernel,
+    surface_kernel,
+)
+from processing.methods.noise.beams.window_kernels import (
+    NEAR_FEATURES,
+    WIDE_FEATURES,
+    near_beams_kernel,
+    wide_beams_kernel,
+)
+from processing.methods.noise.features.local_spacing import local_spacings
+from processing.methods.noise.features.second_pass import FirstEstimate, suspicions_beside
+from processing.methods.noise.features.surroundings import PART_SIZES, CloudNeighbourhood
+from processing.methods.noise.neighbours.morton import nested_cells
+from processing.methods.noise.neighbours.sharing import share_out
+
+_Floats = NDArray[np.float64]
+_Integers = NDArray[np.int64]
+
+_FINEST_M = 0.02
+_ROWS_AT_ONCE = 64
+_POINTS_AT_ONCE = 4_096
+_GROUND_BAND_M = 0.3
+_FLAT_BAND_M = 0.1
+_PLANE_POINTS = 24
+_PLANE_SHARE = 0.4
+_PLANE_THICKNESS = 0.12  # in cells of two spacings
+_INTENSITY_SAMPLE = 20_000
+
+
+@dataclass(frozen=True)
+class Candidates:
+    """The points that may be noise.
+
+    Attributes
+    ----------
+    points : (k,) int64
+        Indices into the cloud.
+    features : (k, f) float32
+    around : Surroundings
+        Of the whole cloud.
+    levels : list of int
+        At which parts of the cloud are looked at.
+    beams, rows : Beams and (k,) int64, or None
+        Where beams are known.
+    """
+
+    points: _Integers
+    features: NDArray[np.float32]
+    around: CloudNeighbourhood
+    levels: list[int]
+    beams: PointBeams | None = None
+    rows: _Integers | None = None
+
+    def seen_again(self, odds: _Floats, chosen: _Integers, monitor: Monitor) -> NDArray[np.float32]:
+        """(c, g): features of chosen ones, with what was first said of all, (k,) log-odds."""
+        judgement = FirstEstimate(self.around, self.points, odds)
+        blocks = [self.features[chosen], judgement.features(chosen, self.levels, monitor)]
+        if self.beams is not None and self.rows is not None:
+            blocks.append(suspicions_beside(self.beams, self.rows, judgement, chosen, monitor))
+        return np.concatenate(blocks, axis=1)
+
+
+@dataclass(frozen=True)
+class BeamSearch:
+    """Points of a recording that no smooth surface explains, before anything dear is asked.
+
+    Attributes
+    ----------
+    beams : Beams
+    is_sure : (n,) bool
+    around : Surroundings
+    points, rows : (k,) int64
+        Points that may be noise, and their rows.
+    """
+
+    beams: PointBeams
+    is_sure: NDArray[np.bool_]
+    around: CloudNeighbourhood
+    points: _Integers
+    rows: _Integers
+
+    def cheap_features(self, monitor: Monitor) -> NDArray[np.float32]:
+        """(k, f): what the beams beside each met, what it hangs together with, its height."""
+        found = np.empty((self.points.size, NEAR_FEATURES), np.float32)
+
+        def look(start: int, stop: int) -> None:
+            part = slice(start, stop)
+            near_beams_kernel(
+                self.beams, self.is_sure, self.points[part], self.rows[part], found[part]
+            )
+
+        share_out(look, self.points.size, _POINTS_AT_ONCE, monitor)
+        positions = self.around.place_features(self.points)
+        steepness = self._directions(self.points)[:, 2:].astype(np.float32)
+        return np.concatenate([found, positions, steepness], axis=1)
+
+    def candidates(
+        self,
+        cheap: NDArray[np.float32],
+        is_doubtful: NDArray[np.bool_],
+        intensity: NDArray[np.uint16],
+        monitor: Monitor,
+    ) -> Candidates:
+        """Everything about those of the points that remain doubtful, (k,) bool.
+
+        ``cheap`` (k, f) are the cheap features.
+        """
+        points, rows = self.points[is_doubtful], self.rows[is_doubtful]
+        found = np.empty((points.size, WIDE_FEATURES), np.float32)
+
+        def look(start: int, stop: int) -> None:
+            part = slice(start, stop)
+            wide_beams_kernel(self.beams, self.is_sure, points[part], rows[part], found[part])
+
+        share_out(look, points.size, _POINTS_AT_ONCE, monitor)
+        blocks = [
+            self.around.scale_features(points, self._directions(points), monitor),
+            self.around.part_features(points, self.around.link),
+            cheap[is_doubtful],
+            found,
+            _light(self.beams.ranges, intensity, self.is_sure, points)[:, None],
+        ]
+        features = np.concatenate(blocks, axis=1)
+        return Candidates(
+            points, features, self.around, [self.around.link], beams=self.beams, rows=rows
+        )
+
+    def _directions(self, points: _Integers) -> _Floats:
+        away = self.beams.xyz[points] - self.beams.origins[points]
+        directions: _Floats = away / np.maximum(self.beams.ranges[points], 1e-6)[:, None]
+        return directions
+
+
+def search_with_beams(beams: PointBeams, monitor: Monitor) -> BeamSearch:
+    """Set aside what a surface explains that goes on to all sides of a beam."""
+    count, rows = beams.xyz.shape[0], beams.segments.size
+    spacings, goes_on = np.zeros(count), np.zeros(count, np.uint8)
+
+    def space(start: int, stop: int) -> None:
+        spacing_kernel(beams, start, stop, spacings)
+
+    def surfaces(start: int, stop: int) -> None:
+        surface_kernel(beams, spacings, start, stop, goes_on)
+
+    share_out(space, rows, _ROWS_AT_ONCE, monitor)
+    known = spacings > 0
+    middle = np.median(spacings[known] / beams.ranges[known]) if known.any() else beams.turn
+    spacings[~known] = beams.ranges[~known] * max(middle, beams.turn)
+    share_out(surfaces, rows, _ROWS_AT_ONCE, monitor)
+    is_sure = goes_on == SURE
+    around = CloudNeighbourhood.of(beams.xyz, spacings, is_sure)
+    is_ground = (goes_on == SQUARE) & (np.abs(around.heights) < _FLAT_BAND_M)
+    points = np.flatnonzero(~((is_sure | is_ground) & around.is_main))
+    rows_of = np.searchsorted(beams.row_starts, points, "right") - 1
+    return BeamSearch(beams, is_sure, around, points, rows_of)
+
+
+def candidates_in_space(xyz: _Floats, monitor: Monitor) -> Candidates:
+    """Candidates of a cloud of which only places are known.
+
+    How many points lie on surfaces is told to the trees, too: in woods seen from the air, or in a
+    single tree, leaves look like noise to whoever knows streets only.
+
+    Parameters
+    ----------
+    xyz : (n, 3) float64
+        m, finite.
+    """
+    fine = nested_cells(xyz, float(np.ptp(xyz, axis=0).max(initial=0.0)) / 2**20)
+    spacings = np.empty(xyz.shape[0])
+    spacings[fine.order] = np.clip(local_spacings(fine), _FINEST_M, None)
+    is_sure = _planar_points(xyz, spacings, monitor)
+    around = CloudNeighbourhood.of(xyz, spacings, is_sure)
+    is_ground = np.abs(around.heights) < _GROUND_BAND_M
+    points = np.flatnonzero(~(is_sure & around.is_main & is_ground))
+    middle = float(np.median(spacings))
+    levels = [around.level_of(size * middle) for size in PART_SIZES]
+    blocks = [
+        around.scale_features(points, None, monitor),
+        around.place_features(points),
+        around.column_features(points),
+        *(around.part_features(points, level) for level in levels),
+        np.full((points.size, 1), is_sure.mean(), np.float32),
+        around.ground.features(points),
+    ]
+    return Candidates(points, np.concatenate(blocks, axis=1), around, levels)
+
+
+def _planar_points(xyz: _Floats, spacings: _Floats, monitor: Monitor) -> NDArray[np.bool_]:
+    """Points in the middle of a densely measured plane, eight spacings wide."""
+    count = xyz.shape[0]
+    bare = CloudNeighbourhood.bare(xyz, spacings, np.zeros(count, np.bool_))
+    around = bare.scale_features(np.arange(count), None, monitor, (1,))
+    found: NDArray[np.bool_] = (
+        (around[:, 0] > np.log2(1 + _PLANE_POINTS))
+        & (around[:, 3] > _PLANE_SHARE)
+        & (around[:, 4] < _PLANE_THICKNESS)
+        & (around[:, 5] < 2 * _PLANE_THICKNESS)
+    )
+    return found
+
+
+def _light(
+    ranges: _Floats,
+    intensity: NDArray[np.uint16],
+    is_sure: NDArray[np.bool_],
+    points: _Integers,
+) -> NDArray[np.float32]:
+    """(k,) log2 of intensity over the median of sure points at about the same range."""
+    sure = np.flatnonzero(is_sure)
+    sure = sure[:: max(1, sure.size // (10 * _INTENSITY_SAMPLE))]
+    bins, values = _range_bins(ranges[sure]), np.log2(intensity[sure].astype(np.float64) + 1)
+    medians = np.full(31, np.nan)
+    for number in np.unique(bins):
+        medians[number] = np.median(values[bins == number][:_INTENSITY_SAMPLE])
+    known = np.flatnonzero(~np.isnan(medians))
+    if not known.size:
+        return np.zeros(points.size, np.float32)
+    medians = np.interp(np.arange(31), known, medians[known])
+    mine = np.log2(intensity[points].astype(np.float64) + 1)
+    light: NDArray[np.float32] = (mine - medians[_range_bins(ranges[points])]).astype(np.float32)
+    return light
+
+
+def _range_bins(ranges: _Floats) -> _Integers:
+    bins: _Integers = np.clip(np.log2(np.maximum(ranges, 0.5)) * 3, 0, 30).astype(np.int64)
+    return bins

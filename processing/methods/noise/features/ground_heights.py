@@ -1,0 +1,203 @@
+"""How high points lie above the ground around them, for a cloud that still holds noise."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.core.monitor import SilentMonitor
+from processing.methods.noise.neighbours.key_order import order_by_key
+
+GROUND_FEATURES = 4
+_LOW_SHARE = 0.1
+_FEWEST = 3
+_SAMPLE = 400_000
+_SAMPLE_OF_EXTENT = 40_000
+_PASSES = 3
+_STEP_M, _STEPS = 0.001, 1 << 22
+_ASIDE = 2
+_ROWS_AT_ONCE = 128
+_MOST_CELLS = 4_000  # along one side
+_NEAR_M, _SMOOTHEST_M, _MOST_RATIO = 0.5, 0.005, 50.0
+
+
+@dataclass(frozen=True)
+class GroundGrid:
+    """The ground below a cloud, in square cells.
+
+    Attributes
+    ----------
+    heights : (n,) float64
+        m, of every point above it; NaN where none is near.
+    cells : (n,) int32
+        Which cell each point lies over.
+    slopes : (h, w) float64
+        Rise per metre.
+    """
+
+    heights: NDArray[np.float64]
+    cells: NDArray[np.int32]
+    slopes: NDArray[np.float64]
+
+    def features(self, points: NDArray[np.int64]) -> NDArray[np.float32]:
+        """(k, GROUND_FEATURES): what is usual there, so that clods are no noise on rough ground.
+
+        Rise per metre, log2 of the roughness (m), height over the mean in roughnesses, and how
+        many of the points lie near the ground; roughness and mean are of a cell and those around.
+        """
+        heights = np.nan_to_num(self.heights)
+        is_near = np.abs(heights) < _NEAR_M
+        near, lie = self.cells[is_near], heights[is_near]
+        count = self._summed_around(points, near)
+        mean = self._summed_around(points, near, lie) / np.maximum(count, 1)
+        square = self._summed_around(points, near, lie**2) / np.maximum(count, 1)
+        rough = np.sqrt(np.maximum(square - mean**2, 0)) + _SMOOTHEST_M
+        relative = (heights[points] - mean) / rough
+        found = np.empty((points.size, GROUND_FEATURES), np.float32)
+        found[:, 0] = self.slopes.ravel()[self.cells[points]]
+        found[:, 1] = np.log2(rough)
+        found[:, 2] = np.clip(relative, -_MOST_RATIO, _MOST_RATIO)
+        found[:, 3] = count / np.maximum(self._summed_around(points, self.cells), 1)
+        return found
+
+    def _summed_around(
+        self,
+        points: NDArray[np.int64],
+        cells: NDArray[np.int32],
+        values: NDArray[np.float64] | None = None,
+    ) -> NDArray[np.float64]:
+        """(k,): the count of ``cells``, or the sum of their values, in the nine around points."""
+        height, width = self.slopes.shape
+        sums = np.bincount(cells, values, height * width).reshape(height, width)
+        padded, total = np.pad(sums, 1), np.zeros((height, width))
+        for side in range(9):
+            i, j = divmod(side, 3)
+            total += padded[i : i + height, j : j + width]
+        around: NDArray[np.float64] = total.ravel()[self.cells[points]]
+        return around
+
+    @classmethod
+    def none(cls) -> GroundGrid:
+        """Of no points."""
+        return cls(np.zeros(0), np.zeros(0, np.int32), np.zeros((0, 0)))
+
+
+def ground_below(xyz: NDArray[np.float64], is_sure: NDArray[np.bool_], cell_m: float) -> GroundGrid:
+    """The low surfaces around every point, and its height above them.
+
+    1. In every square cell, the height below which a tenth of its sure points lie.
+    2. The median of each cell and those around it, which drops cells without ground and cells
+       with a patch below it.
+    3. Cells without sure points take the mean of those around, a few cells far.
+    4. The same once more of what is left over the slope that each cell shares with those beside
+       it: a bank is ground over all its height, too.
+
+    Parameters
+    ----------
+    xyz : (n, 3) float64
+        m.
+    is_sure : (n,) bool
+        Points on surfaces that go on; where there are too few, all points are taken.
+    """
+    if not xyz.shape[0]:
+        return GroundGrid.none()
+    used = np.flatnonzero(is_sure)
+    if used.size < _FEWEST:
+        used = np.arange(xyz.shape[0])
+    used = used[:: max(1, used.size // _SAMPLE)]
+    some = xyz[used[:: max(1, used.size // _SAMPLE_OF_EXTENT)], :2]
+    lowest = np.percentile(some, 0.5, axis=0) - 30 * cell_m
+    highest = np.percentile(some, 99.5, axis=0) + 30 * cell_m
+    shape = np.minimum(np.ceil((highest - lowest) / cell_m).astype(np.int64) + 1, _MOST_CELLS)
+    side = np.maximum((highest - lowest) / (shape - 1), 1e-9)
+    squares = np.clip(((xyz[:, :2] - lowest) / side).astype(np.int64), 0, shape - 1)
+    cells = (squares[:, 0] * shape[1] + squares[:, 1]).astype(np.int32)
+    aside = (xyz[:, :2] - lowest) / side - squares - 0.5  # in cells, from the cell's middle
+    level = _known_ground(xyz[used, 2], cells[used], shape)
+    steps = [_gentle_steps(level, axis) for axis in (0, 1)]
+    inclined = xyz[:, 2] - sum(one.ravel()[cells] * aside[:, i] for i, one in enumerate(steps))
+    ground = _known_ground(inclined[used], cells[used], shape)
+    slopes = np.hypot(steps[0] / side[0], steps[1] / side[1])
+    return GroundGrid(inclined - ground.ravel()[cells], cells, slopes)
+
+
+def _known_ground(
+    heights: NDArray[np.float64], cells: NDArray[np.int32], shape: NDArray[np.int64]
+) -> NDArray[np.float64]:
+    """(h, w) heights of the ground from points in cells; NaN where none is near."""
+    grid = np.full(int(shape.prod()), np.nan)
+    known, low = low_heights(heights, cells.astype(np.int64))
+    grid[known] = low
+    return ground_of(grid.reshape(shape))
+
+
+def _gentle_steps(ground: NDArray[np.float64], axis: int) -> NDArray[np.float64]:
+    """(h, w) rise per cell along an axis: the gentler of those to either side, else 0.
+
+    So a slope that goes on is followed, and nothing leans at a wall or the edge of a roof.
+    """
+    steps = np.nan_to_num(np.diff(ground, axis=axis))
+    ends = [(1, 0) if one == axis else (0, 0) for one in range(2)]
+    before, after = np.pad(steps, ends), np.pad(steps, [pair[::-1] for pair in ends])
+    gentle = np.where(np.abs(before) < np.abs(after), before, after)
+    return np.where(before * after > 0, gentle, 0.0)
+
+
+def low_heights(
+    heights: NDArray[np.float64], numbers: NDArray[np.int64]
+) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """The height below which a tenth of a cell's points lie.
+
+    Parameters
+    ----------
+    heights : (n,) float64
+        m.
+    numbers : (n,) int64
+        Each point's cell.
+
+    Returns
+    -------
+    cells : (k,) int64
+        Rising.
+    low : (k,) float64
+        m; NaN for a cell of few points.
+    """
+    lowest = heights.min(initial=0.0)
+    steps = np.minimum((heights - lowest) / _STEP_M, _STEPS - 1).astype(np.int64)
+    keys, order = order_by_key(numbers * _STEPS + steps, SilentMonitor())
+    numbers = keys // _STEPS
+    firsts = np.flatnonzero(np.r_[True, numbers[1:] != numbers[:-1]][: numbers.size])
+    sizes = np.diff(np.r_[firsts, numbers.size])
+    chosen = heights[order][firsts + (sizes * _LOW_SHARE).astype(np.int64)]
+    return numbers[firsts], np.where(sizes >= _FEWEST, chosen, np.nan)
+
+
+def ground_of(grid: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(h, w) heights of the ground from low heights of cells; NaN where none is near."""
+    for _ in range(_PASSES):
+        grid = _smoothed(grid)
+    return grid
+
+
+def _smoothed(grid: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The median of 25 cells; NaN stays where none of them is known."""
+    padded = np.pad(grid, _ASIDE, constant_values=np.nan)
+    smooth = np.full(grid.shape, np.nan)
+    for start in range(0, grid.shape[0], _ROWS_AT_ONCE):
+        strip = padded[start : start + _ROWS_AT_ONCE + 2 * _ASIDE]
+        if not np.isnan(strip).all():
+            smooth[start : start + _ROWS_AT_ONCE] = _medians(strip)
+    return smooth
+
+
+def _medians(strip: NDArray[np.float64]) -> NDArray[np.float64]:
+    height, width = strip.shape[0] - 2 * _ASIDE, strip.shape[1] - 2 * _ASIDE
+    steps = range(2 * _ASIDE + 1)
+    stack = np.stack([strip[i : i + height, j : j + width] for i in steps for j in steps])
+    stack.sort(axis=0)  # NaN last
+    known = (~np.isnan(stack)).sum(axis=0)
+    middle = np.maximum(known - 1, 0) // 2
+    medians: NDArray[np.float64] = np.take_along_axis(stack, middle[None], axis=0)[0]
+    return medians

@@ -1,0 +1,1 @@
+"""Neighbours in space: radius and statistical outliers, and the orders of cells behind them."""

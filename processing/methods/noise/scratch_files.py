@@ -1,0 +1,36 @@
+"""Arrays in files for the time of a run: room is taken at once, so that a full disk is told."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+from processing.core.errors import report_as_user_error
+
+_BLOCK = 1 << 24
+
+
+# The type of the values is the caller's.
+def scratch_array(file: Path, dtype: DTypeLike, count: int) -> NDArray[Any]:
+    """A mapped array of zeros, (count,), that lives as long as its file.
+
+    Raises
+    ------
+    NoSpace
+        The disk can't hold it.
+    """
+    if count == 0:
+        return np.zeros(0, dtype)
+    size = count * np.dtype(dtype).itemsize
+    with report_as_user_error(file):
+        with file.open("wb") as made:
+            if hasattr(os, "posix_fallocate"):
+                os.posix_fallocate(made.fileno(), 0, size)
+            else:
+                for start in range(0, size, _BLOCK):
+                    made.write(bytes(min(_BLOCK, size - start)))
+        return np.memmap(file, dtype, "r+", shape=(count,))

@@ -1,0 +1,201 @@
+"""Boosted trees as ONNX files: one TreeEnsembleClassifier, read and written without a library.
+
+An ONNX file is a protobuf message; the few fields that such a model has are read here directly,
+so that nothing has to be installed to ask some trees.
+
+References
+----------
+ONNX IR specification (``onnx.proto``) and operator ``ai.onnx.ml.TreeEnsembleClassifier``,
+version 1; Protocol Buffers, "Encoding".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.methods.noise.trees import Trees
+
+_VARINT, _EIGHT_BYTES, _BYTES, _FOUR_BYTES = 0, 1, 2, 5
+_GRAPH, _NODE, _ATTRIBUTE = 7, 1, 5  # of a model, of a graph, of a node
+_NAME, _FLOATS, _INTS, _STRINGS, _TYPE = 1, 7, 8, 9, 20  # of an attribute
+_FLOATS_TYPE, _INTS_TYPE, _STRINGS_TYPE, _STRING_TYPE, _STRING = 6, 7, 8, 3, 4
+_IR_VERSION, _OPSET, _ML_OPSET = 8, 15, 1
+_FLOAT_TENSOR, _INT64_TENSOR = 1, 7
+_LEAF, _BRANCH = b"LEAF", b"BRANCH_LEQ"
+_ALL_BITS = (1 << 64) - 1
+
+
+def read_trees(path: Path) -> Trees:
+    """Read the trees of an ONNX file.
+
+    Raises
+    ------
+    ValueError
+        The file holds no such model: a defect of the program, not of its input.
+    """
+    (graph,) = _fields(path.read_bytes(), _GRAPH)
+    (node,) = _fields(graph, _NODE)
+    kept = {_fields(one, _NAME)[0].decode(): one for one in _fields(node, _ATTRIBUTE)}
+    node_ids = _ints_of(kept["nodes_nodeids"])
+    roots = np.flatnonzero(node_ids == 0)
+    start = roots[_ints_of(kept["nodes_treeids"])]
+    is_leaf = np.array([mode == _LEAF for mode in _fields(kept["nodes_modes"], _STRINGS)])
+    thresholds = _floats_of(kept["nodes_values"])
+    leaves = roots[_ints_of(kept["class_treeids"])] + _ints_of(kept["class_nodeids"])
+    thresholds[leaves] = _floats_of(kept["class_weights"])
+    return Trees(
+        np.where(is_leaf, -1, _ints_of(kept["nodes_featureids"])).astype(np.int32),
+        thresholds,
+        (start + _ints_of(kept["nodes_truenodeids"])).astype(np.int32),
+        (start + _ints_of(kept["nodes_falsenodeids"])).astype(np.int32),
+        roots.astype(np.int32),
+        float(_floats_of(kept["base_values"])[0]),
+    )
+
+
+def write_trees(trees: Trees, path: Path, columns: int) -> None:
+    """Write trees as an ONNX model.
+
+    Its input ``features`` is (n, columns) float32; its outputs are ``label`` (n,) int64, 1 where
+    the claim is likelier than not, and ``shares`` (n, 2) float32.
+    """
+    path.write_bytes(
+        _number(1, _IR_VERSION)
+        + _block(2, b"zuka")
+        + _block(_GRAPH, _graph(trees, columns))
+        + _block(8, _block(1, b"") + _number(2, _OPSET))
+        + _block(8, _block(1, b"ai.onnx.ml") + _number(2, _ML_OPSET))
+    )
+
+
+def _graph(trees: Trees, columns: int) -> bytes:
+    node = (
+        _block(1, b"features")
+        + _block(2, b"label")
+        + _block(2, b"shares")
+        + _block(4, b"TreeEnsembleClassifier")
+        + b"".join(_block(_ATTRIBUTE, one) for one in _attributes(trees))
+        + _block(7, b"ai.onnx.ml")
+    )
+    return (
+        _block(_NODE, node)
+        + _block(2, b"noise")
+        + _block(11, _tensor(b"features", _FLOAT_TENSOR, (columns,)))
+        + _block(12, _tensor(b"label", _INT64_TENSOR, ()))
+        + _block(12, _tensor(b"shares", _FLOAT_TENSOR, (2,)))
+    )
+
+
+def _attributes(trees: Trees) -> Iterator[bytes]:
+    nodes = np.arange(trees.features.size)
+    tree_of = np.searchsorted(trees.roots, nodes, "right") - 1
+    starts = trees.roots[tree_of]
+    is_leaf = trees.features < 0
+    leaves = np.flatnonzero(is_leaf)
+    nothing = np.zeros(nodes.size, np.int64)
+    branches = {
+        "nodes_treeids": tree_of,
+        "nodes_nodeids": nodes - starts,
+        "nodes_featureids": np.where(is_leaf, 0, trees.features),
+        "nodes_truenodeids": np.where(is_leaf, 0, trees.lefts - starts),
+        "nodes_falsenodeids": np.where(is_leaf, 0, trees.rights - starts),
+        "nodes_missing_value_tracks_true": nothing,
+        "class_treeids": tree_of[leaves],
+        "class_nodeids": (nodes - starts)[leaves],
+        "class_ids": nothing[leaves],
+        "classlabels_int64s": np.array([0, 1]),
+    }
+    for name, values in branches.items():
+        yield _ints(name, values)
+    yield _floats("nodes_values", np.where(is_leaf, 0.0, trees.thresholds))
+    yield _floats("class_weights", trees.thresholds[leaves])
+    yield _floats("base_values", np.array([trees.base]))
+    modes = b"".join(_block(_STRINGS, _LEAF if one else _BRANCH) for one in is_leaf)
+    yield _block(_NAME, b"nodes_modes") + modes + _number(_TYPE, _STRINGS_TYPE)
+    logistic = _block(_STRING, b"LOGISTIC") + _number(_TYPE, _STRING_TYPE)
+    yield _block(_NAME, b"post_transform") + logistic
+
+
+def _ints(name: str, values: NDArray[np.integer]) -> bytes:
+    packed = b"".join(_varint(int(value)) for value in values)
+    return _block(_NAME, name.encode()) + _block(_INTS, packed) + _number(_TYPE, _INTS_TYPE)
+
+
+def _floats(name: str, values: NDArray[np.float64]) -> bytes:
+    packed = values.astype("<f4").tobytes()
+    return _block(_NAME, name.encode()) + _block(_FLOATS, packed) + _number(_TYPE, _FLOATS_TYPE)
+
+
+def _tensor(name: bytes, kind: int, sizes: tuple[int, ...]) -> bytes:
+    rows = _block(1, _block(2, b"n"))
+    shape = rows + b"".join(_block(1, _number(1, size)) for size in sizes)
+    return _block(1, name) + _block(2, _block(1, _number(1, kind) + _block(2, shape)))
+
+
+def _ints_of(attribute: bytes) -> NDArray[np.int64]:
+    return np.array(list(_varints(b"".join(_fields(attribute, _INTS)))), np.int64)
+
+
+def _floats_of(attribute: bytes) -> NDArray[np.float64]:
+    return np.frombuffer(b"".join(_fields(attribute, _FLOATS)), "<f4").astype(np.float64)
+
+
+def _fields(message: bytes, wanted: int) -> list[bytes]:
+    """The contents of a message's fields of one number, bytes as they stand."""
+    found, position = [], 0
+    while position < len(message):
+        key, position = _varint_at(message, position)
+        start = position
+        wire = key & 7
+        if wire == _VARINT:
+            _, position = _varint_at(message, position)
+        elif wire == _BYTES:
+            size, start = _varint_at(message, position)
+            position = start + size
+        elif wire in (_EIGHT_BYTES, _FOUR_BYTES):
+            position += 8 if wire == _EIGHT_BYTES else 4
+        else:
+            raise ValueError(f"wire type {wire} at byte {start}")
+        if key >> 3 == wanted:
+            found.append(message[start:position])
+    return found
+
+
+def _varints(packed: bytes) -> Iterator[int]:
+    position = 0
+    while position < len(packed):
+        value, position = _varint_at(packed, position)
+        yield value
+
+
+def _varint_at(message: bytes, position: int) -> tuple[int, int]:
+    value, shift = 0, 0
+    while True:
+        byte = message[position]
+        position += 1
+        value |= (byte & 0x7F) << shift
+        if byte < 0x80:
+            return value, position
+        shift += 7
+
+
+def _varint(value: int) -> bytes:
+    value &= _ALL_BITS
+    parts = bytearray()
+    while value >= 0x80:
+        parts.append(value & 0x7F | 0x80)
+        value >>= 7
+    parts.append(value)
+    return bytes(parts)
+
+
+def _number(field: int, value: int) -> bytes:
+    return _varint(field << 3 | _VARINT) + _varint(value)
+
+
+def _block(field: int, content: bytes) -> bytes:
+    return _varint(field << 3 | _BYTES) + _varint(len(content)) + content

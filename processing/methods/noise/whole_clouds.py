@@ -1,0 +1,124 @@
+"""The outliers of clouds larger than memory, the same as if the cloud were taken whole.
+
+Radius: a part of space needs what lies within the radius. Statistics: mean and deviation are of
+the whole cloud, so distances are measured part by part, kept in a file, and judged in the end; a
+point whose k-th neighbour may lie outside its part is measured again with more around it.
+"""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.core.monitor import Monitor
+from processing.methods.noise.neighbours.radius import NEIGHBOURS, RADIUS_M, radius_outliers
+from processing.methods.noise.neighbours.statistical import DEVIATIONS, DistanceSums, distances_of
+from processing.methods.noise.scratch_files import scratch_array
+from processing.methods.noise.tiles_of_space import POINTS_PER_PART, SpacePart, TiledCloud
+
+_CHUNK = 4_000_000
+_WIDENING = 4.0
+_MARGIN = 2.0
+
+
+def radius_outliers_by_parts(
+    cloud: TiledCloud,
+    found: NDArray[np.uint8],
+    radius_m: float = RADIUS_M,
+    neighbours: int = NEIGHBOURS,
+    *,
+    monitor: Monitor,
+    points_per_part: int = POINTS_PER_PART,
+) -> None:
+    """As :func:`processing.methods.noise.neighbours.radius.radius_outliers`, part by part.
+
+    Parameters
+    ----------
+    found : (n,) uint8
+        Zero; gets 1 where a point is an outlier.
+    """
+    done = 0
+    for part in cloud.parts(radius_m, points_per_part):
+        monitor.report(done / cloud.count)
+        xyz = np.concatenate([cloud.read(part.own), cloud.read(part.around)])
+        outliers = radius_outliers(xyz, radius_m, neighbours, monitor=monitor)
+        found[part.own] = outliers[: part.own.size]
+        done += part.own.size
+
+
+def statistical_outliers_by_parts(
+    cloud: TiledCloud,
+    found: NDArray[np.uint8],
+    neighbours: int = NEIGHBOURS,
+    deviations: float = DEVIATIONS,
+    *,
+    scratch: Path,
+    monitor: Monitor,
+    points_per_part: int = POINTS_PER_PART,
+) -> None:
+    """As :func:`processing.methods.noise.neighbours.statistical.statistical_outliers`, part by part.
+
+    Parameters
+    ----------
+    found : (n,) uint8
+        Zero; gets 1 where a point is an outlier.
+    scratch : Path
+        A folder for 9 bytes a point meanwhile; the caller deletes it.
+
+    Raises
+    ------
+    NoSpace
+    """
+    if not cloud.count:
+        return
+    means = scratch_array(scratch / "means", np.float64, cloud.count)
+    is_open = scratch_array(scratch / "open", np.bool_, cloud.count)
+    for start in range(0, cloud.count, _CHUNK):
+        means[start : start + _CHUNK] = np.nan
+        is_open[start : start + _CHUNK] = True
+    reach = _MARGIN * math.sqrt(neighbours / math.pi) * cloud.spacing_m
+    left = cloud.count
+    while left:
+        for part in cloud.parts(reach, points_per_part, is_open):
+            monitor.report(1.0 - left / cloud.count)
+            left -= _measure(cloud, part, (neighbours, reach), (means, is_open), monitor)
+        reach *= _WIDENING
+    total = DistanceSums()
+    for start in range(0, cloud.count, _CHUNK):
+        total += DistanceSums.of(np.asarray(means[start : start + _CHUNK]))
+    limit = total.limit(deviations)
+    for start in range(0, cloud.count, _CHUNK):
+        found[start : start + _CHUNK] = ~(means[start : start + _CHUNK] <= limit)
+
+
+def _measure(
+    cloud: TiledCloud,
+    part: SpacePart,
+    options: tuple[int, float],
+    state: tuple[NDArray[np.float64], NDArray[np.bool_]],
+    monitor: Monitor,
+) -> int:
+    """Settle the open points of a part whose neighbours are all known to be near enough."""
+    (neighbours, reach), (means, is_open) = options, state
+    own = cloud.read(part.own)
+    wanted = np.flatnonzero(is_open[part.own])
+    is_finite = np.isfinite(own[wanted]).all(axis=1)
+    is_open[part.own[wanted[~is_finite]]] = False
+    settled_before = int((~is_finite).sum())
+    wanted = wanted[is_finite]
+    if not wanted.size:
+        return settled_before
+    xyz = np.concatenate([own, cloud.read(part.around)])
+    found, farthest = distances_of(xyz, wanted, neighbours, monitor=monitor)
+    xy = own[wanted, :2]
+    to_edge = np.minimum(xy - part.low, part.high - xy).min(axis=1)
+    is_settled = farthest <= np.maximum(to_edge, 0.0) + reach
+    if xyz.shape[0] == cloud.count:
+        is_settled[:] = True
+    settled = part.own[wanted[is_settled]]
+    means[settled] = found[is_settled]
+    is_open[settled] = False
+    return settled_before + int(settled.size)

@@ -1,0 +1,1 @@
+"""Edges of curbs, measured on the points and joined to lines."""

@@ -1,0 +1,164 @@
+"""Exact edges: carriageway, face and top laid through all points about a rough curb line."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from processing.core.monitor import Monitor
+from processing.methods.road.curbs.edges.approximate_lines import ApproximateLine
+from processing.methods.road.curbs.edges.curb_edge_kernels import (
+    MEASURES,
+    edges_kernel,
+    nearest_kernel,
+)
+from processing.methods.road.curbs.edges.curb_points import ChosenPoints, LineCells, PointsAbout
+from processing.recording.drive import Drive
+from processing.recording.vehicle_path.trajectory import Trajectory
+
+_Floats = NDArray[np.float64]
+_Integers = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class EdgeSettings:
+    """What points say about an edge.
+
+    Attributes
+    ----------
+    along_m, across_m : float
+        How far along and across the road points are looked at; mms.md Table 6-1: 0.5 m, 0.4 m.
+    inlier_m : float
+        How far a point may lie off a surface; Table 6-1: 5 mm.
+    enough_points : int
+        Where a window half as long holds as many, it is used.
+    """
+
+    along_m: float = 0.5
+    across_m: float = 0.4
+    inlier_m: float = 0.005
+    enough_points: int = 80
+
+
+@dataclass(frozen=True)
+class MeasuredEdges:
+    """What one drive shows of one approximate line.
+
+    Attributes
+    ----------
+    measures : (m, MEASURES) float64
+        At its stations; NaN where too few points lie about one.
+    along : (n,) float64
+        The points about it, rising, in stations.
+    across_above : (n, 2) float64
+        m from its line.
+    points : (n,) int64
+        Their indices in the drive.
+    """
+
+    measures: _Floats
+    along: _Floats
+    across_above: _Floats
+    points: _Integers
+
+    def nearest(self, positions: _Floats, within_m: float) -> tuple[_Integers, _Floats]:
+        """The measured points nearest to places in the approximate line's frame, and how far they are.
+
+        Parameters
+        ----------
+        positions : (k, 3) float64
+            Stations, rising; m across and above.
+
+        Returns
+        -------
+        points : (k,) int64
+            −1 where none is near enough.
+        away_m : (k,) float64
+            Across and above; infinite where there is none.
+        """
+        found = np.full(positions.shape[0], -1, np.int64)
+        nearest_kernel(self.along, self.across_above, positions, within_m, found)
+        has = found >= 0
+        points, away = found.copy(), np.full(found.size, np.inf)
+        points[has] = self.points[found[has]]
+        off = self.across_above[found[has]] - positions[has, 1:]
+        away[has] = np.hypot(off[:, 0], off[:, 1])
+        return points, away
+
+
+def measure_edges(
+    drive: Drive,
+    approximate_lines: Sequence[ApproximateLine],
+    settings: EdgeSettings,
+    monitor: Monitor,
+) -> list[MeasuredEdges]:
+    """Edges at the stations of approximate lines, as one drive shows them."""
+    if not approximate_lines:
+        return []
+    about = LineCells(approximate_lines, settings.across_m).about(drive, monitor)
+    monitor.check()
+    return _measured(drive, approximate_lines, about, settings)
+
+
+def measure_edges_among(
+    drive: Drive,
+    approximate_lines: Sequence[ApproximateLine],
+    chosen: ChosenPoints,
+    settings: EdgeSettings,
+) -> list[MeasuredEdges]:
+    """The same by some points of the drive."""
+    about = LineCells(approximate_lines, settings.across_m).among(drive, chosen)
+    return _measured(drive, approximate_lines, about, settings)
+
+
+def _measured(
+    drive: Drive,
+    approximate_lines: Sequence[ApproximateLine],
+    about: PointsAbout,
+    settings: EdgeSettings,
+) -> list[MeasuredEdges]:
+    measured = []
+    is_hidden = _hidden(approximate_lines, drive.trajectory)
+    first = 0
+    for number, approximate_line in enumerate(approximate_lines):
+        part = slice(int(about.starts[number]), int(about.starts[number + 1]))
+        along = about.along[part]
+        positions = np.column_stack([about.across[part], about.above[part]])
+        hidden = is_hidden[first : first + approximate_line.width_m.size]
+        first += hidden.size
+        stations = np.column_stack(
+            [approximate_line.width_m, hidden, approximate_line.step_m, approximate_line.is_edging]
+        )
+        measures = _edges(along, positions, stations, settings)
+        measured.append(MeasuredEdges(measures, along, positions, about.point[part]))
+    return measured
+
+
+def _hidden(
+    approximate_lines: Sequence[ApproximateLine], trajectory: Trajectory | None
+) -> NDArray[np.bool_]:
+    """Where the faces of approximate lines look away from the vehicle, one approximate line after the other."""
+    if trajectory is None:
+        return np.concatenate(
+            [approximate_line.is_hidden for approximate_line in approximate_lines]
+        )
+    xy = np.vstack([approximate_line.xyz[:, :2] for approximate_line in approximate_lines])
+    outwards = np.vstack([approximate_line.outwards for approximate_line in approximate_lines])
+    vehicle_path = trajectory.xyz[:, :2]
+    nearest = cKDTree(vehicle_path).query(xy)[1]
+    return np.asarray(((vehicle_path[nearest] - xy) * outwards).sum(axis=1) > 0)
+
+
+def _edges(
+    along: _Floats, positions: _Floats, stations: _Floats, settings: EdgeSettings
+) -> _Floats:
+    window = np.array(
+        [settings.along_m / 2, settings.along_m, settings.enough_points, settings.inlier_m]
+    )
+    measures = np.full((stations.shape[0], MEASURES), np.nan)
+    edges_kernel(along, positions, stations, window, measures)
+    return measures

@@ -1,0 +1,1 @@
+"""Steps on scan lines, linked along the street and filtered."""

@@ -1,0 +1,265 @@
+"""Joints of the lids along a gutter: the row that explains the notches best.
+
+The thesis keeps notches that have a partner a whole number of lids away (mms.md, equations 7-4 and
+7-5). Here a row of covers is laid along the gutter as a whole, by dynamic programming: each cover
+has a length that covers have, each joint is worth what the notches say about its place, so that a
+joint seen weakly or not at all is found by its neighbours, and a stretch without lids is a gap.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import solveh_banded
+from scipy.ndimage import gaussian_filter1d, maximum_filter1d, uniform_filter1d
+
+from processing.methods.road.gutters.gutter_kernels import joints_kernel
+
+_Floats = NDArray[np.float64]
+_Integers = NDArray[np.int64]
+_Bools = NDArray[np.bool_]
+
+LID, GRATING, GAP = 0, 1, 2
+"""What lies between two joints."""
+
+GRATING_LENGTHS_M = {0.5: 1.0, 1.0: 1.0, 0.4: 2.0, 0.6: 2.0}
+"""Lengths of gratings met, with what each costs a row: usual ones less."""
+
+_POSITION_M, _ROUGHLY_M = 0.005, 0.01
+_HOLE_M = 0.012  # a notch's place along the gutter is so uncertain
+_ABOUT_M = 0.6  # over which notches are everywhere, and say nothing
+_LITTLE = 0.08
+_LEAST, _MOST = -0.8, 2.5
+_UNSEEN = 0.35  # what a joint costs that nothing was seen of
+_WIDEST_JOINT_M = 0.04
+_WIDE_JOINT_M, _WIDE_COST = 0.015, 60.0
+_OTHER_LENGTH_COST, _GAP_COST = 2.5, 5.0
+_GAP_M = (0.25, 6.0)
+_OCCUPIED_M, _OCCUPIED_WORTH, _GRATING_WORTH = 0.04, 0.04, 0.02
+_SEEN_M = 0.03
+_LEAST_STRENGTH = 0.1
+_JOINT_SCATTER_M = 0.003
+
+
+def lengths_of(usual_m: Sequence[float], others_m: Sequence[float] = ()) -> dict[float, float]:
+    """What a lid of each length costs a row of joints, by the length, m.
+
+    Parameters
+    ----------
+    usual_m : sequence of float
+        Of most lids: one, or several where lids are mixed, of which each lid has to tell its own.
+    others_m : sequence of float
+        Of single ones between them.
+    """
+    usual = dict.fromkeys(usual_m, float(np.log(len(usual_m))))
+    return usual | dict.fromkeys(others_m, _OTHER_LENGTH_COST)
+
+
+@dataclass(frozen=True)
+class JointRow:
+    """Covers that follow each other along a gutter.
+
+    Attributes
+    ----------
+    starts_m, ends_m : (k,) float64
+        Of the covers, along the axis.
+    what : (k,) int64
+        ``LID`` or ``GRATING``.
+    seen : (k, 2) int64
+        Notches at the joints before and behind.
+    is_bridged : (k,) bool
+        Neither joint was seen.
+    value : float
+        What the notches are worth for the row against chance, in natural logarithms.
+    """
+
+    starts_m: _Floats
+    ends_m: _Floats
+    what: _Integers
+    seen: _Integers
+    is_bridged: _Bools
+    value: float
+
+    def chosen(self, which: _Bools) -> JointRow:
+        """Some of its covers."""
+        return JointRow(
+            self.starts_m[which],
+            self.ends_m[which],
+            self.what[which],
+            self.seen[which],
+            self.is_bridged[which],
+            self.value,
+        )
+
+
+def joint_row(
+    notches: tuple[_Floats, _Floats], lids: Mapping[float, float], end_m: float, most_missed: int
+) -> JointRow | None:
+    """The covers along a gutter, by the places of its notches.
+
+    Parameters
+    ----------
+    notches : (n,) float64 and (n,) float64
+        Places of the notches on the gutter, m along its axis, and their strengths.
+    lids : mapping of float
+        What lids of each length cost: see `lengths_of`.
+    end_m : float
+        Where the axis ends.
+    most_missed : int
+        Lids in a row whose joints may all be unseen.
+    """
+    best, kinds, lengths = _best(notches, lids, end_m, _POSITION_M)
+    positions, taken = _traced(best)
+    if positions.size < 3:
+        return None
+    what = np.where(taken < 0, GAP, kinds[taken])
+    long = np.where(taken < 0, np.nan, lengths[taken])
+    return _row(
+        notches,
+        (positions * _POSITION_M).astype(np.float64),
+        (what, long),
+        (float(best[0].max()), most_missed),
+    )
+
+
+def joint_worth(
+    notches: tuple[_Floats, _Floats], lids: Mapping[float, float], end_m: float
+) -> float:
+    """The value of the best row, roughly: for comparison with other lids' (see `joint_row`)."""
+    (value, before, _), _, _ = _best(notches, lids, end_m, _ROUGHLY_M)
+    last = int(value.argmax())
+    is_row = before[last] >= 0 and before[before[last]] >= 0
+    return float(value[last]) if is_row else 0.0
+
+
+def _best(
+    notches: tuple[_Floats, _Floats], lids: Mapping[float, float], end_m: float, position_m: float
+) -> tuple[tuple[_Floats, _Integers, _Integers], _Integers, _Floats]:
+    """For each place the best row that ends there; what steps between joints cover, how long."""
+    along_m, strength = notches
+    count = int(end_m / position_m) + 1
+    at = np.round(along_m / position_m).astype(np.int64)
+    is_in = (at >= 0) & (at < count)
+    hits = np.bincount(at[is_in], strength[is_in], minlength=count).astype(np.float64)
+    steps, costs, kinds, lengths = _covers(lids, position_m)
+    occupied = maximum_filter1d(np.minimum(hits, 1.0), 2 * round(_OCCUPIED_M / position_m) + 1)
+    worth = position_m / _POSITION_M
+    summed = np.concatenate([[0.0], np.cumsum(occupied * _OCCUPIED_WORTH * worth)])
+    best = (np.empty(count), np.empty(count, np.int64), np.empty(count, np.int64))
+    joints_kernel(
+        _evidence(hits, position_m),
+        steps,
+        costs,
+        (round(_GAP_M[0] / position_m), round(_GAP_M[1] / position_m), _GAP_COST),
+        (summed, (kinds == GRATING).astype(np.int64), _GRATING_WORTH * worth),
+        best,
+    )
+    return best, kinds, lengths
+
+
+def _evidence(hits: _Floats, position_m: float) -> _Floats:
+    """What a joint at each place is worth: notches there against notches about."""
+    here = gaussian_filter1d(hits, _HOLE_M / position_m) * _HOLE_M / position_m * np.sqrt(2 * np.pi)
+    about = uniform_filter1d(here, round(_ABOUT_M / position_m), mode="nearest")
+    ratio = np.log((here + _LITTLE) / (about + _LITTLE))
+    unseen = _UNSEEN * np.exp(-here / _LITTLE)
+    worth: _Floats = np.clip(ratio - unseen, _LEAST, _MOST)
+    return worth
+
+
+def _covers(
+    lids: Mapping[float, float], position_m: float
+) -> tuple[_Integers, _Floats, _Integers, _Floats]:
+    """Steps from joint to joint, their costs, what they are, and how long the cover is."""
+    made = []
+    kinds = [(LID, one, cost) for one, cost in lids.items()]
+    kinds += [(GRATING, one, cost) for one, cost in GRATING_LENGTHS_M.items()]
+    for kind, long, cost in kinds:
+        for joint in np.arange(0.0, _WIDEST_JOINT_M + 1e-6, position_m):
+            wide = max(0.0, float(joint) - _WIDE_JOINT_M) * _WIDE_COST
+            made.append((round((long + joint) / position_m), cost + wide, kind, long))
+    steps, costs, what, lengths = zip(*made, strict=True)
+    return (
+        np.array(steps, np.int64),
+        np.array(costs),
+        np.array(what, np.int64),
+        np.array(lengths),
+    )
+
+
+def _traced(best: tuple[_Floats, _Integers, _Integers]) -> tuple[_Integers, _Integers]:
+    """Places of the best row's joints, and the step behind each but the last."""
+    value, before, taken = best
+    at, positions, steps = int(value.argmax()), [], []
+    while at >= 0:
+        positions.append(at)
+        steps.append(int(taken[at]))
+        at = int(before[at])
+    return np.array(positions[::-1]), np.array(steps[-2::-1], np.int64)
+
+
+def _row(
+    notches: tuple[_Floats, _Floats],
+    joints_m: _Floats,
+    covers: tuple[_Integers, _Floats],
+    worth: tuple[float, int],
+) -> JointRow:
+    what, long = covers
+    measured, seen = _measured(notches, joints_m)
+    joints = _settled(measured, seen, long)
+    middles = (joints[1:] + joints[:-1]) / 2
+    is_cover = what != GAP
+    half = np.where(is_cover, np.minimum(long, np.diff(joints)), 0.0) / 2
+    pairs = np.column_stack([seen[:-1], seen[1:]])
+    is_unseen = (pairs == 0).all(axis=1) & (what == LID)
+    kept = is_cover & ~_longer_than(is_unseen, worth[1])
+    starts, ends = middles - half, middles + half
+    return JointRow(starts, ends, what, pairs, is_unseen, worth[0]).chosen(kept)
+
+
+def _measured(notches: tuple[_Floats, _Floats], joints_m: _Floats) -> tuple[_Floats, _Integers]:
+    """Mean place of the notches at each joint, and how many strong ones they are."""
+    measured, seen = joints_m.copy(), np.zeros(joints_m.size, np.int64)
+    order = np.argsort(notches[0], kind="stable")
+    positions, strength = notches[0][order], notches[1][order]
+    first = np.searchsorted(positions, joints_m - _SEEN_M)
+    last = np.searchsorted(positions, joints_m + _SEEN_M)
+    for number, (low, high) in enumerate(zip(first, last, strict=True)):
+        weights = strength[low:high]
+        if weights.sum() > _LEAST_STRENGTH:
+            measured[number] = float((positions[low:high] * weights).sum() / weights.sum())
+            seen[number] = max(1, int((weights > _LEAST_STRENGTH).sum()))
+    return measured, seen
+
+
+def _settled(measured: _Floats, seen: _Integers, long: _Floats) -> _Floats:
+    """Joints at which what was measured and how long covers are agree best (least squares)."""
+    weights = seen / _HOLE_M**2 + 1e-3 / _HOLE_M**2
+    is_known = np.isfinite(long)
+    gaps = np.diff(measured) - np.where(is_known, long, 0.0)
+    usual = float(np.median(gaps[is_known])) if is_known.any() else 0.0
+    joint = np.clip(usual, 0.0, _WIDEST_JOINT_M)
+    ties = np.where(is_known & (np.abs(gaps - joint) < 0.05), 1 / _JOINT_SCATTER_M**2, 0.0)
+    wanted = np.where(is_known, long, 0.0) + joint
+    bands = np.zeros((2, measured.size))
+    bands[1] = weights
+    bands[1, :-1] += ties
+    bands[1, 1:] += ties
+    bands[0, 1:] = -ties
+    right = weights * measured
+    right[:-1] -= ties * wanted
+    right[1:] += ties * wanted
+    settled: _Floats = solveh_banded(bands, right)
+    return settled
+
+
+def _longer_than(is_unseen: _Bools, most: int) -> _Bools:
+    """Which of those in a row are of rows longer than so many."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[0], is_unseen.astype(np.int8), [0]])))
+    found = np.zeros(is_unseen.size, np.bool_)
+    for first, stop in edges.reshape(-1, 2):
+        found[first:stop] = stop - first >= most
+    return found

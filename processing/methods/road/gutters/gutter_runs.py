@@ -1,0 +1,359 @@
+"""Gutters: regular lines of notches with their row of covers and the middle of their lids."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.core.monitor import Monitor
+from processing.methods.road.gutters.gutter_axis import STEP_M, GutterAxis
+from processing.methods.road.gutters.gutter_depths import are_deep
+from processing.methods.road.gutters.gutter_holes import HoleFit, JointNotches, hole_fit
+from processing.methods.road.gutters.gutter_joints import (
+    LID,
+    JointRow,
+    joint_row,
+    joint_worth,
+    lengths_of,
+)
+from processing.methods.road.gutters.gutter_lines import (
+    LONG,
+    REACH_M,
+    SHORT,
+    GutterLine,
+    gutter_lines,
+)
+from processing.methods.road.gutters.notches import Notches, join_notches
+from processing.recording.passes import Pass
+
+_Floats = NDArray[np.float64]
+
+_BAND_M = 0.45
+_MOVED_M = 1.5  # farther no axis is moved to the middle of its lids
+_JOINT_M = 0.04
+_WINDOW_M = (1.0, 4.0)  # over which the middle of a gutter is found, by how many notches there are
+_NOTCHES = 12.0
+_ASIDE_M = 0.04
+_WEAK, _STRONG = 0.03, 0.1
+_CLEAR_M = 0.6
+_END_M = 0.1
+_ROUNDS = 3
+_LEAST_COVERS = 2
+
+_LIDS = (
+    lengths_of((0.6,), (0.5, 1.0)),
+    lengths_of((0.5,), (0.6, 1.0)),
+    lengths_of((1.0,), (0.5, 0.6)),
+    lengths_of((0.5, 0.6), (1.0,)),
+    lengths_of((0.6, 1.0), (0.5,)),
+)
+"""What the lids of a gutter may be like: of one length, or of two mixed."""
+_BY_CHANCE = (
+    lengths_of((0.67,), (0.455, 0.86)),
+    lengths_of((0.455,), (0.67, 0.86)),
+    lengths_of((0.86,), (0.455, 0.67)),
+    lengths_of((0.455, 0.67), (0.86,)),
+    lengths_of((0.67, 0.86), (0.455,)),
+)
+"""The same of lengths that are made nowhere, with their joints apart from those that are."""
+_LEAST_WORTH, _MORE_WORTH, _SURE_WORTH = 6.0, 2.5, 50.0
+_CHANGES_M = 1.0  # lids change their type most where they end: at mouths and junctions
+_ASKED_M, _USUAL_M = 4.0, 0.6  # how often else it is asked; the length of most lids
+_LEAST_OF_TYPE, _OTHER_TYPE, _OTHER_WITHOUT_GAP = 6, 3.0, 12.0
+"""Notches that tell a type, and how much likelier two types must be than one: as logarithms."""
+_LEAST_GAIN = 0.1  # notches that lie anywhere across a line are not those of holes and joints
+
+
+@dataclass(frozen=True)
+class GutterRun:
+    """One gutter.
+
+    Attributes
+    ----------
+    axis : GutterAxis
+        Along the middle of its lids.
+    row : JointRow
+        Its covers.
+    holes : HoleFit
+        What the holes say of its lids' width.
+    length_m : float
+        Of most of its lids.
+    regularity : float
+        See `GutterLine`.
+    """
+
+    axis: GutterAxis
+    row: JointRow
+    holes: HoleFit
+    length_m: float
+    regularity: float
+
+    @property
+    def edges(self) -> tuple[float, float]:
+        """Left and right edge of the lids across the axis, m: of the type that the holes tell.
+
+        The groove beside the lids is too narrow to be measured; the largest change of intensity
+        is that of the bed's outer side, some centimetres beyond them.
+        """
+        half = self.holes.type.width_m / 2
+        return -half, half
+
+
+def gutter_runs(
+    passes: Sequence[Pass],
+    notches: Sequence[Notches],
+    most_missed: int,
+    reach_m: float = REACH_M,
+    monitor: Monitor | None = None,
+) -> tuple[GutterRun, ...]:
+    """Gutters that the notches of all drives show.
+
+    Parameters
+    ----------
+    passes : sequence of Pass
+        Of all drives.
+    notches : sequence of Notches
+        Of each drive.
+    most_missed : int
+        n_max of equation (7-5): lids in a row whose joints may all be unseen.
+    reach_m : float
+        How far from the vehicle's path.
+
+    Raises
+    ------
+    Cancelled
+    """
+    if not notches:
+        return ()
+    left = join_notches(list(notches))
+    left = left.chosen(left.strength >= _WEAK)
+    found: list[GutterRun] = []
+    for search in (LONG, SHORT):
+        wide = replace(search, reach_m=reach_m)
+        for line in gutter_lines(passes, left, wide, most_missed * _USUAL_M + 1.0):
+            if monitor is not None:
+                monitor.check()
+            for run in _runs_of(line, left, most_missed):
+                found.append(run)
+                left = left.chosen(~_is_covered(run, left.xyz))
+    return tuple(found)
+
+
+def _runs_of(line: GutterLine, notches: Notches, most_missed: int) -> list[GutterRun]:
+    """The gutters along a line: more than one where lids of another type follow."""
+    run = _run_of(line, notches, most_missed)
+    if run is None:
+        return []
+    cut_m = _change(run, notches)
+    if cut_m is None:
+        return [run]
+    at = int(cut_m / STEP_M)
+    axis, parts = run.axis, []
+    for part in (slice(0, at + 1), slice(at, None)):
+        own = GutterAxis(axis.xyz[part], axis.outwards[part])
+        parts += _runs_of(GutterLine(own, line.regularity), notches, most_missed)
+    return parts or [run]
+
+
+def _change(run: GutterRun, notches: Notches) -> float | None:
+    """Where lids of another type begin, m along the axis; None: nowhere.
+
+    Asked at each gap between covers, where types change most, and every few metres.
+    """
+    row = run.row
+    near = _about(run.axis, notches)
+    along, _, is_on = _on_lids(run.axis, near, None)
+    worth = _worths(along, is_on & (near.strength >= _STRONG), row)
+    told = np.flatnonzero(worth)
+    if (worth > 0).sum() < 2 * _LEAST_OF_TYPE:
+        return None
+
+    def fit(some: NDArray[np.int64]) -> HoleFit:
+        return hole_fit(_joint_notches(run.axis, near.chosen(some), worth[some]))
+
+    whole = fit(told)
+
+    def more(cut_m: float) -> float:
+        parts = [fit(told[along[told] < cut_m]), fit(told[along[told] >= cut_m])]
+        if min(one.count for one in parts) < _LEAST_OF_TYPE or parts[0].type == parts[1].type:
+            return -np.inf
+        return sum(one.gain * one.count for one in parts) - whole.gain * whole.count
+
+    def best(cuts: _Floats, least: float) -> float | None:
+        gains = [(more(cut), cut) for cut in cuts.tolist()]
+        gain, cut = max(gains, key=lambda one: one[0], default=(-np.inf, 0.0))
+        return cut if gain > least else None
+
+    between = (row.ends_m[:-1] + row.starts_m[1:]) / 2
+    is_gap = row.starts_m[1:] - row.ends_m[:-1] > _CHANGES_M
+    found = best(between[is_gap], _OTHER_TYPE)
+    if found is not None:
+        return found
+    rough = best(between[:: max(1, round(_ASKED_M / _USUAL_M))], _OTHER_WITHOUT_GAP)
+    if rough is None:
+        return None
+    return best(between[np.abs(between - rough) <= _ASKED_M], _OTHER_WITHOUT_GAP)
+
+
+def _about(axis: GutterAxis, notches: Notches) -> Notches:
+    """The notches near an axis, wherever it may be moved to."""
+    along, _, above = axis.told(notches.xyz, _MOVED_M)
+    return notches.chosen(np.isfinite(along) & (np.abs(above) <= _MOVED_M))
+
+
+def _is_covered(run: GutterRun, xyz: _Floats) -> NDArray[np.bool_]:
+    """Which notches lie on the covers of a run or close beside them."""
+    along, _, _ = run.axis.told(xyz, _CLEAR_M)
+    first, last = float(run.row.starts_m.min()), float(run.row.ends_m.max())
+    return np.asarray((along > first - _END_M) & (along < last + _END_M))
+
+
+def _run_of(line: GutterLine, notches: Notches, most_missed: int) -> GutterRun | None:
+    axis = line.axis
+    near = _about(axis, notches)
+    lids = _lids_along(axis, near)
+    if lids is None:
+        return None
+    holes: HoleFit | None = None
+    for _ in range(_ROUNDS):
+        along, across, is_on = _on_lids(axis, near, holes)
+        row = joint_row((along[is_on], near.strength[is_on]), lids, axis.length_m, most_missed)
+        if row is None or row.starts_m.size < _LEAST_COVERS:
+            return None
+        worth = _worths(along, is_on & (near.strength >= _STRONG), row)
+        at_joint = worth > 0.0
+        if not at_joint.any():
+            return None
+        if holes is None:
+            axis = _moved(axis, along[at_joint], across[at_joint])
+        else:
+            off = holes.type.off(across[at_joint])
+            of_hole = np.abs(off) <= holes.type.hole_wide_m / 2 + _ASIDE_M
+            axis = _moved(axis, along[at_joint][of_hole], off[of_hole])
+        told = worth != 0.0
+        holes = hole_fit(_joint_notches(axis, near.chosen(told), worth[told]))
+        axis = _aside(axis, holes.middle_m)
+    if holes is None or holes.gain < _LEAST_GAIN:
+        return None
+    along, across, is_on = _on_lids(axis, near, holes)
+    row = joint_row((along[is_on], near.strength[is_on]), lids, axis.length_m, most_missed)
+    if row is None or row.starts_m.size < _LEAST_COVERS:
+        return None
+    is_on &= near.strength >= _STRONG
+    row = row.chosen(are_deep(row, along[is_on], near.depth_m[is_on], holes))
+    if row.starts_m.size < _LEAST_COVERS:
+        return None
+    return GutterRun(axis, row, holes, _length_of(row), line.regularity)
+
+
+def _joint_notches(axis: GutterAxis, notches: Notches, worth: _Floats) -> JointNotches:
+    along, across, _ = axis.told(notches.xyz, _BAND_M)
+    known = np.isfinite(across)
+    at = np.clip((along[known] / STEP_M).astype(np.int64), 0, len(axis.outwards) - 1)
+    square = np.abs((notches.direction[known] * axis.outwards[at]).sum(axis=1))
+    return JointNotches(across[known], notches.width_m[known] * square, square, worth[known])
+
+
+def _on_lids(
+    axis: GutterAxis, notches: Notches, holes: HoleFit | None
+) -> tuple[_Floats, _Floats, NDArray[np.bool_]]:
+    """Along and across of notches, and which may be of the lids, as far as their width is known."""
+    along, across, above = axis.told(notches.xyz, _BAND_M)
+    wide = _BAND_M if holes is None else holes.type.width_m / 2 + _ASIDE_M
+    is_on = np.isfinite(along) & (np.abs(above) < 0.15)
+    is_on[is_on] = np.abs(across[is_on]) <= wide
+    return along, across, is_on
+
+
+def _lids_along(axis: GutterAxis, notches: Notches) -> dict[float, float] | None:
+    """The lengths of lids that explain the notches best; None if no better than by chance.
+
+    What chance does is asked of the same notches: rows of lengths that no lid has are laid too.
+    """
+    along, _, is_on = _on_lids(axis, notches, None)
+    those = along[is_on], notches.strength[is_on]
+    if those[1].sum() < _LEAST_WORTH:
+        return None
+
+    def worth(lids: dict[float, float]) -> float:
+        return joint_worth(those, lids, axis.length_m)
+
+    worths = [worth(one) for one in _LIDS]
+    best = max(worths)
+    if best < _LEAST_WORTH:
+        return None
+    if best < _SURE_WORTH and best < _MORE_WORTH + max(worth(one) for one in _BY_CHANCE):
+        return None
+    return _LIDS[worths.index(best)]
+
+
+def _length_of(row: JointRow) -> float:
+    """Of most of its lids, m."""
+    lengths = np.round((row.ends_m - row.starts_m)[row.what == LID], 1)
+    found, count = np.unique(lengths, return_counts=True)
+    return float(found[count.argmax()]) if found.size else 0.0
+
+
+def _is_at_joint(along: _Floats, row: JointRow) -> NDArray[np.bool_]:
+    ends = np.sort(np.concatenate([row.starts_m, row.ends_m]))
+    after = np.clip(np.searchsorted(ends, along), 1, ends.size - 1)
+    away = np.minimum(np.abs(along - ends[after - 1]), np.abs(along - ends[after]))
+    return np.asarray(away < _JOINT_M)
+
+
+def _worths(along: _Floats, strong: NDArray[np.bool_], row: JointRow) -> _Floats:
+    """What each notch counts: 1 at joints; those on lids take away what chance adds there."""
+    worth = np.zeros(strong.size)
+    worth[strong] = _is_at_joint(along[strong], row)
+    is_lid = row.what == LID
+    starts, ends = row.starts_m[is_lid], row.ends_m[is_lid]
+    if starts.size:
+        one = np.clip(np.searchsorted(starts, along, "right") - 1, 0, starts.size - 1)
+        between = strong & (worth == 0.0) & (along > starts[one]) & (along < ends[one])
+        free_m = float((ends - starts).sum()) - 2 * _JOINT_M * starts.size
+        worth[between] = -2 * _JOINT_M * starts.size / max(free_m, _JOINT_M)
+    return worth
+
+
+def _moved(axis: GutterAxis, along: _Floats, across: _Floats) -> GutterAxis:
+    """The axis through the middle of the notches about every place of it: locally a line."""
+    at = np.arange(len(axis.xyz), dtype=np.float64) * STEP_M
+    bins = np.clip((along / STEP_M).round().astype(np.int64), 0, at.size - 1)
+    weight = np.bincount(bins, minlength=at.size).astype(np.float64)
+    # So that many holes in one place do not outweigh those about it.
+    one = 1.0 / np.maximum(weight, 1.0)
+    share = np.minimum(weight, 4.0) * one
+    sums = [np.bincount(bins, across**power, minlength=at.size) * share for power in range(2)]
+    density = max(float(sums[0].sum()) / axis.length_m, 0.1)
+    sigma = float(np.clip(_NOTCHES / density, *_WINDOW_M))
+    aside = _local_lines(at, sums[0], sums[1], sigma)
+    return _aside(axis, aside)
+
+
+def _local_lines(at: _Floats, weight: _Floats, total: _Floats, sigma_m: float) -> _Floats:
+    """Values of weighted local lines (Gaussian windows) at every place."""
+    reach = int(3 * sigma_m / STEP_M)
+    away = np.arange(-reach, reach + 1) * STEP_M
+    window = np.exp(-0.5 * (away / sigma_m) ** 2)
+
+    def summed(values: _Floats, power: int) -> _Floats:
+        kernel = window * away**power
+        return np.convolve(values, kernel[::-1], mode="full")[reach : reach + values.size]
+
+    w0, w1, w2 = (summed(weight, power) for power in range(3))
+    t0, t1 = (summed(total, power) for power in range(2))
+    bottom = w0 * (w2 + 1e-3) - w1**2
+    value = (t0 * (w2 + 1e-3) - t1 * w1) / np.where(np.abs(bottom) < 1e-9, np.inf, bottom)
+    known = w0 > 0.05
+    if not known.any():
+        return np.zeros(at.size)
+    filled: _Floats = np.interp(at, at[known], value[known])
+    return filled
+
+
+def _aside(axis: GutterAxis, aside: _Floats | float) -> GutterAxis:
+    at = np.arange(len(axis.xyz), dtype=np.float64) * STEP_M
+    return GutterAxis.through(axis.positions(at, np.broadcast_to(aside, at.shape)))

@@ -1,0 +1,1 @@
+"""Operations on projects and files, each a value and a function."""

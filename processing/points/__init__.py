@@ -1,1 +1,0 @@
-"""Recordings: columns, trajectories, revolutions and pulses."""

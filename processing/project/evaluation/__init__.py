@@ -1,0 +1,1 @@
+"""How good runs were, by truths and by decisions."""

@@ -1,0 +1,1 @@
+"""Results of tools, stored with the project and given back as files."""

@@ -1,0 +1,144 @@
+"""What a run said about each point, one bit a point, so that it can be judged on another day.
+
+The labels that came of a run change with undo and by hand, and to run the tool again takes its
+time; a bit a point is an eighth of the smallest column. It lies in the drive's folder, in
+``runs/<tool>/<run>.bits``; the runs of the project say with which parameters it was made.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.core.errors import report_as_user_error
+from processing.recording.drive import Drive
+from processing.scoring.asked_classes import ASKED
+from processing.scoring.confusion_matrix import is_one_of
+from processing.tools.tool import FinishedColumns, Tool
+
+_CLASS = "classification"
+_FOLDER, _ENDING = "runs", ".bits"
+_AT_ONCE = 1 << 20
+_BYTE = 8
+
+
+def finding_path(drive: Drive, tool: str, run: str) -> Path:
+    """Where what a run of a tool said about a drive is kept."""
+    return drive.folder / _FOLDER / tool / f"{run}{_ENDING}"
+
+
+def write_finding(result: FinishedColumns, codes: Collection[int], path: Path) -> None:
+    """Keep which points of a result have one of some classes.
+
+    Raises
+    ------
+    NoSpace
+    """
+    with report_as_user_error(path), path.open("wb") as file:
+        for start in range(0, result.count, _AT_ONCE):
+            stop = min(start + _AT_ONCE, result.count)
+            found = is_one_of(result.read(_CLASS, start, stop), codes)
+            file.write(np.packbits(found).tobytes())
+
+
+def adopt_finding(drive: Drive, tool: str, run: str, file: Path) -> None:
+    """Let a finished file on the drive's disk be what a run said.
+
+    Raises
+    ------
+    NoSpace, MissingInput, InUse
+    """
+    path = finding_path(drive, tool, run)
+    with report_as_user_error(path):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        file.replace(path)
+
+
+def has_finding(drive: Drive, tool: str, run: str) -> bool:
+    """Whether it is kept, whole, what a run said about a drive."""
+    return _is_whole(drive, finding_path(drive, tool, run))
+
+
+def read_finding(drive: Drive, tool: str, run: str, start: int, stop: int) -> NDArray[np.bool_]:
+    """Whether a run said yes about the points ``start … stop − 1``: (k,) bool.
+
+    Raises
+    ------
+    MissingInput
+        It isn't kept.
+    """
+    return _read(finding_path(drive, tool, run), start, stop)
+
+
+def newest_run(drive: Drive, tool: str) -> str:
+    """The run of a tool that was kept last with a drive; empty where there is none."""
+    found = [
+        (path.stat().st_mtime_ns, path.stem)
+        for path in (drive.folder / _FOLDER / tool).glob(f"*{_ENDING}")
+        if _is_whole(drive, path)
+    ]
+    return max(found, default=(0, ""))[1]
+
+
+def finding_of(drive: Drive, tool: str, run: str, points: NDArray[np.int64]) -> NDArray[np.bool_]:
+    """Whether a run said yes about some points: (n,) bool.
+
+    Raises
+    ------
+    MissingInput
+        It isn't kept.
+    """
+    path = finding_path(drive, tool, run)
+    if not points.size:
+        return np.zeros(0, np.bool_)
+    with report_as_user_error(path):
+        packed = np.memmap(path, np.uint8, "r")
+        bits = packed[points // _BYTE] >> (_BYTE - 1 - points % _BYTE).astype(np.uint8)
+    said: NDArray[np.bool_] = (bits & 1).astype(np.bool_)
+    return said
+
+
+def labelled_by_runs(
+    drive: Drive, tool: Tool, points: NDArray[np.int64], labels: NDArray[np.uint8]
+) -> NDArray[np.bool_]:
+    """Which labels a run of a tool gave, or would have given: all others were set by hand.
+
+    Parameters
+    ----------
+    tool : Tool
+        One of :data:`processing.scoring.asked_classes.ASKED`.
+    points : (n,) int64
+        Rising.
+    labels : (n,) uint8
+        What they have.
+
+    Returns
+    -------
+    (n,) bool
+    """
+    found = np.zeros(points.size, np.bool_)
+    if not points.size:
+        return found
+    yes, own = ASKED[tool.id].codes, frozenset(tool.gives_classes)
+    is_yes, is_no = is_one_of(labels, yes & own), is_one_of(labels, own - yes)
+    first = int(points[0])
+    for path in sorted((drive.folder / _FOLDER / tool.id).glob(f"*{_ENDING}")):
+        if _is_whole(drive, path):
+            said = _read(path, first, int(points[-1]) + 1)[points - first]
+            found |= np.where(said, is_yes, is_no)
+    return found
+
+
+def _is_whole(drive: Drive, path: Path) -> bool:
+    return path.is_file() and path.stat().st_size == -(-drive.count // _BYTE)
+
+
+def _read(path: Path, start: int, stop: int) -> NDArray[np.bool_]:
+    first = start // _BYTE
+    with report_as_user_error(path):
+        packed = np.fromfile(path, np.uint8, count=-(-stop // _BYTE) - first, offset=first)
+    bits: NDArray[np.bool_] = np.unpackbits(packed).view(np.bool_)
+    return bits[start - first * _BYTE : stop - first * _BYTE]

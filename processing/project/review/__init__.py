@@ -1,0 +1,1 @@
+"""The order and the state of a review."""

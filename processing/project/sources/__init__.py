@@ -1,0 +1,1 @@
+"""Delivered files and camera images outside the project."""

@@ -1,0 +1,1 @@
+"""The database of a project: features, history, labels, settings, runs."""

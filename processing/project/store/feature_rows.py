@@ -1,0 +1,221 @@
+"""Features and changes as rows and JSON, exactly: what is read is what was written."""
+
+from __future__ import annotations
+
+import json
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+from processing.map.catalogue import Geometry
+from processing.map.change import Change, ListedDrive, Replacement
+from processing.map.feature import Feature, PointReference, Position, Provenance, Status, Vertex
+from processing.map.filed_labels import filed_of_plain, filed_to_plain
+from processing.project.store.geometry_blob import blob_of, positions_of
+
+COLUMNS = (
+    "geom", "id", "kind", "layer", "status", "confidence", "attributes", "provenance", "measured",
+    "occluded",
+)  # fmt: skip
+"""Columns of the table ``features``, in the order of rows."""
+
+FeatureRow = tuple[bytes, str, str, str, str, float, str, str, str, str]
+
+
+def row_of(feature: Feature, layer: str, srs_id: int) -> FeatureRow:
+    """A feature as a row of the table ``features``.
+
+    Raises
+    ------
+    ValueError
+        A value can't be stored: a coordinate that is not finite, too few vertices.
+    """
+    positions = tuple(vertex.xyz for vertex in feature.vertices)
+    return (
+        blob_of(feature.geometry, positions, srs_id),
+        feature.id,
+        feature.kind,
+        layer,
+        feature.status.value,
+        feature.provenance.confidence,
+        _json(dict(feature.attributes)),
+        _json(_plain_provenance(feature.provenance)),
+        _json(_references(feature.vertices)),
+        _json(_occluded(feature.vertices)),
+    )
+
+
+# Rows come from SQLite untyped.
+def feature_of(row: tuple[Any, ...]) -> Feature:
+    """The feature of a row.
+
+    Raises
+    ------
+    ValueError, KeyError, TypeError
+        The row is damaged.
+    """
+    blob, id_, kind, _, status, _, attributes, provenance, measured, occluded = row
+    geometry, positions = positions_of(blob)
+    return Feature(
+        id=id_,
+        kind=kind,
+        geometry=geometry,
+        vertices=_vertices(
+            positions,
+            {} if measured == "{}" else _mapping(json.loads(measured)),
+            [] if occluded == "[]" else json.loads(occluded),
+        ),
+        attributes={} if attributes == "{}" else _mapping(json.loads(attributes)),
+        status=Status(status),
+        provenance=_provenance(provenance),
+    )
+
+
+def change_to_json(change: Change) -> str:
+    """A change as compact JSON that stands for itself."""
+    return _json(
+        {
+            "added": [_plain(feature) for feature in change.added],
+            "replaced": [[_plain(r.before), _plain(r.after)] for r in change.replaced],
+            "removed": [_plain(feature) for feature in change.removed],
+            **({} if change.filed is None else {"filed": filed_to_plain(change.filed)}),
+            **_plain_drives("removed_drives", change.removed_drives),
+            **_plain_drives("restored_drives", change.restored_drives),
+        }
+    )
+
+
+def change_from_json(text: str, label_steps: Path) -> Change:
+    """The change of :func:`change_to_json`.
+
+    Parameters
+    ----------
+    label_steps : Path
+        Where the project keeps labels of many points.
+
+    Raises
+    ------
+    ValueError, KeyError, TypeError, IndexError
+        The text is damaged.
+    """
+    stored = json.loads(text)
+    return Change(
+        added=tuple(_from_plain(one) for one in stored["added"]),
+        replaced=tuple(Replacement(_from_plain(b), _from_plain(a)) for b, a in stored["replaced"]),
+        removed=tuple(_from_plain(one) for one in stored["removed"]),
+        filed=filed_of_plain(stored["filed"], label_steps) if "filed" in stored else None,
+        removed_drives=_drives_from(stored.get("removed_drives", [])),
+        restored_drives=_drives_from(stored.get("restored_drives", [])),
+    )
+
+
+def _plain_drives(name: str, drives: tuple[ListedDrive, ...]) -> dict[str, object]:
+    """Nothing where there are none, as in nearly every step."""
+    return {name: [[one.id, one.position, one.folder] for one in drives]} if drives else {}
+
+
+def _drives_from(plain: list[Any]) -> tuple[ListedDrive, ...]:
+    return tuple(ListedDrive(str(id_), int(position), str(name)) for id_, position, name in plain)
+
+
+def _plain(feature: Feature) -> dict[str, object]:
+    return {
+        "id": feature.id,
+        "kind": feature.kind,
+        "geometry": feature.geometry.value,
+        "places": [vertex.xyz for vertex in feature.vertices],
+        "measured": _references(feature.vertices),
+        "occluded": _occluded(feature.vertices),
+        "attributes": dict(feature.attributes),
+        "status": feature.status.value,
+        "provenance": _plain_provenance(feature.provenance),
+    }
+
+
+# What comes out of JSON has no types of its own.
+def _from_plain(plain: dict[str, Any]) -> Feature:
+    positions = tuple((position[0], position[1], position[2]) for position in plain["places"])
+    return Feature(
+        id=plain["id"],
+        kind=plain["kind"],
+        geometry=Geometry(plain["geometry"]),
+        # Histories of the first schema say nothing of occluded vertices.
+        vertices=_vertices(positions, plain["measured"], plain.get("occluded", [])),
+        attributes=_mapping(plain["attributes"]),
+        status=Status(plain["status"]),
+        provenance=Provenance(**plain["provenance"]),
+    )
+
+
+def _plain_provenance(provenance: Provenance) -> dict[str, object]:
+    return {
+        "tool": provenance.tool,
+        "version": provenance.version,
+        "parameters": dict(provenance.parameters),
+        "confidence": provenance.confidence,
+        "run": provenance.run,
+    }
+
+
+@lru_cache(maxsize=4096)
+def _provenance(text: str) -> Provenance:
+    """Candidates of a run share theirs; a value that nobody changes may be shared."""
+    return Provenance(**json.loads(text))
+
+
+def _references(vertices: tuple[Vertex, ...]) -> dict[str, list[int | None]]:
+    """For each drive, the measured point of each vertex; None where it has none of that drive."""
+    references: dict[str, list[int | None]] = {}
+    for number, vertex in enumerate(vertices):
+        if vertex.measured is not None:
+            points = references.setdefault(vertex.measured.drive, [None] * len(vertices))
+            points[number] = int(vertex.measured.point)
+    return references
+
+
+def _occluded(vertices: tuple[Vertex, ...]) -> list[int]:
+    """Numbers of the vertices without a measured point."""
+    return [number for number, vertex in enumerate(vertices) if vertex.is_occluded]
+
+
+def _vertices(
+    positions: tuple[Position, ...], references: dict[str, list[int | None]], occluded: list[int]
+) -> tuple[Vertex, ...]:
+    vertices = _resting(positions, references)
+    if not occluded:
+        return vertices
+    hidden = set(occluded)
+    return tuple(
+        Vertex(one.xyz, one.measured, is_occluded=number in hidden)
+        for number, one in enumerate(vertices)
+    )
+
+
+def _resting(
+    positions: tuple[Position, ...], references: dict[str, list[int | None]]
+) -> tuple[Vertex, ...]:
+    # Where a GIS program added or removed vertices, nobody knows what they rest on.
+    fitting = {
+        drive: points for drive, points in references.items() if len(points) == len(positions)
+    }
+    if len(fitting) == 1:  # nearly always, and then quickly
+        ((drive, points),) = fitting.items()
+        pairs = zip(positions, points, strict=True)
+        return tuple([Vertex(p, None if n is None else PointReference(drive, n)) for p, n in pairs])
+    vertices = [Vertex(position) for position in positions]
+    for drive, points in fitting.items():
+        for number, point in enumerate(points):
+            if point is not None:
+                vertices[number] = Vertex(positions[number], PointReference(drive, point))
+    return tuple(vertices)
+
+
+def _mapping(value: Any) -> dict[str, Any]:
+    if not isinstance(value, dict):
+        message = f"attributes that are none: {value}"
+        raise TypeError(message)
+    return value
+
+
+def _json(value: object) -> str:
+    return json.dumps(value, ensure_ascii=False, separators=(",", ":"), allow_nan=False)

@@ -1,0 +1,1 @@
+"""Volumes kept with a project."""

@@ -1,0 +1,1 @@
+"""Recordings: drives with their columns, revolutions, vehicle path and camera images."""

@@ -1,0 +1,65 @@
+"""The camera images of a drive, as they are noted in its folder; the image files stay in place."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from pathlib import Path
+
+from processing.core.errors import BadFile, report_as_user_error
+from processing.core.owned_files import new_file
+from processing.core.text import Text
+from processing.recording.camera_images.image_list import CameraImage, ImageList
+
+_FILE_NAME = "images.json"
+
+
+def write_images(folder: Path, images: ImageList) -> None:
+    """Note a drive's images in its folder, whole or not at all."""
+    noted = [{**dataclasses.asdict(image), "path": str(image.path.absolute())} for image in images]
+    path = folder / _FILE_NAME
+    temporary = path.with_suffix(".part")
+    with report_as_user_error(path):
+        text = json.dumps(noted, ensure_ascii=False)
+        with new_file(temporary) as file:
+            # Names of files may be no text; JSON reads them back.
+            file.write(text.encode("utf-8", errors="backslashreplace"))
+        temporary.replace(path)
+
+
+def read_images(folder: Path) -> ImageList | None:
+    """The images noted in a drive's folder; None when it has none.
+
+    Raises
+    ------
+    BadFile
+        The note is damaged.
+    """
+    path = folder / _FILE_NAME
+    if not path.is_file():
+        return None
+    with report_as_user_error(path):
+        text = path.read_text(encoding="utf-8")
+    try:
+        noted = json.loads(text)
+        images = tuple(
+            CameraImage(
+                **{
+                    **image,
+                    "path": Path(image["path"]),
+                    "xyz": tuple(image["xyz"]),
+                    "distortion": tuple(image["distortion"]),
+                }
+            )
+            for image in noted
+        )
+    except (ValueError, TypeError, KeyError) as error:
+        raise BadFile(
+            Text(
+                "The list of a drive's camera images is damaged.",
+                "走行データのカメラ画像一覧が壊れています。",
+            ),
+            Text.same(f"{path}: {error}"),
+            Text("Import the drive again.", "走行データを再インポートしてください。"),
+        ) from error
+    return ImageList(images)

@@ -1,0 +1,272 @@
+"""Columns: the points of one recording as memory-mapped arrays in acquisition order.
+
+A column is a raw little-endian file, one value or vector per point; LAS integers stay integers.
+"""
+
+from __future__ import annotations
+
+import mmap
+from collections.abc import Mapping
+from contextlib import suppress
+from pathlib import Path
+from types import TracebackType
+from typing import Any, BinaryIO, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.core.errors import UNCHANGED, BadFile, report_as_user_error
+from processing.core.owned_files import new_file
+from processing.core.text import Text
+from processing.recording.columns.mapped_pages import MappedPages
+
+COLUMN_TYPES: Mapping[str, tuple[str, int]] = {
+    "xyz": ("<i4", 3),
+    "time": ("<f8", 1),
+    "intensity": ("<u2", 1),
+    "return_number": ("u1", 1),
+    "number_of_returns": ("u1", 1),
+    "classification": ("u1", 1),
+    "source_index": ("<i8", 1),
+    "source_file": ("<u2", 1),
+    "pulse": ("<i8", 1),
+    "color": ("<u2", 3),
+    "scan_angle_deg": ("<f4", 1),
+    "origin": ("<f8", 3),
+    "grid": ("<i4", 2),
+    "place_before": ("<i8", 1),
+    "normal": ("i1", 3),
+    "shape": ("u1", 3),
+    "segment": ("<i4", 1),
+    "seen_color": ("u1", 3),
+    "is_seen": ("u1", 1),
+    "label": ("u1", 1),
+    "truth": ("u1", 1),
+    "judged": ("u1", 1),
+    "height_above_ground": ("<f4", 1),
+}
+"""Column name to dtype and values per point."""
+
+
+def column_path(folder: Path, name: str) -> Path:
+    """Where a column of a drive folder lies."""
+    return folder / f"{name}.bin"
+
+
+class ColumnWriter:
+    """Appends points to the columns of a drive folder that is being made.
+
+    Parameters
+    ----------
+    folder : Path
+        Exists, belongs to this writer alone.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+        self._files: dict[str, BinaryIO] = {}
+        self._count = 0
+
+    @property
+    def count(self) -> int:
+        """Points appended so far."""
+        return self._count
+
+    def append(self, columns: Mapping[str, NDArray[Any]]) -> None:
+        """Append the same number of points to each column.
+
+        Parameters
+        ----------
+        columns : mapping of str to array
+            Name to (n,) or (n, k); every call names the same columns.
+
+        Raises
+        ------
+        NoSpace
+            The disk is full or refuses the write.
+        """
+        with report_as_user_error(self._folder):
+            for name, values in columns.items():
+                if name not in self._files:
+                    self._files[name] = column_path(self._folder, name).open("wb")
+                dtype, _ = COLUMN_TYPES[name]
+                self._files[name].write(np.ascontiguousarray(values, dtype=dtype).data)
+        self._count += next(iter(columns.values())).shape[0]
+
+    def close(self) -> None:
+        """Close the files; may be called again."""
+        with report_as_user_error(self._folder):
+            for file in self._files.values():
+                file.close()
+        self._files.clear()
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        traceback: TracebackType | None,
+    ) -> None:
+        self.close()
+
+
+class Columns:
+    """The columns of a drive folder, read only, mapped when first asked for.
+
+    Parameters
+    ----------
+    folder : Path
+    count : int
+        Number of points.
+    pages : MappedPages, optional
+        Bounds what maps hold of the memory, those of several drives together.
+    """
+
+    def __init__(self, folder: Path, count: int, pages: MappedPages | None = None) -> None:
+        self._pages = pages or MappedPages()
+        self._folder = folder
+        self._count = count
+        self._maps: dict[str, NDArray[Any]] = {}
+        self._files: dict[str, mmap.mmap] = {}
+        self._held: dict[str, NDArray[Any]] = {}
+
+    @property
+    def count(self) -> int:
+        """Number of points."""
+        return self._count
+
+    @property
+    def folder(self) -> Path:
+        """Where the columns lie."""
+        return self._folder
+
+    def has(self, name: str) -> bool:
+        """Whether the recording has this column."""
+        return name in self._maps or column_path(self._folder, name).is_file()
+
+    def __getitem__(self, name: str) -> NDArray[Any]:
+        """A whole column: (n,) or (n, k), mapped, not to be written.
+
+        Raises
+        ------
+        BadFile
+            The file is not as long as the drive has points.
+        MissingInput
+            There is no such column.
+        """
+        self._pages.look()
+        if name not in self._maps:
+            self._maps[name] = self._mapped(name)
+        return self._maps[name]
+
+    def expect(self, name: str, starts: NDArray[np.int64], stops: NDArray[np.int64]) -> None:
+        """Tell the system which points of a column are read next, so that the disk begins now.
+
+        Parameters
+        ----------
+        starts, stops : (k,) int64
+            The points ``starts[i] … stops[i] − 1``.
+        """
+        values = self[name]
+        mapped = self._files.get(name)
+        if mapped is None or not hasattr(mmap, "MADV_WILLNEED"):
+            return
+        item = values.itemsize * (values.size // self._count)
+        begins = starts * item // mmap.PAGESIZE * mmap.PAGESIZE
+        lengths = stops * item - begins
+        # Advice that isn't taken does no harm: the points are read when they are asked for.
+        with suppress(OSError):
+            for begin, length in zip(begins.tolist(), lengths.tolist(), strict=True):
+                if length > 0:
+                    mapped.madvise(mmap.MADV_WILLNEED, begin, length)
+
+    def add(self, name: str, values: NDArray[Any]) -> None:
+        """Store a column that a tool or a hand made; replaces an older one, whole or not at all.
+
+        Raises
+        ------
+        NoSpace
+            The disk is full or refuses the write; the older column stays.
+        """
+        dtype, width = COLUMN_TYPES[name]
+        shape = (self._count,) if width == 1 else (self._count, width)
+        if values.shape != shape:
+            message = f"column {name}: {values.shape} where {shape} belongs"
+            raise ValueError(message)
+        path = column_path(self._folder, name)
+        temporary = path.with_suffix(".part")
+        with report_as_user_error(path):
+            try:
+                with new_file(temporary) as part:
+                    part.write(np.ascontiguousarray(values, dtype=dtype).data)
+                self.release(name)
+                temporary.replace(path)
+            finally:
+                temporary.unlink(missing_ok=True)
+
+    def take_over(self, name: str, file: Path) -> None:
+        """Let a finished file be a column, by a rename; replaces an older one.
+
+        Parameters
+        ----------
+        file : Path
+            A value for each point, as `COLUMN_TYPES` says, on the folder's own disk.
+
+        Raises
+        ------
+        MissingInput, InUse
+            The file is gone, or a program holds the older column; that one stays.
+        """
+        dtype, width = COLUMN_TYPES[name]
+        path = column_path(self._folder, name)
+        with report_as_user_error(path):
+            if file.stat().st_size != self._count * width * np.dtype(dtype).itemsize:
+                message = f"column {name}: a file for other points than {self._count}"
+                raise ValueError(message)
+            self.release(name)
+            file.replace(path)
+
+    def hold(self, name: str, values: NDArray[Any]) -> None:
+        """Let a column be these values, in memory only: (n,) or (n, k), not to be changed."""
+        self._maps[name] = self._held[name] = values
+
+    def held(self, name: str) -> NDArray[Any] | None:
+        """The values that :meth:`hold` keeps in place of the file's, or None."""
+        return self._held.get(name)
+
+    def give_back(self) -> None:
+        """Let maps hold no more memory than they should; for long work, between its stretches."""
+        self._pages.look()
+
+    def release(self, name: str) -> None:
+        """Forget the map of a column; arrays already handed out stay valid."""
+        self._maps.pop(name, None)
+        self._files.pop(name, None)
+
+    def _mapped(self, name: str) -> NDArray[Any]:
+        dtype, width = COLUMN_TYPES[name]
+        shape = (self._count,) if width == 1 else (self._count, width)
+        path = column_path(self._folder, name)
+        with report_as_user_error(path):
+            size = path.stat().st_size
+            if size != self._count * width * np.dtype(dtype).itemsize:
+                raise BadFile(
+                    Text(
+                        "A column of the drive is not as long as the drive has points.",
+                        "走行データの列データの長さが点数と一致しません。",
+                    ),
+                    Text.same(f"{path}, byte {size}"),
+                    Text(
+                        "Import the drive again from the delivered files. {unchanged}",
+                        "納品ファイルから走行データを再インポートしてください。{unchanged}",
+                    ).filled(unchanged=UNCHANGED),
+                )
+            if self._count == 0:
+                return np.empty(shape, dtype=dtype)
+            with path.open("rb") as file:
+                mapped = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
+            self._pages.add(mapped)
+            self._files[name] = mapped
+            return np.frombuffer(mapped, dtype=dtype).reshape(shape)

@@ -1,0 +1,93 @@
+"""Which drives record one place at one time: stations of a site, heads of a car, no two epochs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from processing.recording.drive import SCAN, Drive
+from processing.recording.vehicle_path.clock import are_within_days, is_of_week
+
+_TIMES = 1000
+_TOGETHER_DAYS = 1.0
+_SURVEY_DAYS = 31.0  # lanes, missed streets and the way back are driven within weeks
+
+
+def recorded_together(drive: Drive, beside: Sequence[Drive]) -> tuple[Drive, ...]:
+    """A drive, first, and those of the others that were recorded together with it."""
+    return _met(drive, beside, _TOGETHER_DAYS)
+
+
+def surveyed_together(drive: Drive, beside: Sequence[Drive]) -> tuple[Drive, ...]:
+    """A drive, first, and the others of its survey: the same ground within a month.
+
+    What stands along a street is mapped once from them. What was recorded later is another epoch,
+    since the street may have been rebuilt.
+    """
+    return _met(drive, beside, _SURVEY_DAYS)
+
+
+def _met(drive: Drive, beside: Sequence[Drive], days: float) -> tuple[Drive, ...]:
+    together, others = [drive], list(beside)
+    for one in together:
+        met = [other for other in others if _is_together(one, other, days)]
+        together.extend(met)
+        others = [other for other in others if other not in met]
+    return tuple(together)
+
+
+def recordings_of(drives: Sequence[Drive]) -> tuple[tuple[Drive, ...], ...]:
+    """Drives parted into those that were recorded together; each is in exactly one part."""
+    parts: list[tuple[Drive, ...]] = []
+    left = list(drives)
+    while left:
+        parts.append(recorded_together(left[0], left[1:]))
+        left = [drive for drive in left if drive not in parts[-1]]
+    return tuple(parts)
+
+
+def _is_together(one: Drive, other: Drive, days: float) -> bool:
+    """Whether two drives share a delivered file, or days and ground; stations a folder.
+
+    Clouds without times that come in files of their own may be two epochs, so they stay apart,
+    but for stations of a standing scanner that were delivered side by side.
+    """
+    if _files(one) & _files(other):
+        return True
+    if one.info.crs != other.info.crs or not _extents_meet(one, other):
+        return False
+    is_side_by_side = bool(_folders(one) & _folders(other))
+    span, other_span = _times(one), _times(other)
+    if span is None or other_span is None:
+        both_stand = one.info.rows_by == SCAN and other.info.rows_by == SCAN
+        return span is None and other_span is None and both_stand and is_side_by_side
+    is_dated = not is_of_week(min(span[0], other_span[0]), max(span[1], other_span[1]))
+    return are_within_days(span, other_span, days) and (is_dated or is_side_by_side)
+
+
+def _files(drive: Drive) -> set[str]:
+    return {source.path for source in drive.info.sources}
+
+
+def _folders(drive: Drive) -> set[Path]:
+    return {Path(source.path).parent for source in drive.info.sources}
+
+
+def _extents_meet(one: Drive, other: Drive) -> bool:
+    low = np.maximum(one.info.lowest, other.info.lowest)
+    high = np.minimum(one.info.highest, other.info.highest)
+    return bool(np.all(low[:2] <= high[:2]))
+
+
+def _times(drive: Drive) -> tuple[float, float] | None:
+    """About the first and the last time, s; None where a cloud has none, or one for all points."""
+    if drive.count == 0:
+        return None
+    points = np.unique(np.linspace(0, drive.count - 1, _TIMES).astype(np.int64))
+    times = drive.columns["time"][points]
+    times = times[np.isfinite(times)]
+    if times.size == 0 or (times.min() == times.max() and drive.count > 1):
+        return None
+    return float(times.min()), float(times.max())

@@ -1,0 +1,1 @@
+"""Rows and pulses of a rotating scanner, found in the recording itself."""

@@ -1,0 +1,58 @@
+"""What a tool that gives classes is asked for: which codes mean yes, and words for both sides.
+
+Two studies call opposite classes positive, so every score names its class; the words are here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from processing.core.text import Text
+from processing.scoring.point_scores import GROUND_CODES, NOISE_CODES
+
+
+@dataclass(frozen=True)
+class AskedClass:
+    """The two sides of one question about points.
+
+    Attributes
+    ----------
+    codes : frozenset of int
+        Classes of the points that the tool looks for.
+    found : Text
+        Such a point.
+    other : Text
+        Any other point.
+    removes : bool
+        Whether the points looked for are those that are taken away; otherwise they are kept.
+    """
+
+    codes: frozenset[int]
+    found: Text
+    other: Text
+    removes: bool
+
+    @property
+    def kept(self) -> Text:
+        """What a kept point is called."""
+        return self.other if self.removes else self.found
+
+    @property
+    def removed(self) -> Text:
+        """What a point that is taken away is called."""
+        return self.found if self.removes else self.other
+
+
+ASKED: Mapping[str, AskedClass] = {
+    "noise": AskedClass(
+        NOISE_CODES,
+        Text("noise point", "ノイズ点"),
+        Text("true point", "ノイズでない点"),
+        removes=True,
+    ),
+    "ground": AskedClass(
+        GROUND_CODES, Text("ground", "地面"), Text("object", "物体"), removes=False
+    ),
+}
+"""By the tool's id."""

@@ -1,0 +1,86 @@
+"""Every kind of result that can be scored against a truth, declared once.
+
+``zuka score``, the accuracy tables and the evaluation in the window take their scorers from here.
+A tool that classifies points has a :class:`~processing.scoring.point_scores.PointScorer`, one that
+maps features a :class:`~processing.scoring.file_scores.FeatureScorer`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from processing.core.errors import name_with_type
+from processing.core.text import Text
+from processing.scoring.class_scores import class_score
+from processing.scoring.curb_lines import curb_score
+from processing.scoring.file_scores import FeatureScorer, VolumeScorer
+from processing.scoring.gutters import gutter_score
+from processing.scoring.point_scores import (
+    GROUND_CODES,
+    NOISE_CODES,
+    PointScorer,
+    ground_score,
+    noise_score,
+)
+from processing.scoring.poles import pole_score
+from processing.scoring.signs import sign_score
+from processing.scoring.trees import tree_score
+from processing.scoring.volumes import volume_score
+
+Scorer = PointScorer | FeatureScorer | VolumeScorer
+"""One per kind of result."""
+
+NOISE_SCORER = PointScorer(
+    tool="noise",
+    name=Text("Noise", "ノイズ除去"),
+    codes=NOISE_CODES,
+    if_false=0,
+    if_true=18,
+    flags={"signal": (18, 0)},
+    told=noise_score,
+)
+GROUND_SCORER = PointScorer(
+    tool="ground",
+    name=Text("Ground", "地面抽出"),
+    codes=GROUND_CODES,
+    if_false=2,
+    if_true=1,
+    flags={"ground": (1, 2)},
+    told=ground_score,
+)
+CLASS_SCORER = PointScorer(
+    tool="classify",
+    name=Text("Classes", "分類"),
+    codes=frozenset(),
+    if_false=0,
+    if_true=1,
+    flags={},
+    told=class_score,
+)
+POINT_SCORERS = (NOISE_SCORER, GROUND_SCORER, CLASS_SCORER)
+FEATURE_SCORERS = (
+    FeatureScorer("curbs", Text("Curbs", "縁石"), curb_score),
+    FeatureScorer("gutters", Text("Covered gutters", "蓋付き側溝"), gutter_score),
+    FeatureScorer("trees", Text("Street trees", "街路樹"), tree_score),
+    FeatureScorer("signs", Text("Road signs", "道路標識"), sign_score),
+    FeatureScorer("poles", Text("Poles", "柱状物"), pole_score),
+)
+VOLUME_SCORER = VolumeScorer("volume", Text("Volumes", "土量"), volume_score)
+SCORERS: Mapping[str, Scorer] = {
+    one.tool: one for one in (*POINT_SCORERS, *FEATURE_SCORERS, VOLUME_SCORER)
+}
+
+
+def scorer_of(tool: str) -> Scorer:
+    """The scorer of a tool's results.
+
+    Raises
+    ------
+    OutOfRange
+        There is none; names those there are.
+    """
+    return name_with_type(
+        SCORERS,
+        tool,
+        Text("Results of this tool can't be scored.", "このツールの結果は評価できません。"),
+    )

@@ -1,0 +1,354 @@
+"""Running a tool on a drive: the one door for the window, the command line and batch jobs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import closing, contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.core.errors import Unsuitable, name_with_type, report_as_user_error
+from processing.core.monitor import Monitor, parts_of
+from processing.core.owned_files import make_marked, remove_folder
+from processing.core.text import Text
+from processing.image.images_of_drives import image_of
+from processing.image.point_image import PointCloudImage
+from processing.recording.columns.columns import Columns
+from processing.recording.columns.ordering import read_chunk
+from processing.recording.drive import Drive
+from processing.recording.recorded_together import recorded_together, surveyed_together
+from processing.tools.blocks import POINTS_PER_BLOCK, JoinedResults, blocks_of
+from processing.tools.registry import COMPARISONS, TOOLS
+from processing.tools.tool import (
+    CandidateResult,
+    FinishedColumns,
+    Needs,
+    PointBlock,
+    TogetherResult,
+    Tool,
+)
+
+RunResult = FinishedColumns | CandidateResult
+
+_RUNNING = Text("{tool}: {name}", "{tool}: {name}")
+
+
+@dataclass(frozen=True)
+class RunRequest:
+    """What to run.
+
+    Attributes
+    ----------
+    tool : str
+        A key of `TOOLS`.
+    drive : Drive
+    parameters : object
+        An instance of the tool's own parameter class.
+    beside : tuple of Drive
+        Other drives of the same street; the result is about ``drive`` alone.
+    """
+
+    tool: str
+    drive: Drive
+    parameters: object
+    beside: tuple[Drive, ...] = ()
+
+
+def run(
+    request: RunRequest,
+    monitor: Monitor,
+    *,
+    into: Path,
+    points_per_block: int = POINTS_PER_BLOCK,
+) -> RunResult:
+    """Run a tool on a whole drive; the drive itself isn't changed.
+
+    Parameters
+    ----------
+    into : Path
+        A folder that isn't there yet, for the columns of a tool that says something about points;
+        on the drive's disk where the drive is to have them. Removed again if the run fails.
+    points_per_block : int
+        What is held in memory at a time; the result doesn't depend on it.
+
+    Returns
+    -------
+    FinishedColumns or CandidateResult
+        A column file for each of the tool's outputs; or what the tool found.
+
+    Raises
+    ------
+    Unsuitable
+        The drive lacks what the tool needs.
+    OutOfRange
+        There is no such tool, or parameters contradict each other.
+    NoSpace
+        The disk can't hold the columns.
+    Cancelled
+        Nothing is kept.
+    """
+    tool = tool_of(request.tool)
+    check_needs(tool, request.drive)
+    text = _RUNNING.filled(tool=tool.name, name=request.drive.info.name)
+    monitor.check()
+    monitor.report(0.0, text)
+    result: RunResult
+    if tool.find is not None:
+        result = tool.find(request.drive, request.parameters, monitor)
+    elif tool.find_together is not None:
+        result = tool.find_together(drives_of(request), request.parameters, monitor)
+    elif tool.mark_together is not None:
+        result, *others = _marked_together(request, monitor, into, points_per_block).columns
+        for other in others:
+            other.remove()
+    else:
+        result = _columns(tool, request, monitor, into, points_per_block)
+    monitor.report(1.0, text)
+    return result
+
+
+def drives_of(request: RunRequest) -> tuple[Drive, ...]:
+    """The drives that one run is about: the request's, and for some tools those recorded with it.
+
+    A tool that finds things on several drives gets those of the survey that have what it needs.
+
+    Raises
+    ------
+    OutOfRange
+        There is no such tool.
+    """
+    tool = tool_of(request.tool)
+    if tool.mark_together is not None:
+        return recorded_together(request.drive, request.beside)
+    if tool.find_together is None:
+        return (request.drive,)
+    is_met, _, _ = _NEEDS[tool.needs]
+    suited = tuple(drive for drive in request.beside if is_met(drive))
+    return surveyed_together(request.drive, suited)
+
+
+def run_together(
+    request: RunRequest,
+    monitor: Monitor,
+    *,
+    into: Path,
+    points_per_block: int = POINTS_PER_BLOCK,
+) -> TogetherResult:
+    """Run a tool that says something about points on all drives that :func:`drives_of` names.
+
+    Parameters
+    ----------
+    into : Path
+        As :func:`run`; it holds the columns of all the drives.
+
+    Raises
+    ------
+    Unsuitable, OutOfRange, NoSpace, Cancelled
+        As :func:`run`.
+    """
+    if tool_of(request.tool).mark_together is None:
+        result = run(request, monitor, into=into, points_per_block=points_per_block)
+        return TogetherResult((result,) if isinstance(result, FinishedColumns) else ())
+    return _marked_together(request, monitor, into, points_per_block)
+
+
+def mark_all(tool: str, drives: Sequence[Drive], monitor: Monitor, *, into: Path) -> None:
+    """Let a tool say of all points of some drives what it says, with its own parameters.
+
+    For drives that were imported for the moment: what is said becomes their columns at once.
+
+    Parameters
+    ----------
+    into : Path
+        A folder on their disk, which needn't exist.
+
+    Raises
+    ------
+    Unsuitable, OutOfRange, NoSpace, Cancelled
+        As :func:`run`.
+    """
+    left = list(drives)
+    for part in parts_of(monitor, [drive.count for drive in drives]):
+        if not left:
+            break
+        request = RunRequest(tool, left[0], tool_of(tool).parameters(), tuple(left[1:]))
+        result = run_together(request, part, into=into / f"{tool}-{len(left)}")
+        together = drives_of(request)
+        # The first folder may hold those of the others: it goes last.
+        for drive, columns in reversed(list(zip(together, result.columns, strict=True))):
+            columns.hand_over(drive.columns)
+        left = [drive for drive in left if drive not in together]
+
+
+def columns_of(result: RunResult) -> Mapping[str, NDArray[Any]]:
+    """The columns of a result, by name, mapped; none where it holds candidates."""
+    if isinstance(result, CandidateResult):
+        return {}
+    columns = Columns(result.folder, result.count)
+    return {name: columns[name] for name in result.names}
+
+
+def any_tool(name: str) -> Tool:
+    """The tool of an id, also one that compares two grounds.
+
+    Raises
+    ------
+    OutOfRange
+        There is none.
+    """
+    return name_with_type({**TOOLS, **COMPARISONS}, name, _NO_SUCH_TOOL)
+
+
+def tool_of(name: str) -> Tool:
+    """The tool of an id that runs on drives.
+
+    Raises
+    ------
+    OutOfRange
+        There is none.
+    """
+    return name_with_type(TOOLS, name, _NO_SUCH_TOOL)
+
+
+def check_needs(tool: Tool, drive: Drive) -> None:
+    """Refuse a drive that lacks what a tool needs.
+
+    Raises
+    ------
+    Unsuitable
+    """
+    is_met, what, remedy = _NEEDS[tool.needs]
+    if is_met(drive):
+        return
+    if tool.needs is Needs.REVOLUTIONS and drive.info.rows_reason.en:
+        remedy = drive.info.rows_reason
+    raise Unsuitable(what.filled(tool=tool.name), Text.same(drive.info.name), remedy)
+
+
+_NO_SUCH_TOOL = Text("There is no such tool.", "そのようなツールはありません。")
+
+_Need = tuple[Callable[[Drive], bool], Text, Text]
+_NEEDS: Mapping[Needs, _Need] = {
+    Needs.POINTS: (lambda _: True, Text("", ""), Text("", "")),
+    Needs.PIXELS: (lambda _: True, Text("", ""), Text("", "")),
+    Needs.REVOLUTIONS: (
+        lambda drive: drive.revolutions is not None,
+        Text(
+            "“{tool}” needs the revolutions of the scanner, which this drive doesn't have.",
+            "「{tool}」にはスキャナの回転情報が必要ですが、この走行データにはありません。",
+        ),
+        Text(
+            "Import the points of a rotating scanner with their times and the trajectory.",
+            "回転式スキャナの時刻付き点群を走行軌跡と一緒にインポートしてください。",
+        ),
+    ),
+    Needs.TRAJECTORY: (
+        lambda drive: drive.trajectory is not None,
+        Text(
+            "“{tool}” needs a trajectory, which this drive doesn't have.",
+            "「{tool}」には走行軌跡が必要ですが、この走行データにはありません。",
+        ),
+        Text(
+            "Import the drive again together with its trajectory.",
+            "走行軌跡と一緒に走行データをインポートし直してください。",
+        ),
+    ),
+    Needs.IMAGES: (
+        lambda drive: bool(drive.images),
+        Text(
+            "“{tool}” needs camera images, which this drive doesn't have.",
+            "「{tool}」にはカメラ画像が必要ですが、この走行データにはありません。",
+        ),
+        Text(
+            "Import the drive again together with the list of its images.",
+            "画像一覧と一緒に走行データをインポートし直してください。",
+        ),
+    ),
+}
+
+
+def _columns(
+    tool: Tool, request: RunRequest, monitor: Monitor, into: Path, points_per_block: int
+) -> FinishedColumns:
+    """What a tool says about every point, block by block."""
+    if tool.mark is not None:
+        with _removed_on_failure(into):
+            marked = tool.mark(request.drive, request.parameters, into, points_per_block, monitor)
+            monitor.check()
+        return marked
+    image = image_of(request.drive, request.drive.pixel_kind)
+    total = max(request.drive.count, 1)
+    compute = tool.compute
+    if tool.compute_of is not None:
+        compute = tool.compute_of(request.drive, request.beside, request.parameters, monitor)
+    with (
+        _removed_on_failure(into),
+        closing(JoinedResults(tool.outputs, image.row_starts, into)) as results,
+    ):
+        for block in blocks_of(image.row_starts, tool.overlap_rows, points_per_block):
+            monitor.check()
+            monitor.report(float(image.row_starts[block.rows.start]) / total)
+            request.drive.columns.give_back()
+            points = _block_of(request.drive, image, block.rows_with_overlap)
+            results.add(block, compute(points, request.parameters, monitor))
+        finished = results.finished(monitor)
+        monitor.check()
+    return finished
+
+
+def _marked_together(
+    request: RunRequest, monitor: Monitor, into: Path, points_per_block: int
+) -> TogetherResult:
+    tool, drives = tool_of(request.tool), drives_of(request)
+    if tool.mark_together is None:
+        message = f"{tool.id} takes drives one by one"
+        raise ValueError(message)
+    for drive in drives:
+        check_needs(tool, drive)
+    monitor.report(
+        0.0, _RUNNING.filled(tool=tool.name, name=", ".join(drive.info.name for drive in drives))
+    )
+    with _removed_on_failure(into):
+        marked = tool.mark_together(drives, request.parameters, into, points_per_block, monitor)
+        monitor.check()
+    return marked
+
+
+@contextmanager
+def _removed_on_failure(folder: Path) -> Iterator[None]:
+    with report_as_user_error(folder):
+        make_marked(folder)
+    try:
+        yield
+    except BaseException:
+        remove_folder(folder)
+        raise
+
+
+def _block_of(drive: Drive, image: PointCloudImage, rows: range) -> PointBlock:
+    grid, points = image.grid(rows)
+
+    # The type of a column's values is the column's own.
+    def read(name: str) -> NDArray[Any]:
+        # Read, not mapped: what was read doesn't stay in memory with the next block.
+        return read_chunk(drive.folder, name, points.start, points.stop)
+
+    has_classes = drive.columns.has("classification")
+    return PointBlock(
+        xyz=read("xyz") * np.array(drive.info.scale) + np.array(drive.info.offset),
+        intensity=read("intensity"),
+        time=read("time"),
+        classification=(
+            read("classification")
+            if has_classes
+            else np.zeros(points.stop - points.start, np.uint8)
+        ),
+        grid=grid,
+        seen_from=None
+        if drive.info.scanner_position is None
+        else np.array(drive.info.scanner_position),
+    )

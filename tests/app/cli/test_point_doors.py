@@ -1,0 +1,122 @@
+"""Every kind of point file comes in by every door, and unclear columns are asked about."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PySide6.QtWidgets import QComboBox, QDialogButtonBox, QFileDialog
+
+from app.application import build_window, make_application
+from app.cli.opened import request_of
+from app.cli.parser import read_arguments
+from app.settings.settings import Settings
+from processing.core.errors import MissingInput
+from processing.formats.points.point_files import POINT_ENDINGS, TEXT_ENDINGS
+from processing.project.importing.dropped_files import request_of_files
+from widgets.dialogs.import_drive import ImportForm
+from widgets.dialogs.point_columns import ColumnsForm
+
+ENDINGS = (*POINT_ENDINGS, *TEXT_ENDINGS)
+
+
+def _delivered(folder: Path, ending: str) -> Path:
+    """A folder with a file that is named so; every reader looks at the content."""
+    folder.mkdir()
+    path = folder / f"scan{ending}"
+    path.write_text("1 2 3\n4 5 6\n")
+    return path
+
+
+@pytest.mark.parametrize("ending", [*ENDINGS, *(ending.upper() for ending in ENDINGS)])
+def test_a_point_file_is_taken_dropped_and_in_a_folder(tmp_path: Path, ending: str) -> None:
+    path = _delivered(tmp_path / "delivery", ending)
+    assert request_of_files((path,), "").inputs == (path,)
+    assert request_of_files((path.parent,), "").inputs == (path,)
+
+
+@pytest.mark.parametrize("ending", ENDINGS)
+def test_the_import_form_lists_a_point_file(
+    qtbot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, ending: str
+) -> None:
+    filters: list[str] = []
+
+    def choose(_parent, _title, _folder, kinds):
+        filters.append(kinds)
+        return [], ""
+
+    monkeypatch.setattr(QFileDialog, "getOpenFileNames", choose)
+    form = ImportForm(tmp_path / "a.zuka")
+    qtbot.addWidget(form)
+    form.ask_for_files()
+    assert f"*{ending} " in filters[0].replace(")", " ")
+
+
+@pytest.mark.parametrize("ending", ENDINGS)
+def test_the_command_line_reads_a_point_file(tmp_path: Path, capsys, ending: str) -> None:
+    path = _delivered(tmp_path / "delivery", ending)
+    command, arguments = read_arguments(["info", str(path)])
+    assert command(arguments) == 0
+    assert "points: 2" in capsys.readouterr().out
+
+
+def test_a_table_of_points_with_times_is_no_trajectory(tmp_path: Path) -> None:
+    path = tmp_path / "points.csv"
+    path.write_text("x,y,z,GpsTime\n1,2,3,4\n")
+    assert request_of_files((path,), "").inputs == (path,)
+
+
+def test_columns_are_named_on_the_command_line(tmp_path: Path, capsys) -> None:
+    path = tmp_path / "a.txt"
+    path.write_text("# x y z\n10 20 30 40\n11 21 31 41\n")
+    words = ["--columns", "-, y,x,z"]
+    command, arguments = read_arguments(["info", str(path), *words])
+    command(arguments)
+    reported = capsys.readouterr().out
+    assert "lowest: 30.000, 20.000, 40.000" in reported
+    _, arguments = read_arguments(["import", "p.zuka", str(path), *words])
+    assert request_of(arguments).columns == ("-", "y", "x", "z")
+
+
+@pytest.fixture
+def window(qtbot, tmp_path: Path):
+    make_application()
+    parts = build_window(Settings(tmp_path / "settings.ini"), tmp_path / "projects")
+    with qtbot.waitExposed(parts.window):
+        parts.window.show()
+    yield parts
+    parts.window.close()
+    parts.window.deleteLater()
+
+
+def test_a_drop_with_an_unclear_header_is_asked_about_and_read_as_answered(
+    qtbot, tmp_path: Path, window
+) -> None:
+    path = tmp_path / "points.txt"
+    values = np.random.default_rng(5).uniform(0, 50, (500, 4))
+    np.savetxt(path, values, header="x y z", fmt="%.3f")
+    window.window.files_dropped.emit((path,))
+    form = window.window.findChild(ColumnsForm)
+    assert window.document.project is None
+    boxes, buttons = form.findChildren(QComboBox), form.findChild(QDialogButtonBox)
+    role = QDialogButtonBox.ButtonRole.AcceptRole
+    (accept,) = (one for one in buttons.buttons() if buttons.buttonRole(one) is role)
+    assert not accept.isEnabled()
+    for box, column in zip(boxes, ("z", "-", "y", "x"), strict=True):
+        box.setCurrentIndex(box.findData(column))
+    assert accept.isEnabled()
+    with qtbot.waitSignal(window.document.reported, timeout=60_000) as reported:
+        accept.click()
+    assert "points.txt: columns taken as z - y x" in reported.args[0].en
+    (drive,) = window.document.drives()
+    order = np.argsort(drive.xyz(np.arange(drive.count))[:, 2])
+    found = drive.xyz(np.arange(drive.count))[order]
+    expected = np.round(values[np.argsort(values[:, 0])][:, [3, 2, 0]], 3)
+    np.testing.assert_allclose(found, expected, atol=1e-3)
+
+
+def test_a_folder_without_points_says_what_to_choose(tmp_path: Path) -> None:
+    (tmp_path / "notes.md").write_text("nothing")
+    with pytest.raises(MissingInput, match="PTX"):
+        request_of_files((tmp_path,), "")

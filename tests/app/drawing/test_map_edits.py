@@ -1,0 +1,41 @@
+"""What the edit menu does with the chosen features: one change, one line in the undo menu."""
+
+from __future__ import annotations
+
+import pytest
+
+from app.document.document import Document
+from app.drawing.map_edits import MapEdits
+from app.jobs.jobs import JobQueue
+from processing.core.text import Text
+from processing.map.catalogue import Geometry
+from processing.map.change import Change
+from processing.map.feature import Feature, Status, Vertex
+
+LABEL = Text("Draw", "作図")
+
+
+@pytest.fixture
+def document(qapp, tmp_path):
+    jobs = JobQueue()
+    document = Document(jobs)
+    document.create(tmp_path / "p.zuka", "EPSG:6677")
+    yield document
+    jobs.close()
+    document.close()
+    document.tiles.close()
+
+
+def _sign(id_: str, easting: float) -> Feature:
+    return Feature(id_, "sign", Geometry.POINT, (Vertex((easting, 2.0, 3.0)),))
+
+
+def test_chosen_features_are_rejected_as_one_step_that_says_how_many(document):
+    signs = (_sign("a", 1.0), _sign("b", 2.0))
+    document.apply(LABEL, Change(added=signs))
+    document.shared.selection.choose_features(frozenset({"a", "b"}))
+    MapEdits(document).set_status(Status.REJECTED, Text("Reject", "却下"))
+    assert {one.status for one in document.features()} == {Status.REJECTED}
+    assert document.undo_stack.undo_label == Text("Reject: 2 features", "却下: 2個の地物")
+    document.undo()
+    assert {one.status for one in document.features()} == {Status.ACCEPTED}

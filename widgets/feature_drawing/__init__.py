@@ -1,0 +1,1 @@
+"""How features are drawn and hit in every view."""

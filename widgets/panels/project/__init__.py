@@ -1,0 +1,1 @@
+"""Drives, runs, layers and labels of the project."""

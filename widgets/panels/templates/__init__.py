@@ -1,0 +1,1 @@
+"""Templates: drawn, listed, fitted."""

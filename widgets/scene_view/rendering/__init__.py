@@ -1,0 +1,1 @@
+"""Camera, projection and VTK actors of the 3D view."""

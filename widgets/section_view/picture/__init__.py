@@ -1,0 +1,1 @@
+"""What a pane of the section view shows."""

@@ -1,0 +1,229 @@
+"""SectionFeed: finds and colours the points of a cut beside the window's thread."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from PySide6.QtCore import QObject, Signal
+
+from processing.core.errors import UserError
+from processing.image.attributes.attributes import colours, most_telling_attribute
+from processing.methods.ground.surface_line import SurfaceLine
+from processing.recording.drive import Drive
+from processing.section.cut import Cut
+from processing.section.points_in_cut import MOST_POINTS, SectionPoints, section_points
+from widgets.section_view.picture.found_ground import FoundGround
+from widgets.section_view.picture.section_diagnostics import SectionDiagnostics, diagnostics_at
+from widgets.section_view.picture.section_position import SectionPosition
+from widgets.section_view.picture.settings import SectionSettings
+from widgets.shared.view_settings import PointStyle
+
+Floats = NDArray[np.float64]
+
+_AT_ONCE = frozenset({"intensity", "height", "class", "label", "segment"})
+"""Attributes that are read, not computed from neighbours or images."""
+
+_PLAIN = "intensity"
+_LIFT = 72.0
+_BEHIND, _IN_PLANE, _BEFORE = (0, 114, 178), (240, 240, 240), (230, 159, 0)
+
+
+@dataclass(frozen=True, eq=False)
+class SectionRequest:
+    """What a pane wants to see.
+
+    Attributes
+    ----------
+    standing : Standing
+        Where the section stands.
+    cut : Cut
+        Its slab.
+    drives : tuple of Drive
+    look : PointStyle
+    settings : SectionSettings
+        Say whether colours tell the distance from the plane instead of the look's attribute, and
+        whether the ground and what tools look at are shown.
+    parameters : mapping of str to object
+        Of the tools that tell what they look at, by their ids.
+    """
+
+    standing: SectionPosition
+    cut: Cut
+    drives: tuple[Drive, ...]
+    look: PointStyle
+    settings: SectionSettings
+    parameters: Mapping[str, object] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, eq=False)
+class SectionPicture:
+    """The points of a cut.
+
+    Attributes
+    ----------
+    request : SectionRequest
+    drive_numbers : (n,) int64
+        Into ``request.drives``.
+    points : (n,) int64
+        Indices in the drives, by rising offset.
+    section : (n, 3) float64
+        Offset, height, distance from the plane, m.
+    colours : (n, 3) uint8
+    is_thinned : bool
+        Whether there are more points than these.
+    is_final : bool
+        Whether the colours are those wished for.
+    ground : tuple of SurfaceLine
+        In the plane of the cut, as the tool “ground” found it.
+    diagnostics : tuple of SectionDiagnostics or None
+        None where they aren't shown, or aren't known as yet.
+    """
+
+    request: SectionRequest
+    drive_numbers: NDArray[np.int64]
+    points: NDArray[np.int64]
+    section: Floats
+    colours: NDArray[np.uint8]
+    is_thinned: bool
+    is_final: bool = True
+    ground: tuple[SurfaceLine, ...] = ()
+    diagnostics: tuple[SectionDiagnostics, ...] | None = None
+
+
+class SectionFeed(QObject):
+    """Works out requests one after the other; the newest is the one that counts.
+
+    Signals
+    -------
+    arrived(picture: SectionPicture)
+        Sent from another thread, so received through the window's event queue. Where colours
+        take time the points come twice, in plain colours first.
+    """
+
+    arrived = Signal(object)
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._changed = threading.Condition()
+        self._next: SectionRequest | None = None
+        self._is_closed = False
+        self._ground = FoundGround()
+        self._worker = threading.Thread(target=self._work, name="section", daemon=True)
+        self._worker.start()
+
+    def request(self, request: SectionRequest) -> None:
+        """Ask for what is to be seen now; replaces what was asked for and isn't begun."""
+        with self._changed:
+            self._next = request
+            self._changed.notify()
+
+    def close(self) -> None:
+        """Stop the worker and wait for it; nothing is told afterwards."""
+        with self._changed:
+            self._is_closed = True
+            self._next = None
+            self._changed.notify()
+        self._worker.join()
+
+    def _work(self) -> None:
+        while True:
+            with self._changed:
+                while self._next is None and not self._is_closed:
+                    self._changed.wait()
+                if self._is_closed:
+                    return
+                request, self._next = self._next, None
+            if request is not None:
+                self._fulfil(request)
+
+    def _fulfil(self, request: SectionRequest) -> None:
+        parts: list[SectionPoints] = []
+        most, hides_noise = MOST_POINTS // max(len(request.drives), 1), request.look.hides_noise
+        for drive in request.drives:
+            if self._is_outdated():
+                return
+            try:
+                parts.append(section_points(drive, request.cut, most, hides_noise=hides_noise))
+            except UserError:  # the image view says why; here its points are just not there
+                parts.append(SectionPoints(drive.id, np.empty(0, np.int64), np.empty((0, 3))))
+        ground: tuple[SurfaceLine, ...] = ()
+        if request.settings.shows_ground:
+            ground = self._ground.lines_now(request.drives, request.cut, parts)
+        is_slow = not request.settings.is_by_distance and request.look.attribute not in _AT_ONCE
+        if is_slow:
+            plain = picture_of(request, parts, _PLAIN)
+            self._report(replace(plain, is_final=False, ground=ground))
+        if is_slow and self._is_outdated():
+            return
+        picture = replace(picture_of(request, parts, request.look.attribute), ground=ground)
+        if not request.settings.shows_diagnostics or request.standing.is_along:
+            self._report(picture)
+            return
+        self._report(replace(picture, is_final=False))
+        if not self._is_outdated():
+            diagnostics = diagnostics_at(
+                request.drives, request.standing, request.cut, request.parameters
+            )
+            self._report(replace(picture, diagnostics=diagnostics))
+
+    def _report(self, picture: SectionPicture) -> None:
+        if not self._is_closed:
+            self.arrived.emit(picture)
+
+    def _is_outdated(self) -> bool:
+        with self._changed:
+            return self._is_closed or self._next is not None
+
+
+def picture_of(
+    request: SectionRequest, parts: Sequence[SectionPoints], attribute: str
+) -> SectionPicture:
+    """The points of all drives in one picture, coloured by an attribute or as wished."""
+    section = np.concatenate([np.empty((0, 3)), *(part.section for part in parts)])
+    points = np.concatenate([np.empty(0, np.int64), *(part.points for part in parts)])
+    numbers = np.repeat(np.arange(len(parts)), [part.points.size for part in parts])
+    if request.settings.is_by_distance:
+        painted = distance_colours(section[:, 2], request.cut.width_m / 2)
+    else:
+        shown = [
+            _colours_of(drive, part.points, attribute, request.look)
+            for drive, part in zip(request.drives, parts, strict=True)
+        ]
+        painted = _lifted(np.concatenate([np.empty((0, 3), np.uint8), *shown]))
+    order = np.argsort(section[:, 0], kind="stable")
+    most = MOST_POINTS // max(len(request.drives), 1)
+    return SectionPicture(
+        request,
+        numbers[order],
+        points[order],
+        section[order],
+        painted[order],
+        is_thinned=any(part.points.size >= most for part in parts),
+    )
+
+
+def distance_colours(distances_m: Floats, half_width_m: float) -> NDArray[np.uint8]:
+    """Bluer behind the plane, more orange in front of it, nearly white in it: (n, 3) uint8."""
+    share = np.clip(distances_m / half_width_m, -1.0, 1.0)[:, None]
+    ends = np.where(share > 0, np.array(_BEHIND), np.array(_BEFORE))
+    blend = np.abs(share) * ends + (1.0 - np.abs(share)) * np.array(_IN_PLANE)
+    return np.asarray(np.rint(blend), dtype=np.uint8)
+
+
+def _lifted(shown: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """Lighter: a dark road is a surface in other views, but a thin line on dark ground here."""
+    return np.asarray(_LIFT + shown * (1.0 - _LIFT / 255.0), dtype=np.uint8)
+
+
+def _colours_of(
+    drive: Drive, points: NDArray[np.int64], attribute: str, look: PointStyle
+) -> NDArray[np.uint8]:
+    try:
+        shown = most_telling_attribute(drive, attribute)
+        return colours(drive, points, shown, look.low_percent, look.high_percent)
+    except UserError:  # camera images can't be read; the image view says so
+        return colours(drive, points, _PLAIN, look.low_percent, look.high_percent)
