@@ -4,10 +4,10 @@ A vehicle drives along a road of constant curvature between two walls while one 
 on it. Every beam is intersected with the scene exactly, so each point's pulse, turn and column are
 known by construction.
 
-`simulated_drive` knows: ``pulses_per_revolution`` may be fractional, as real clocks are not locked to the
-mirror; ``mount`` is the angle of the scan plane to the drive in plan; ``lost_share`` of the pulses
-that hit something don't return, half of them in bursts; ``multi_return_share`` touch an edge and
-return twice; ``rate_drift`` is the relative amplitude of a slow wander of the turn rate;
+`simulated_drive` knows: ``pulses_per_revolution`` may be fractional, as real clocks are not locked
+to the mirror; ``mount`` is the angle of the scan plane to the drive in plan; ``lost_share`` of the
+pulses that hit something don't return, half of them in bursts; ``multi_return_share`` touch an edge
+and return twice; ``rate_drift`` is the relative amplitude of a slow wander of the turn rate;
 ``time_quantum_s`` cuts times off; after ``stop_at`` metres the vehicle stands for ``stop_s`` and
 the laser rests unless ``fires_at_stop``; ``curve`` is the road's curvature, 1/m, left positive.
 """

@@ -1,8 +1,8 @@
 """A window on a large project, used by mouse and keys; how long its frames take.
 
-Run by ``zuka bench large`` in a process of its own: ``python -m app.large_steps.large_bench PROJECT OUT
-SHARE``. It prints a line of JSON for each step: what was done, from when to when, and the times of
-its frames.
+Run by ``zuka bench large`` in a process of its own: ``python -m app.large_steps.large_bench PROJECT
+OUT SHARE``. It prints a line of JSON for each step: what was done, from when to when, and the times
+of its frames.
 """
 
 from __future__ import annotations

@@ -1,6 +1,7 @@
 """How long a key of the review takes until every view shows the next candidate.
 
-Run by ``zuka bench review`` in a process of its own: ``python -m app.large_steps.review_bench COUNT``.
+Run by ``zuka bench review`` in a process of its own: ``python -m app.large_steps.review_bench
+COUNT``.
 """
 
 from __future__ import annotations

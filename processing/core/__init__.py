@@ -1,1 +1,1 @@
-"""What every part stands on: errors, texts, progress, declared parameters, safe writing, the kernels' door."""
+"""What every part stands on: errors, texts, progress, parameters, safe writing, kernels."""

@@ -62,7 +62,8 @@ class DriveInfo:
     rows_reason : Text
         Why there are no revolutions; empty when there are.
     cell_m, cells_per_row
-        Without revolutions only: size of a cell of the top view, 0 for a scan; cells in a row or sweep.
+        Without revolutions only: size of a cell of the top view, 0 for a scan; cells in a row or
+        sweep.
     source_runs : tuple of SourceRun
         Where in the files the points were; empty where the columns ``source_file`` and
         ``source_index`` say it.

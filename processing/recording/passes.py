@@ -1,8 +1,9 @@
 """Passes: stretches of a drive in which the vehicle goes on, measured along its smoothed way.
 
 A pass ends where the vehicle turns back and where its trajectory has a gap. A stop is part of a
-pass: time goes on there and the station stays. What lies beside the vehicle's path is told by the way that
-was driven about the time of its measurement, so a street that is passed twice is told apart.
+pass: time goes on there and the station stays. What lies beside the vehicle's path is told by the
+way that was driven about the time of its measurement, so a street that is passed twice is told
+apart.
 """
 
 from __future__ import annotations
@@ -148,8 +149,8 @@ class Pass:
         Returns
         -------
         station : (n,) float64
-            m; NaN for points outside the times of the pass, farther than `REACH_M` along the vehicle's path
-            from the vehicle, and about the centre of a bend, where sections cross.
+            m; NaN for points outside the times of the pass, farther than `REACH_M` along the
+            vehicle's path from the vehicle, and about the centre of a bend, where sections cross.
         across : (n,) float64
             m to the right of the way; NaN likewise.
         """

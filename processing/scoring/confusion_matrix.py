@@ -1,8 +1,8 @@
 """Two classifications of the same points compared: counts, and what is computed from them.
 
 Which class is called positive decides what precision and recall mean, so nothing here has a
-positive class of its own: a :class:`ConfusionMatrix` is made for named codes, and :meth:`ConfusionMatrix.turned`
-is the same for all other codes.
+positive class of its own: a :class:`ConfusionMatrix` is made for named codes, and
+:meth:`ConfusionMatrix.turned` is the same for all other codes.
 """
 
 from __future__ import annotations

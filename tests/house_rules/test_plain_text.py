@@ -1,7 +1,7 @@
 """Words are shown as they are: nothing in the window can take them for HTML.
 
-``app/settings/edged_style.py`` makes every label plain, also those of tooltips and of Qt's own forms. What
-would show HTML all the same, or another style, is named here and used nowhere.
+``app/settings/edged_style.py`` makes every label plain, also those of tooltips and of Qt's own
+forms. What would show HTML all the same, or another style, is named here and used nowhere.
 """
 
 from __future__ import annotations

@@ -41,8 +41,8 @@ _ALONG_PER_NOTCH = 0.12  # of the window's width
 class PlaneView(QWidget):
     """Shows the map on a plane and gives the mouse to the tool in the hand.
 
-    A subclass says how space lies on the plane (:meth:`projection`), paints the ground below the map
-    and what frames it, and finds the measured point at a place of the plane.
+    A subclass says how space lies on the plane (:meth:`projection`), paints the ground below the
+    map and what frames it, and finds the measured point at a place of the plane.
 
     Parameters
     ----------
@@ -136,8 +136,12 @@ class PlaneView(QWidget):
         """Paint scale, rulers and titles, above the map; called for every picture."""
 
     def position_at(
-        self, position: PlanePoint, reach: float, *, exact: bool
-    ) -> PickedPosition | None:  # noqa: ARG002
+        self,
+        position: PlanePoint,  # noqa: ARG002 - for subclasses
+        reach: float,  # noqa: ARG002
+        *,
+        exact: bool,  # noqa: ARG002
+    ) -> PickedPosition | None:
         """The measured point at a place of the plane.
 
         Parameters

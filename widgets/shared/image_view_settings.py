@@ -1,4 +1,4 @@
-"""ImageViewSettings: boxes to choose drive, kind of image, attribute and direction of an image view."""
+"""ImageViewSettings: boxes to choose drive, kind, attribute and direction of an image view."""
 
 from __future__ import annotations
 

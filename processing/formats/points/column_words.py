@@ -73,8 +73,8 @@ class HeaderReading:
     Attributes
     ----------
     columns : tuple of str
-        The field of each column, as :data:`processing.formats.points.field_names.FIELD_NAMES` calls it;
-        ``-`` for one that is passed over. Empty where it is not certain.
+        The field of each column, as :data:`processing.formats.points.field_names.FIELD_NAMES` calls
+        it; ``-`` for one that is passed over. Empty where it is not certain.
     """
 
     certainty: Certainty

@@ -58,8 +58,8 @@ def block_of(
     Returns
     -------
     Block
-        As :class:`processing.formats.points.delivered_floats.FloatFile` says. ``theta`` (rad) is the
-        scan angle where no other is. Colours of 8 bits become 16 bits, those of 0 to 1 too. A
+        As :class:`processing.formats.points.delivered_floats.FloatFile` says. ``theta`` (rad) is
+        the scan angle where no other is. Colours of 8 bits become 16 bits, those of 0 to 1 too. A
         column of a scan's grid is a sweep.
     """
     named = {plain_name(name): values for name, values in fields.items()}

@@ -95,7 +95,8 @@ def write_results(
         Arrays are in the file's order; or a function of ``start, stop`` that gives the part of
         these points, of length 0 when both are 0.
     columns : tuple of str
-        What the columns of a text file are, as :func:`processing.formats.points.point_files.read_info`.
+        What the columns of a text file are, as
+        :func:`processing.formats.points.point_files.read_info`.
 
     Raises
     ------

@@ -78,8 +78,8 @@ def records_of(path: Path, monitor: Monitor) -> tuple[LandXmlHeader, list[DrawnS
     Raises
     ------
     UserError
-        What :meth:`processing.formats.surfaces.checked_xml.CheckedXml.read` raises; ``BadFile`` too for a
-        number that is none, a face that is no triangle and a break line without heights.
+        What :meth:`processing.formats.surfaces.checked_xml.CheckedXml.read` raises; ``BadFile`` too
+        for a number that is none, a face that is no triangle and a break line without heights.
     """
     reading = _Reading(path)
     reading.xml.read(reading.on_start, reading.on_end, monitor)

@@ -18,7 +18,7 @@ from processing.recording.columns.damaged_pulses import damaged_pulses
 from processing.recording.kinds import ImageKind
 
 FIXED_WIDTH_SHARE = 0.99
-"""Width of the fixed-width kinds in pulses per revolution: a little less, so that no stripes appear."""
+"""Width of fixed-width kinds in pulses per revolution: a little less, so that no stripes appear."""
 
 _Integers = NDArray[np.int64]
 
@@ -27,7 +27,7 @@ _MOST_ROWS = 1 << 25
 
 
 class RevolutionSource(Protocol):
-    """What the image needs to know of a recording's revolutions (`processing.recording.revolutions.revolutions.Turns`).
+    """What the image needs to know of a recording's `Revolutions`.
 
     Attributes
     ----------

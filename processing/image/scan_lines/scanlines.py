@@ -1,4 +1,4 @@
-"""Normalised scanlines: sections square to the vehicle's path at a constant spacing, whatever the scanner.
+"""Normalised scanlines: sections square to the vehicle's path at a constant spacing.
 
 They are the iso-lines of the station on the triangle mesh of neighbouring pixels, so their spacing
 does not depend on speed, turn rate or mounting angle (Takahashi 2022, section 6.2).
@@ -38,7 +38,8 @@ class ScanlineSettings:
     Attributes
     ----------
     spacing_m : float
-        Between sections along the vehicle's path; they lie at its multiples. The thesis doesn't say its own.
+        Between sections along the vehicle's path; they lie at its multiples. The thesis doesn't say
+        its own.
     half_width_m : float
         How far to either side of the way.
     longest_edge_m : float
@@ -152,7 +153,8 @@ def scanlines_of(
     1. Rows in which the vehicle has hardly gone on are left out.
     2. Neighbouring pixels of the rows make a mesh: two triangles of four filled pixels, one of
        three, none with a long edge; the last return of each pulse counts, noise doesn't.
-    3. A section is where the station of the mesh, told from the vehicle's path about the time of each point,
+    3. A section is where the station of the mesh, told from the vehicle's path about the time of
+    each point,
        is a multiple of the spacing; triangles that follow each other make it a line.
 
     References

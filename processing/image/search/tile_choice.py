@@ -150,7 +150,7 @@ def tiles_in_view(
 
 
 def _met(pyramid: TilePyramid, eye: Floats, planes: Floats) -> Floats:
-    """The tiles of a pyramid that a view may want; see :mod:`processing.image.tiles.tile_descent`."""
+    """The tiles of a pyramid that a view may want; see `processing.image.tiles.tile_descent`."""
     facts = pyramid.facts
     rows, columns = pyramid.shape(0)
     met = np.empty((len(facts) + rows * columns, MET_VALUES))

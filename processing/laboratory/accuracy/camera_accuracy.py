@@ -1,9 +1,9 @@
 """How well places in space and places in camera images agree, on streets whose truth is known.
 
-``python -m processing.laboratory.accuracy.camera_accuracy STREET_FOLDER…`` writes one Markdown table: how far the
-projections of true things are from where the pictures show them, how near a click at a sign's
-centre comes to it, and how near two images do, where they foretell an error of at most 10 cm. A
-street is a folder with LAZ files, ``trajectory.csv``, ``images.csv`` and ``truth``.
+``python -m processing.laboratory.accuracy.camera_accuracy STREET_FOLDER…`` writes one Markdown
+table: how far the projections of true things are from where the pictures show them, how near a
+click at a sign's centre comes to it, and how near two images do, where they foretell an error of at
+most 10 cm. A street is a folder with LAZ files, ``trajectory.csv``, ``images.csv`` and ``truth``.
 """
 
 from __future__ import annotations

@@ -1,7 +1,8 @@
 """Simulated recordings held against their own truth: what the points show of what it says.
 
-``python -m processing.laboratory.accuracy.simulated_streets --markdown docs/accuracy.md`` simulates streets of
-seeds that nobody looked at, and measures rates, heights, trunks and plates from the points alone.
+``python -m processing.laboratory.accuracy.simulated_streets --markdown docs/accuracy.md`` simulates
+streets of seeds that nobody looked at, and measures rates, heights, trunks and plates from the
+points alone.
 """
 
 from __future__ import annotations
@@ -39,7 +40,8 @@ _STYLES = ("urban", "rural", "highway")
 _SENSORS = ("vq250", "vq450", "zf9012", "vmx2ha")
 _LENGTH_M = 100.0
 _ABOUT = (
-    "`python -m processing.laboratory.accuracy.simulated_streets --markdown docs/accuracy.md`: streets of 100 m "
+    "`python -m processing.laboratory.accuracy.simulated_streets --markdown docs/accuracy.md`: "
+    "streets of 100 m "
     "of seeds that nobody looked at, recorded without drift, and measured from their points alone. "
     "Errors are the middle ± the middle distance from it (how many)."
 )

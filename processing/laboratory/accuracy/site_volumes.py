@@ -1,8 +1,9 @@
 """Volumes of earthwork sites against exact truth, and methods on a body whose volume is known.
 
-``python -m processing.laboratory.accuracy.site_volumes --samples FOLDER --markdown docs/accuracy.md`` simulates
-sites of seeds that nobody looked at, finds their ground as it comes, and compares both dates.
-``--samples`` adds deliveries with ``truth/``; ``--kept`` keeps what was simulated in a folder.
+``python -m processing.laboratory.accuracy.site_volumes --samples FOLDER --markdown
+docs/accuracy.md`` simulates sites of seeds that nobody looked at, finds their ground as it comes,
+and compares both dates. ``--samples`` adds deliveries with ``truth/``; ``--kept`` keeps what was
+simulated in a folder.
 """
 
 from __future__ import annotations
@@ -48,7 +49,8 @@ _STYLES = ("levee", "cutting", "pad")
 _SENSORS = ("p40", "vz400i", "zf5016", "p40")
 _WORTH = 0.05
 _ABOUT = (
-    "`python -m processing.laboratory.accuracy.site_volumes --markdown docs/accuracy.md` simulates sites of "
+    "`python -m processing.laboratory.accuracy.site_volumes --markdown docs/accuracy.md` "
+    "simulates sites of "
     "60 m of seeds that nobody looked at, finds the ground of both dates with the tool "
     "`ground` as it comes, and compares them within the site's boundary in cells of {mesh:g} m. "
     "Measured: cut and fill where both dates have points, against the true surfaces over the same "

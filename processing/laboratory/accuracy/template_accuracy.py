@@ -1,8 +1,8 @@
 """How well a template that was drawn once follows the true curbs of a street.
 
-``python -m processing.laboratory.accuracy.template_accuracy STREET_FOLDER… [--trajectory]`` imports every LAZ
-file of a street to a temporary place and writes one Markdown table. In the middle of each true
-curb longer than 10 m a template is drawn from the true profile, as an operator draws it in a
+``python -m processing.laboratory.accuracy.template_accuracy STREET_FOLDER… [--trajectory]`` imports
+every LAZ file of a street to a temporary place and writes one Markdown table. In the middle of each
+true curb longer than 10 m a template is drawn from the true profile, as an operator draws it in a
 section, and fitted from there along the whole street. A street is a folder with LAZ files,
 ``trajectory.csv`` and ``truth/curbs.geojson``.
 """

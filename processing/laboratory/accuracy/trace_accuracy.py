@@ -1,8 +1,8 @@
 """How well snapping and line following find the true curbs of a street.
 
-``python -m processing.laboratory.accuracy.trace_accuracy STREET_FOLDER… [--trajectory]`` imports every LAZ file
-of a street to a temporary place and writes one Markdown table. A street is a folder with LAZ
-files, ``trajectory.csv`` and ``truth/curbs.geojson``.
+``python -m processing.laboratory.accuracy.trace_accuracy STREET_FOLDER… [--trajectory]`` imports
+every LAZ file of a street to a temporary place and writes one Markdown table. A street is a folder
+with LAZ files, ``trajectory.csv`` and ``truth/curbs.geojson``.
 """
 
 from __future__ import annotations

@@ -1,4 +1,6 @@
-"""``python -m processing.noise.training``: makes the models anew and says what they reach.
+"""Makes the noise models anew and says what they reach.
+
+``python -m processing.laboratory.noise_training``
 
 Needs the extra ``train``. The same seeds and recordings give the same models.
 """
@@ -77,7 +79,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="python -m processing.noise.training")
+    parser = argparse.ArgumentParser(prog="python -m processing.laboratory.noise_training")
     parser.add_argument("--what", nargs="+", choices=("beams", "space"), default=["beams", "space"])
     parser.add_argument("--seeds", default="1-120", help="of the scenes that are learned from")
     parser.add_argument(

@@ -1,10 +1,12 @@
-"""``python -m processing.laboratory.road_training.curb_training``: what tells curbs apart, learnt from known streets.
+"""What tells curbs apart, learnt from known streets.
+
+``python -m processing.laboratory.road_training.curb_training``.
 
 Simulates streets of ``--seeds``, finds lines on them without leaving any out, and fits
-`processing.methods.road.curbs.steps.curb_confidence.WEIGHTS` to which of them are curbs; streets of ``--check``
-are not learnt from. ``--deliveries`` are further streets to learn from, recorded before. Prints the
-weights and how many lines of each confidence are right: of streets learnt from by weights that were
-fitted without the street itself.
+`processing.methods.road.curbs.steps.curb_confidence.WEIGHTS` to which of them are curbs; streets of
+``--check`` are not learnt from. ``--deliveries`` are further streets to learn from, recorded
+before. Prints the weights and how many lines of each confidence are right: of streets learnt from
+by weights that were fitted without the street itself.
 """
 
 from __future__ import annotations

@@ -1,10 +1,13 @@
-"""``python -m processing.laboratory.road_training.gutter_training``: what tells lids and gratings, from known streets.
+"""What tells lids and gratings, from known streets.
+
+``python -m processing.laboratory.road_training.gutter_training``.
 
 Simulates streets of ``--seeds``, finds covers on them without leaving any out, and fits the weights
-of `processing.methods.road.gutters.gutter_confidence` and `processing.methods.road.gutters.grating_confidence` to
-which of them are right; streets of ``--check`` are not learnt from. ``--deliveries`` are further
-streets to learn from, recorded before. Prints the weights and how many covers of each confidence
-are right: of streets learnt from by weights that were fitted without the street itself.
+of `processing.methods.road.gutters.gutter_confidence` and
+`processing.methods.road.gutters.grating_confidence` to which of them are right; streets of
+``--check`` are not learnt from. ``--deliveries`` are further streets to learn from, recorded
+before. Prints the weights and how many covers of each confidence are right: of streets learnt from
+by weights that were fitted without the street itself.
 """
 
 from __future__ import annotations

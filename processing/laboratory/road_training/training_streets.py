@@ -24,8 +24,8 @@ class TrainingStreets:
 
 
 def training_streets(module: str, arguments: Sequence[str] | None) -> TrainingStreets:
-    """What the command of a module of `processing.score` was told."""
-    parser = argparse.ArgumentParser(prog=f"python -m processing.score.{module}")
+    """What the command of a module of `processing.laboratory.road_training` was told."""
+    parser = argparse.ArgumentParser(prog=f"python -m processing.laboratory.road_training.{module}")
     parser.add_argument("--seeds", default="500-529", help="streets to learn from")
     parser.add_argument("--check", default="530-539", help="streets to check with")
     parser.add_argument("--length", type=float, default=60.0, help="m of each")

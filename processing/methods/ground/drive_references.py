@@ -25,7 +25,7 @@ ChunkClassifier = Callable[
 def published_ground_of(
     points: DrivePoints, steps: PublishedSteps, folders: Sequence[Path], monitor: Monitor
 ) -> None:
-    """Columns as :func:`processing.methods.ground.drive_ground.adaptive_ground`, by the published method.
+    """Columns as of `adaptive_ground`, by the published method.
 
     Raises
     ------

@@ -7,10 +7,11 @@
 3. Every other point is described by numbers relative to the spacing that the scanner should have
    there (:mod:`processing.methods.noise.features.features`), and more trees weigh them.
 4. What they say of the points around is asked together with the numbers once more
-   (:mod:`processing.methods.noise.features.second_pass`): noise seldom comes alone, and true things hang together.
+   (:mod:`processing.methods.noise.features.second_pass`): noise seldom comes alone, and true things
+   hang together.
 
 All trees learned from simulated scenes with other shapes and shares of noise than any sample, and
-from real recordings as examples of what must be kept (:mod:`processing.noise.training`).
+from real recordings as examples of what must be kept (:mod:`processing.laboratory.noise_training`).
 """
 
 from __future__ import annotations

@@ -59,7 +59,7 @@ def statistical_outliers_by_parts(
     monitor: Monitor,
     points_per_part: int = POINTS_PER_PART,
 ) -> None:
-    """As :func:`processing.methods.noise.neighbours.statistical.statistical_outliers`, part by part.
+    """As `statistical_outliers`, part by part.
 
     Parameters
     ----------

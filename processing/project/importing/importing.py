@@ -1,9 +1,10 @@
 """Importing: delivered files become drive folders; nothing in a delivered file is changed.
 
-Where the points go is planned from headers and ends (:mod:`processing.project.importing.import_layout`), the
-files are read to their places (:mod:`processing.project.importing.import_processes`), and what is found in
-the points afterwards is :mod:`processing.project.importing.drive_building`. What is done is noted, so an
-import that was killed goes on where it was.
+Where the points go is planned from headers and ends
+(:mod:`processing.project.importing.import_layout`), the files are read to their places
+(:mod:`processing.project.importing.import_processes`), and what is found in the points afterwards
+is :mod:`processing.project.importing.drive_building`. What is done is noted, so an import that was
+killed goes on where it was.
 """
 
 from __future__ import annotations
@@ -85,8 +86,8 @@ def import_drives(
     into : Path
         A folder for temporary drive folders, of this import alone;
         :meth:`processing.project.project.Project.adopt_drive` takes them from there. One by
-        :func:`processing.project.importing.unfinished_imports.import_folder` keeps what is done when the
-        program is killed or the disk is full; the same call goes on there.
+        :func:`processing.project.importing.unfinished_imports.import_folder` keeps what is done
+        when the program is killed or the disk is full; the same call goes on there.
     taken : collection of str
         Ids of drives that there are; a drive that would be called so gets a number.
 
@@ -100,8 +101,8 @@ def import_drives(
     UserError
         For a file that can't be read or doesn't fit; nothing is left behind.
     Cancelled
-        Nothing is left behind, but for :class:`processing.core.errors.Interrupted`, which keeps what
-        is done as a kill does.
+        Nothing is left behind, but for :class:`processing.core.errors.Interrupted`, which keeps
+        what is done as a kill does.
     """
     marks = marks_of(request)
     delivery = read_delivery(request.inputs, request.crs, monitor, columns=request.columns)

@@ -1,7 +1,7 @@
 """Lattice: the grid of integers on which a delivery's coordinates lie.
 
-Files of one drive may differ in scale and offset. Their integers are moved to one quantisation where
-that can be done exactly; where it can't, the file becomes a drive of its own.
+Files of one drive may differ in scale and offset. Their integers are moved to one quantisation
+where that can be done exactly; where it can't, the file becomes a drive of its own.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Filing labels of many points, in a worker's thread: the parts, and the columns that follow.
 
-Painting goes on meanwhile. What is painted while labels are filed is told to :func:`drop_repainted`,
-which leaves those points to the painter.
+Painting goes on meanwhile. What is painted while labels are filed is told to
+:func:`drop_repainted`, which leaves those points to the painter.
 """
 
 from __future__ import annotations

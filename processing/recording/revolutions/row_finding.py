@@ -35,7 +35,7 @@ _BELOW_CENTRE_M = 0.3
 
 @dataclass(frozen=True)
 class FoundRows:
-    """Rows as :class:`processing.recording.revolutions.revolutions.Turns` has them, and the rates found on the way."""
+    """Rows as `Revolutions` has them, and the rates found on the way."""
 
     reference_times: Floats
     fold_pulses: NDArray[np.int64]

@@ -15,8 +15,8 @@ _NEAR_M = 1e-3
 _LONGEST_STEP_M = 5.0
 
 LEAST_STRETCH = 0.25
-"""How much of a metre along the vehicle's path a metre beside it must be: towards the centre of a bend the
-sections come together, and beyond it they cross."""
+"""How much of a metre along the vehicle's path a metre beside it must be: towards the
+centre of a bend the sections come together, and beyond it they cross."""
 
 
 @kernel
@@ -101,9 +101,9 @@ def stations_kernel(
 ) -> None:
     """Station, across and height above the way of places, (n, 3) into ``found``; NaN where none.
 
-    ``local`` (n, 3) is about the vehicle's path's origin; ``vehicle_path`` is its step, places and directions,
-    ``passed`` the times and stations of the vehicle; ``asked`` how far along and in plan from it a
-    place may be, and between which heights (m, 2) at each step of the way.
+    ``local`` (n, 3) is about the vehicle's path's origin; ``vehicle_path`` is its step, places and
+    directions, ``passed`` the times and stations of the vehicle; ``asked`` how far along and in
+    plan from it a place may be, and between which heights (m, 2) at each step of the way.
     """
     step_m, positions, directions = vehicle_path
     times, stations = passed

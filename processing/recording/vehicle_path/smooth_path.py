@@ -22,8 +22,8 @@ APART_M = 0.5
 
 STEP_M = 0.25
 SMOOTHED_M = 1.0
-"""Standard deviation of the bell over which places are averaged along the vehicle's path: an axle's distance
-is some three of it, so no vehicle turns faster than this follows."""
+"""Standard deviation of the bell over which places are averaged along the vehicle's path:
+an axle's distance is some three of it, so no vehicle turns faster than this follows."""
 
 
 class SmoothPath(NamedTuple):

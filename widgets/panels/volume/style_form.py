@@ -1,4 +1,4 @@
-"""VolumeStyleForm: how the map of change is shown: whether, its range, its opacity, its contours."""
+"""VolumeStyleForm: how the map of change is shown: its range, its opacity, its contours."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ Floats = NDArray[np.float64]
 
 
 def pick(entries: Floats, search: Callable[[int, RayHits], None], sight: RaySight) -> RayHit | None:
-    """The front-most measured point under a pixel; see :class:`processing.image.search.ray_hits.RayHits`.
+    """The front-most measured point under a pixel; see `processing.image.search.ray_hits`.
 
     Parameters
     ----------

@@ -1,10 +1,10 @@
 """Tables of noise and ground filters on clouds whose truth is known, ours beside peers'.
 
-``python -m processing.laboratory.accuracy.filters.filters DATA_FOLDER --markdown docs/accuracy.md`` makes the sections
-on noise and ground of the page; without ``--markdown`` they are written to standard output.
-``--pictures FOLDER`` paints where our filters err; ``--only noise|unseen|sites|airborne`` leaves
-the other sections as they are, ``--ours`` leaves out peers. Scenes are found as
-:mod:`processing.laboratory.accuracy.filters.filter_scenes` says.
+``python -m processing.laboratory.accuracy.filters.filters DATA_FOLDER --markdown docs/accuracy.md``
+makes the sections on noise and ground of the page; without ``--markdown`` they are written to
+standard output. ``--pictures FOLDER`` paints where our filters err; ``--only
+noise|unseen|sites|airborne`` leaves the other sections as they are, ``--ours`` leaves out peers.
+Scenes are found as :mod:`processing.laboratory.accuracy.filters.filter_scenes` says.
 """
 
 from __future__ import annotations
@@ -161,7 +161,8 @@ def _scored(
 
 
 _ABOUT = """\
-`python -m processing.laboratory.accuracy.filters.filters DATA_FOLDER --markdown docs/accuracy.md` makes this section; \
+`python -m processing.laboratory.accuracy.filters.filters DATA_FOLDER \
+--markdown docs/accuracy.md` makes this section; \
 `zuka score` says the same of one result, and `--pictures FOLDER` paints every error. """
 _ABOUT_NOISE = """\
 Positive is the kept point in the first three figures, as in the road-surface study, and the \
@@ -169,7 +170,8 @@ noise point in the next three. Doing nothing scores the first F of its row, so t
 says little; a filter earns its keep by the second F, and by what it keeps of thin things.
 """
 _ABOUT_UNSEEN = """\
-`python -m processing.laboratory.accuracy.filters.filters DATA_FOLDER --only unseen --markdown docs/accuracy.md` makes \
+`python -m processing.laboratory.accuracy.filters.filters DATA_FOLDER --only unseen \
+--markdown docs/accuracy.md` makes \
 this section from the simulator that the models learned from, with seeds that were never used \
 before: streets, scanners, kinds and shares of noise are drawn anew for each. The upper rows know \
 the scanner's beams (a drive with its trajectory, a scan with its place), the lower ones places \

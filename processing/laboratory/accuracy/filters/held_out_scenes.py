@@ -1,7 +1,7 @@
 """Noise of simulated scenes that no model learned from and nobody looked at, as a table.
 
-Seeds 1 to 120 of :mod:`processing.noise.training` are learned from, seeds from 501 on were looked
-at while the method was worked out; these are for the score alone.
+Seeds 1 to 120 of :mod:`processing.laboratory.noise_training` are learned from, seeds from
+501 on were looked at while the method was worked out; these are for the score alone.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Curbs and covered gutters on streets whose truth is known: how good, where not, how certain.
 
-``python -m processing.laboratory.accuracy.road.road_edges --markdown docs/accuracy.md`` simulates streets of seeds
-that nobody looked at, imports them and runs both tools with their own parameters.
+``python -m processing.laboratory.accuracy.road.road_edges --markdown docs/accuracy.md`` simulates
+streets of seeds that nobody looked at, imports them and runs both tools with their own parameters.
 ``--samples FOLDER…`` adds deliveries with ``truth/``; ``--pictures FOLDER`` paints every failure on
 sheets; ``--seeds`` takes other streets.
 """

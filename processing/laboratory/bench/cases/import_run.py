@@ -1,8 +1,8 @@
 """Imports files into a new project, or only decodes them, in a process that can be watched.
 
-``python -m processing.laboratory.bench.cases.import_run import PROJECT TRAJECTORY CLOUD...`` (no trajectory: ``-``)
-or ``… decode CLOUD...``. It says "ready" once its modules are loaded, and "done" at the end, each
-with the moment on the clock that all processes share.
+``python -m processing.laboratory.bench.cases.import_run import PROJECT TRAJECTORY CLOUD...`` (no
+trajectory: ``-``) or ``… decode CLOUD...``. It says "ready" once its modules are loaded, and "done"
+at the end, each with the moment on the clock that all processes share.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """Runs curbs and gutters on drives in a process that can be watched.
 
-``python -m processing.laboratory.bench.cases.road_run FOLDER DRIVE_FOLDER...`` (the first one for what tools write)
-says "ready" once its modules are loaded, and "done" at the end, each with the moment on the clock
-that all processes share.
+``python -m processing.laboratory.bench.cases.road_run FOLDER DRIVE_FOLDER...`` (the first one for
+what tools write) says "ready" once its modules are loaded, and "done" at the end, each with the
+moment on the clock that all processes share.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Points that no surface gave: arcs and folds of phase-based scanners, mirrors, sun, rain.
 
-Kinds and looks follow Kogure et al. 2022 (arcs about the vehicle's path, of one range each) and what
-recordings of phase-based profilers show.
+Kinds and looks follow Kogure et al. 2022 (arcs about the vehicle's path, of one range each) and
+what recordings of phase-based profilers show.
 """
 
 from __future__ import annotations

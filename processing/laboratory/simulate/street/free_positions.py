@@ -1,7 +1,7 @@
 """Where things stand beside the road: each place is given away once.
 
-Every maker of a section draws from the same `FreePositions`, so that no tree grows through a pole and
-nothing stands on the carriageway, on a gutter's lids or in a side street.
+Every maker of a section draws from the same `FreePositions`, so that no tree grows through a pole
+and nothing stands on the carriageway, on a gutter's lids or in a side street.
 """
 
 from __future__ import annotations

@@ -92,8 +92,8 @@ def volume_between(
     Parameters
     ----------
     before, after : TriangleSurface
-        Checked (:func:`processing.methods.earthwork.geometry.surface_check.check_surface`); where triangles of one
-        lie over each other the ground counts twice.
+        Checked (:func:`processing.methods.earthwork.geometry.surface_check.check_surface`); where
+        triangles of one lie over each other the ground counts twice.
     boundary : shapely.Polygon or shapely.MultiPolygon or None
         m, project CRS.
 

@@ -137,9 +137,9 @@ def point_features_kernel(
     """Numbers of points from what lies around their cells.
 
     ``around`` (k, 9) as from :func:`around_kernel`; ``cells`` (m,) into it; ``positions`` (m,) into
-    ``local_xyz``; ``directions`` (m, 3), or no rows where beams aren't known. ``found`` (m, 8): log2 of
-    points and of sure points, linearity, planarity, thickness, distance from the plane in cells,
-    how level the plane is, and how squarely the beam met it.
+    ``local_xyz``; ``directions`` (m, 3), or no rows where beams aren't known. ``found`` (m, 8):
+    log2 of points and of sure points, linearity, planarity, thickness, distance from the plane in
+    cells, how level the plane is, and how squarely the beam met it.
     """
     for i in range(positions.size):
         mine, xyz = around[cells[i]], local_xyz[positions[i]]

@@ -151,8 +151,8 @@ class CloudNeighbourhood:
     ) -> _Rows:
         """(k, scales × PER_SCALE): how points lie around, in 27 cells of 2 ** scale spacings.
 
-        Per scale: points, sure points, line, plane, scatter, offset, level, incidence; ``directions``
-        (k, 3) are the points' beams.
+        Per scale: points, sure points, line, plane, scatter, offset, level, incidence;
+        ``directions`` (k, 3) are the points' beams.
         """
         found = np.empty((points.size, len(scales) * PER_SCALE), np.float32)
         own, positions = self.own_levels(points), self.position[points]

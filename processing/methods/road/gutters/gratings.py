@@ -143,7 +143,7 @@ def _grating(
 
 
 def _least_box(ends: Floats, ahead: Floats) -> tuple[Floats, Floats]:
-    """Direction and (2, 2) low and high sides of the smallest rectangle about the vehicle's path's direction.
+    """Direction and (2, 2) low and high sides of the smallest rectangle about the path's direction.
 
     Parameters
     ----------

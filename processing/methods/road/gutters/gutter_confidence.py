@@ -72,10 +72,10 @@ WEIGHTS = CoverFacts(
     few_points=-0.50,
     hollow=-1.98,
 )
-"""What each fact is worth: see `processing.laboratory.road_training.gutter_training`, which also says how reliable
-they are. Of 32 streets left out one by one, 1,117 of 1,195 covers given 0.9 and more were right,
-265 of 313 of those from 0.7, 44 of 58 of those from 0.5 and 20 of 99 of those below; of ten others
-426 of 436, 101 of 104, 3 of 3 and 3 of 14."""
+"""What each fact is worth: see `processing.laboratory.road_training.gutter_training`, which also
+says how reliable they are. Of 32 streets left out one by one, 1,117 of 1,195 covers given 0.9 and
+more were right, 265 of 313 of those from 0.7, 44 of 58 of those from 0.5 and 20 of 99 of those
+below; of ten others 426 of 436, 101 of 104, 3 of 3 and 3 of 14."""
 
 CONSTANT = -6.03
 

@@ -1,4 +1,4 @@
-"""Where gutters may run: long smooth lines beside the vehicle's path along which notches come regularly.
+"""Where gutters may run: long smooth lines along which notches come regularly.
 
 The thesis' equal spacing (mms.md, 7.3 c2) asks pairs of notches; here all notches of some metres
 are asked at once, by the sum of the waves of their places (a periodogram), so that notches by
@@ -28,7 +28,7 @@ LENGTHS_M = (0.6, 0.5, 1.0)
 """Lids' lengths met in Japan, the usual one first (JIS A 5372; mms.md, Table 7-2)."""
 
 REACH_M = 13.0
-"""How far from the vehicle's path gutters are looked for; the thesis has 6.5 m (mms.md, Table 7-3)."""
+"""How far from the vehicle's path gutters are looked for; the thesis has 6.5 m (Table 7-3)."""
 
 _CELL_M = 0.05
 _BAND_CELLS = 5  # holes of one lid lie hardly farther apart, nor do their heights

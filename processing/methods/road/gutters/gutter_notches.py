@@ -73,7 +73,7 @@ def notches_of(
 
 
 def notches_about(drive: Drive, position: Floats, parameters: NotchParameters) -> Notches:
-    """Notches of the rows that may pass a place, of every pass of a drive; none without revolutions.
+    """Notches of the rows that may pass a place, of every pass; none without revolutions.
 
     Parameters
     ----------
@@ -163,7 +163,7 @@ def _advancing(stations: Floats, number: Integers) -> Integers:
 
 
 def _advances(stations: Floats, number: Integers) -> Floats:
-    """(s,) how far along the vehicle's path each row stands for: half of the way to the rows beside it, m."""
+    """(s,) m of the vehicle's path that each row stands for: half way to the rows beside it."""
     steps = np.diff(stations)
     is_same = np.diff(number) == 0
     behind, ahead = np.full(len(stations), np.nan), np.full(len(stations), np.nan)

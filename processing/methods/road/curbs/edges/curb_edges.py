@@ -66,7 +66,7 @@ class MeasuredEdges:
     points: _Integers
 
     def nearest(self, positions: _Floats, within_m: float) -> tuple[_Integers, _Floats]:
-        """The measured points nearest to places in the approximate line's frame, and how far they are.
+        """The measured points nearest to places in an approximate line's frame, and how far.
 
         Parameters
         ----------
@@ -141,7 +141,7 @@ def _measured(
 def _hidden(
     approximate_lines: Sequence[ApproximateLine], trajectory: Trajectory | None
 ) -> NDArray[np.bool_]:
-    """Where the faces of approximate lines look away from the vehicle, one approximate line after the other."""
+    """Where the faces of approximate lines look away from the vehicle, line by line."""
     if trajectory is None:
         return np.concatenate(
             [approximate_line.is_hidden for approximate_line in approximate_lines]

@@ -1,8 +1,8 @@
 """Curbs followed beyond the ends of their runs: round corners, and where few scanlines show them.
 
-A scanline square to the vehicle's path runs along a curb that turns into a side street, and of a face that
-looks away it shows little. From each end the line is carried on a little way, edges are measured
-about it, and where there is an edge like the curb's own it is carried on from there.
+A scanline square to the vehicle's path runs along a curb that turns into a side street, and of a
+face that looks away it shows little. From each end the line is carried on a little way, edges are
+measured about it, and where there is an edge like the curb's own it is carried on from there.
 """
 
 from __future__ import annotations
@@ -280,7 +280,7 @@ def _turned(edges: JointEdges) -> JointEdges:
 def _extension(
     approximate_line: ApproximateLine, end: int, more_bend: float, ahead_of: int = _AHEAD
 ) -> ApproximateLine:
-    """The last places of an approximate line and as it would go on, in the approximate line's own direction."""
+    """The last places of an approximate line and as it would go on, in its own direction."""
     order = slice(None, None, -1 if end == 0 else 1)
     known = approximate_line.xyz[order][-_KNOWN:]
     ahead = np.diff(known, axis=0)

@@ -182,7 +182,7 @@ def _line(
 
 
 def in_space(approximate_line: ApproximateLine, frame: _Floats) -> _Floats:
-    """(k, 3) places of an approximate line's frame, m, project CRS; stations may lie between vertices."""
+    """(k, 3) places of an approximate line, m, project CRS; stations may lie between vertices."""
     at = np.arange(approximate_line.xyz.shape[0])
     xyz = np.column_stack([np.interp(frame[:, 0], at, column) for column in approximate_line.xyz.T])
     left = np.column_stack(

@@ -44,8 +44,8 @@ def about_lines_kernel(
 ) -> int:
     """Points near lines, each once per line; gives their number, −1 where there is no room.
 
-    ``integers``: (n, 3) of a block; ``position``: scale and offset about the lines' origin, size of a
-    cell; ``table``: slots, keys of cells, where each cell's segments start, the segments;
+    ``integers``: (n, 3) of a block; ``position``: scale and offset about the lines' origin, size of
+    a cell; ``table``: slots, keys of cells, where each cell's segments start, the segments;
     ``lines``: places (m, 3), unit vectors to the higher ground (m, 2), number of each line (m,);
     ``limits``: how far across, below and above; ``found``: point of the block, line, and (k, 3)
     along, across and above.

@@ -100,7 +100,7 @@ class ChosenPoints:
     starts: _Integers
 
     def about(self, approximate_lines: Sequence[PlanLine], across_m: float) -> _Integers:
-        """(k,) places in ``points``, rising: those in all quarters that approximate lines come near to."""
+        """(k,) places in ``points``, rising: those in all quarters that lines come near to."""
         parts = []
         for approximate_line in approximate_lines:
             ends = approximate_line.xyz[:, :2] - self.origin[:2]

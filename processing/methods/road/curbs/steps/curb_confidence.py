@@ -83,11 +83,12 @@ WEIGHTS = CurbFacts(
     rough=-2.5,
 )
 """What each fact is worth, of `before` its log-odds; none of the scenes that results are judged by
-was learnt from. See `processing.laboratory.road_training.curb_training`. Of streets left out one by one, 71 of 72
-lines given 0.9 and more were curbs, 21 of 25 of those from 0.7, 5 of 13 of those from 0.5 and 7 of
-49 of those below; of 54 streets more (seeds 500 to 522 and 530 to 536 of 60 m, as the command makes
-them, and 24 of 100 m of seeds 301 to 312 and 575 to 589) 71 of 72, 28 of 29, 4 of 5 and 8 of 61.
-Weights fitted to those let as many more wrong lines as right ones pass 0.6, so these were kept."""
+was learnt from. See `processing.laboratory.road_training.curb_training`. Of streets left out one by
+one, 71 of 72 lines given 0.9 and more were curbs, 21 of 25 of those from 0.7, 5 of 13 of those from
+0.5 and 7 of 49 of those below; of 54 streets more (seeds 500 to 522 and 530 to 536 of 60 m, as the
+command makes them, and 24 of 100 m of seeds 301 to 312 and 575 to 589) 71 of 72, 28 of 29, 4 of 5
+and 8 of 61. Weights fitted to those let as many more wrong lines as right ones pass 0.6, so these
+were kept."""
 
 CONSTANT = 4.56
 

@@ -1,8 +1,8 @@
 """Curbs that run across the vehicle's path: side streets, corners of small radius, ends of islands.
 
 Scanlines run along such curbs and don't show them. The same surface is therefore cut square to the
-scanlines too: lines of constant distance from the vehicle's path, through the heights of all scanlines of a
-stretch. What is found there is a run from left to right.
+scanlines too: lines of constant distance from the vehicle's path, through the heights of all
+scanlines of a stretch. What is found there is a run from left to right.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Steps of the ground on normalised scanlines: where level ground meets a low, steep rise.
 
-Every step of a scanline is looked at, not only the first beside the vehicle's path, and steps down as well
-as up: islands, medians and edgings have two.
+Every step of a scanline is looked at, not only the first beside the vehicle's path, and steps down
+as well as up: islands, medians and edgings have two.
 """
 
 from __future__ import annotations
@@ -109,8 +109,8 @@ def steps_on_lines(
     half_m : float
         No place is farther from 0.
     is_square : bool
-        Whether the lines are square to the vehicle's path, which crosses them at 0: then far faces are in
-        shadow.
+        Whether the lines are square to the vehicle's path, which crosses them at 0: then far faces
+        are in shadow.
     """
     limits = np.array(
         [

@@ -1,8 +1,8 @@
 """Edging stones seen from the road: between a planting strip, or a tree pit, and the walk behind.
 
 Their far edge is the one that maps want, and of it scanners see no more than where the top ends
-and how long its shadow is. Where the top begins is seen well: ridges are followed along the vehicle's path by
-that, and its straightness tells stone from plants.
+and how long its shadow is. Where the top begins is seen well: ridges are followed along the
+vehicle's path by that, and its straightness tells stone from plants.
 """
 
 from __future__ import annotations

@@ -48,10 +48,11 @@ class StepRun:
     side : int
         −1 left, 1 right of the way.
     rises : int
-        1 where the ground is higher on the far side (seen from the vehicle's path), −1 where it is lower: the
-        far edges of islands, whose faces mostly are hidden.
+        1 where the ground is higher on the far side (seen from the vehicle's path), −1 where it is
+        lower: the far edges of islands, whose faces mostly are hidden.
     stations_m : (k,) float64
-        Along the pass. They increase but round corners, where a run turns away from the vehicle's path.
+        Along the pass. They increase but round corners, where a run turns away from the vehicle's
+        path.
     times_s : (k,) float64
         When the places were measured.
     lower, upper : (k, 3) float64

@@ -1,4 +1,4 @@
-"""Loops that link steps of scanlines to tracks along the vehicle's path, and join and smooth tracks.
+"""Loops that link steps of scanlines to tracks along the path, and join and smooth tracks.
 
 A track is followed from scanline to scanline: its place and direction are predicted, the step that
 fits best is taken, and the prediction is made better by it (an alpha-beta filter), so that a step
