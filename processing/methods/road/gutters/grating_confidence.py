@@ -50,8 +50,8 @@ WEIGHTS = GratingTerms(
 )
 """What each fact is worth: see `processing.laboratory.road_training.gutter_training`, which also
 says how reliable they are. Of 32 streets left out one by one, 121 of 121 rectangles given 0.9
-and more were gratings, 6 of 8 of those from 0.5 and 3 of 256 of those below. Fitted anew since rows are
-followed outwards, they found fewer on 45 streets and were left."""
+and more were gratings, 6 of 8 of those from 0.5 and 3 of 256 of those below. Fitted anew since
+rows are followed outwards, they found fewer on 45 streets and were left."""
 
 CONSTANT = -15.93
 
