@@ -31,7 +31,7 @@ class WorkDetails:
             "帳票に記載する工事名です。空欄ではプロジェクト名とします。",
         ),
     )
-    position: str = text(
+    place: str = text(
         name=Text("Part", "測点・範囲"),
         explanation=Text(
             "Which part of the work is meant: stations, place.",

@@ -1396,11 +1396,11 @@ kept</source>
         <translation>座標参照系は不明</translation>
     </message>
     <message>
-        <source>No turns of a scanner: {reason}</source>
+        <source>No revolutions of a scanner: {reason}</source>
         <translation>スキャナの回転なし: {reason}</translation>
     </message>
     <message>
-        <source>{rate} turns per second, {pulses} pulses per turn</source>
+        <source>{rate} revolutions per second, {pulses} pulses per revolution</source>
         <translation>毎秒{rate}回転、1回転あたり{pulses}パルス</translation>
     </message>
 </context>

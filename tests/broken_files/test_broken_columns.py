@@ -35,7 +35,7 @@ _LONGEST_S = 600
 
 FILES = (
     "pulse.bin",
-    "turns.npz",
+    "revolutions.npz",
     "image_rows_trajectory-center.npz",
     "image_rows_reversible.npz",
     "tile_bounds_feature-center.npy",
@@ -127,7 +127,7 @@ def test_rows_that_were_altered_are_found_anew(
 
 @pytest.mark.parametrize("name", ["fold_pulses", "row_ends", "segments", "reference_times"])
 def test_turns_that_fall_are_refused(drive: Drive, name: str) -> None:
-    path = drive.folder / "turns.npz"
+    path = drive.folder / "revolutions.npz"
     with np.load(path) as stored:
         kept = {one: stored[one] for one in stored.files}
     kept[name][kept[name].size // 2] = np.iinfo(np.int32).max

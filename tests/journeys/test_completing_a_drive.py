@@ -131,7 +131,7 @@ def test_a_drive_that_was_shown_from_above_gets_rows_and_the_map_stays_on_its_po
     assert document.apply(LABEL, Change(added=(Feature("line", "curb", Geometry.LINE, vertices),)))
     _import(surveyor, delivery / "trajectory.csv")
     assert settings.image_kind in surveyor.drive.image_kinds
-    assert surveyor.drive.turns is not None
+    assert surveyor.drive.revolutions is not None
     now = [vertex.measured for vertex in document.feature("line").vertices]
     assert now != rests
     assert [surveyor.position_of(one.point).xyz for one in now if one is not None] == positions

@@ -28,7 +28,7 @@ IMPORTING = """
 import os, sys
 import app.cli.import_drives
 from app.__main__ import main
-from processing.project import file_recorder, import_journal, import_processes
+from processing.project.importing import file_recorder, import_journal, import_processes
 import_journal.SECONDS = 0.0
 file_recorder.CHUNK_POINTS = 9_000
 import_processes.FEWEST_POINTS, import_processes.LAZ_CORES = int(sys.argv[1]), 1

@@ -22,7 +22,7 @@ import random, sys
 from pathlib import Path
 import numpy as np
 from processing.core.monitor import SilentMonitor
-from processing.project import label_filing
+from processing.project.store import label_filing
 from processing.project.project import Project
 from tests.processing.project.labelled import PAINT, painting
 label_filing.MANY_POINTS = 1500

@@ -25,7 +25,7 @@ FORM = Text("Form 31-2", "様式-31-2")
 MEASURED_ITEM = Text("Difference in height (measured − design)", "標高較差（計測値 − 設計値）")
 COLUMNS = (
     Text("Face", "部位"),
-    Text("FaceMeasure", "項目"),
+    Text("Item", "項目"),
     Text("Measured", "測定値"),
     Text("Limit", "規格値"),
     Text("Verdict", "判定"),
@@ -103,7 +103,7 @@ def fact_rows(result: AsBuiltResult, facts: AsBuiltFacts) -> tuple[tuple[Text, T
         (Text("Measured item", "測定項目"), MEASURED_ITEM),
         (Text("Client", "発注者"), same(work.client)),
         (Text("Contractor", "受注者"), same(work.contractor)),
-        (Text("Part", "測点・範囲"), same(work.position)),
+        (Text("Part", "測点・範囲"), same(work.place)),
         (Text("Surveyor", "測定者"), same(work.surveyor)),
         (Text("Design", "設計データ"), _source(facts.design)),
         (Text("Measured data", "計測データ"), _source(facts.ground)),
@@ -118,18 +118,13 @@ def fact_rows(result: AsBuiltResult, facts: AsBuiltFacts) -> tuple[tuple[Text, T
 
 def face_rows(face: FaceResult, table: AsBuiltLimits) -> tuple[FormRow, ...]:
     """The lines of one face."""
-    single, verdicts = face.limits.single.words(), face.verdicts
+    mean, single, verdicts = face.limits.mean.words(), face.limits.single.words(), face.verdicts
     least = math.ceil(table.density_per_m2 * face.area_m2 - 1e-6)
     most = math.floor(table.rejected_share * face.count + 1e-6)
     percent = f"{100 * table.rejected_share:g} %"
     empty = face.unmeasured_area_m2
     return (
-        _length(
-            Text("Mean", "平均値"),
-            face.mean_m,
-            face.limits.mean.words(),
-            verdicts[FaceMeasure.MEAN],
-        ),
+        _length(Text("Mean", "平均値"), face.mean_m, mean, verdicts[FaceMeasure.MEAN]),
         _length(
             Text("Largest (difference)", "最大値（差）"),
             face.largest_m,

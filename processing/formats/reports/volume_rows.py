@@ -136,7 +136,7 @@ def work_rows(facts: VolumeFacts) -> tuple[tuple[Text, Text], ...]:
         (Text("Work", "工事名"), same(work.work)),
         (Text("Client", "発注者"), same(work.client)),
         (Text("Contractor", "受注者"), same(work.contractor)),
-        (Text("Part", "測点・範囲"), same(work.position)),
+        (Text("Part", "測点・範囲"), same(work.place)),
         (Text("Surveyor", "測定者"), same(work.surveyor)),
         (Text("CRS", "座標系"), crs_words(work.crs)),
         (Text("Heights", "標高の基準"), same(work.height_datum) if work.height_datum else NOTHING),

@@ -23,7 +23,7 @@ class WorkFacts:
 
     Attributes
     ----------
-    work, position : str
+    work, place : str
         Name of the work (工事名), and which part of it is meant (測点, 施工箇所).
     client, contractor, surveyor : str
         発注者, 受注者, 測定者.
@@ -38,7 +38,7 @@ class WorkFacts:
     """
 
     work: str = ""
-    position: str = ""
+    place: str = ""
     client: str = ""
     contractor: str = ""
     surveyor: str = ""

@@ -90,14 +90,14 @@ class StreetRequest:
         0,
         low=0,
         high=20_000,
-        name=Text("Pulses per turn", "1回転のパルス数"),
+        name=Text("Pulses per revolution", "1回転のパルス数"),
         explanation=Text("0: those of the sensor.", "0 の場合はセンサーの値。"),
     )
     turns_per_s: float = ratio(
         0.0,
         low=0.0,
         high=400.0,
-        name=Text("Turns per second", "1秒あたりの回転数"),
+        name=Text("Revolutions per second", "1秒あたりの回転数"),
         explanation=Text("0: those of the sensor.", "0 の場合はセンサーの値。"),
     )
     drift_m: float = length(

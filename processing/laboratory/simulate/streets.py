@@ -148,7 +148,7 @@ class _Work:
 
     def drive(self, number: int, monitor: Monitor) -> None:
         """Drive once and write what was recorded."""
-        monitor.report(0.0, Text("SimulatedRecording", "計測中"))
+        monitor.report(0.0, Text("Recording", "計測中"))
         driven = pass_of(self.street, number, self.driving)
         movers = movers_of(self.street, driven)
         for mover in movers:

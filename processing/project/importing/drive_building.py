@@ -115,8 +115,7 @@ def build_drive(
     1. Points go into time order if the files lost it.
     2. The trajectory is chosen and the points' clock set to its; origins per point make their own.
     3. A standing scanner's grid is taken as it is, else revolutions and pulses are found; where
-    there
-       are neither, points are ordered for the top view.
+       there are neither, points are ordered for the top view.
     4. The facts are written.
 
     Each step may be begun again; what can't be done to its own result is noted.

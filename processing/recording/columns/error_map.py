@@ -7,7 +7,7 @@ from enum import IntEnum
 import numpy as np
 from numpy.typing import NDArray
 
-ERROR_MAP = "map_errors"
+ERROR_MAP = "judged"
 """The column's name."""
 
 

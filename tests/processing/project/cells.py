@@ -35,7 +35,7 @@ def order_by_cells(folder: Path) -> None:
         return columns["pulse"], -columns["xyz"][:, 2].astype(np.int64)
 
     sort_points(folder, names, drive.count, by_cell, SilentMonitor())
-    (folder / "turns.npz").unlink()
+    (folder / "revolutions.npz").unlink()
     for path in folder.glob("image_rows_*"):
         path.unlink()
     write_drive_info(

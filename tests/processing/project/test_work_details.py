@@ -16,7 +16,7 @@ from processing.project.work_details import WorkDetails, details_of, read_work_d
 
 DETAILS = WorkDetails(
     work="令和8年度 国道1号改良工事",
-    position="No.0〜No.12",
+    place="No.0〜No.12",
     client="国土交通省 関東地方整備局",
     contractor="株式会社 髙橋組",
     surveyor="吉田 﨑子",

@@ -35,7 +35,7 @@ VOLUMES = Volumes(1234.56, 2345.67, 3210.0, 321.0, 45.6, 1200.0, 2300.0)
 class MeshParameters:
     """Parameters of a tool."""
 
-    grid_m: float = length(0.5, low=0.05, high=5.0, name=Text("MeshParameters", "メッシュ"))
+    grid_m: float = length(0.5, low=0.05, high=5.0, name=Text("Mesh", "メッシュ"))
 
 
 def _kept(id_: str, registration: Registration | None = SHIFT, *, hour: int = 9) -> KeptVolume:

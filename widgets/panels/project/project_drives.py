@@ -221,8 +221,8 @@ class ProjectDrives(QObject):
     def _rows_words(self, drive: Drive) -> str:
         if drive.revolutions is None:
             reason = drive.info.rows_reason.in_language(self._language)
-            return self.tr("No turns of a scanner: {reason}").format(reason=reason)
-        return self.tr("{rate} turns per second, {pulses} pulses per turn").format(
+            return self.tr("No revolutions of a scanner: {reason}").format(reason=reason)
+        return self.tr("{rate} revolutions per second, {pulses} pulses per revolution").format(
             rate=f"{drive.revolutions.revolution_rate_hz:.1f}",
             pulses=f"{drive.revolutions.pulses_per_revolution:.0f}",
         )

@@ -126,7 +126,7 @@ class VolumeForm(QWidget):
         rows.addRow(self.tr("Before"), self.before)
         rows.addRow(self.tr("After"), self.after)
         rows.addRow(self._level_name, self._level)
-        rows.addRow(self.tr("AreaChoice"), self._within)
+        rows.addRow(self.tr("Within"), self._within)
         rows.addRow(self._with_lines)
         fields = QWidget(self)
         above = QVBoxLayout(fields)

@@ -54,8 +54,8 @@ def test_what_a_killed_program_left_is_removed_by_the_next_one(tmp_path: Path) -
     script = (
         "import os, signal, sys\n"
         "from pathlib import Path\n"
-        "from processing.laboratory.simulate.whole_folder import made_whole\n"
-        "with made_whole(Path(sys.argv[1])) as hidden:\n"
+        "from processing.laboratory.simulate.whole_folder import write_whole_folder\n"
+        "with write_whole_folder(Path(sys.argv[1])) as hidden:\n"
         "    (hidden / 'half').write_text('x')\n"
         "    os.kill(os.getpid(), signal.SIGKILL)\n"
     )

@@ -63,7 +63,7 @@ FILES = (
     "drives/{drive}/label.bin",
     "drives/{drive}/label.part",
     "drives/{drive}/drive.json",
-    "drives/{drive}/turns.npz",
+    "drives/{drive}/revolutions.npz",
     "drives/{drive}/camera_offsets.json",
     "drives/{drive}/image_rows_scan.npz",
     "label_steps/0123/parts.bin",
@@ -119,7 +119,7 @@ def put_link(position: Path, target: Path) -> None:
 
 
 @pytest.mark.parametrize("writing", [True, False])
-@pytest.mark.parametrize("place", [*FOLDERS, *FILES])
+@pytest.mark.parametrize("position", [*FOLDERS, *FILES])
 def test_a_project_with_a_link_in_it_is_refused_and_nothing_is_touched(
     project: Path, outside: Path, position: str, writing: bool
 ) -> None:
@@ -260,7 +260,7 @@ def test_facts_on_tiles_are_not_written_through_a_link(
 OTHERS = ("tmp/photos", "tmp/import-2024", "label_steps/notes", "results/volumes/mine")
 
 
-@pytest.mark.parametrize("place", OTHERS)
+@pytest.mark.parametrize("position", OTHERS)
 def test_what_somebody_put_into_a_project_stays(project: Path, position: str) -> None:
     (project / position).mkdir(parents=True)
     (project / position / "mine.txt").write_text("mine")
