@@ -29,6 +29,7 @@ from processing.image.tiles.tiles import TilePyramid
 from processing.recording.columns.coordinates import Coordinates
 from processing.recording.columns.counted_classes import ClassColumns
 from processing.recording.columns.damaged_pulses import damaged_pulses
+from processing.recording.columns.quantisation import Quantisation
 from processing.recording.drive import Drive
 from processing.recording.kinds import ImageKind
 
@@ -108,10 +109,7 @@ class PointCloudImage:
         """The image of a drive that has what the kind needs."""
         revolutions = drive.revolutions
         folding = drive.info.cells_per_row if revolutions is None else revolutions
-        coordinates = Coordinates(
-            drive.columns["xyz"], drive.info.scale, drive.info.offset, folder=drive.folder
-        )
-        return cls(kind, drive.columns["pulse"], folding, coordinates=coordinates)
+        return cls(kind, drive.columns["pulse"], folding, coordinates=drive.coordinates)
 
     @property
     def mode_width(self) -> int:
@@ -321,7 +319,8 @@ class PointCloudImage:
 
 def warm_up() -> None:
     """Compile the kernels."""
-    coordinates = Coordinates(np.zeros((4, 3), np.int32), (1.0, 1.0, 1.0), (0.0, 0.0, 0.0))
+    quantisation = Quantisation((1.0, 1.0, 1.0), (0.0, 0.0, 0.0))
+    coordinates = Coordinates({"xyz": np.zeros((4, 3), np.int32)}, quantisation)
     image = PointCloudImage(ImageKind.TOP_VIEW, np.array([0, 1, 1, 5]), 4, coordinates=coordinates)
     image.raster(range(2), range(4))
     codes = _read_only(np.zeros(4, np.uint8))

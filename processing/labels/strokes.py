@@ -49,15 +49,16 @@ def points_under_brush(drive: Drive, start: _Floats, end: _Floats, radius_m: flo
         return np.empty(0, np.int64)
     image = _ready_image(drive)
     stretches = _stretches_near(image, np.stack([start, end]), radius_m)
-    integers, scale = np.asarray(drive.columns["xyz"]), np.array(drive.info.scale)
+    quantisation, part = drive.coordinates.quantisation, drive.coordinates.stretched(stretches)
+    scale = np.array(quantisation.scale)
     # The way in the integers' own units, so that no coordinate is computed for a point far off.
-    way = (np.stack([start, end]) - np.array(drive.info.offset)) / scale
+    way = quantisation.in_units(np.stack([start, end]))
     room = np.empty(_FIRST_ROOM, np.int64)
-    count = _near_stroke_kernel(integers, scale, stretches, (way, radius_m), room)
+    count = _near_stroke_kernel(part.integers, scale, part.stretches, (way, radius_m), room)
     if count > room.size:
         room = np.empty(count, np.int64)
-        _near_stroke_kernel(integers, scale, stretches, (way, radius_m), room)
-    return room[:count]
+        _near_stroke_kernel(part.integers, scale, part.stretches, (way, radius_m), room)
+    return part.points(room[:count])
 
 
 def points_in_slab(drive: Drive, cut: Cut, way: _Floats, radius_m: float) -> _Integers:

@@ -19,8 +19,9 @@ from processing.recording.camera_images.image_store import read_images
 from processing.recording.camera_images.offset_store import read_offsets, write_offsets
 from processing.recording.columns.array_files import read_array
 from processing.recording.columns.columns import Columns
-from processing.recording.columns.coordinates import Coordinates
+from processing.recording.columns.coordinates import Coordinates, Correction, PointSelection
 from processing.recording.columns.mapped_pages import MappedPages
+from processing.recording.columns.quantisation import Quantisation
 from processing.recording.columns.source_order import sources_of
 from processing.recording.drive_info import DriveInfo, SourceFile, read_drive_info
 from processing.recording.file_locations import FolderMove, folder_of, path_now
@@ -28,8 +29,6 @@ from processing.recording.kinds import ImageKind
 from processing.recording.revolutions.revolutions import Revolutions
 from processing.recording.revolutions.revolutions_file import read_revolutions
 from processing.recording.vehicle_path.trajectory import Trajectory
-
-PointSelection = NDArray[np.int64] | slice
 
 _Part = TypeVar("_Part")
 
@@ -53,9 +52,13 @@ class Drive:
         As written by :mod:`processing.project.importing.importing`.
     pages : MappedPages, optional
         Shared by drives whose columns are to be bounded together.
+    correction : Correction, optional
+        Moves the points; ``info`` then tells an extent that holds them all.
 
     Attributes
     ----------
+    coordinates : Coordinates
+        Where its points are.
     noted_images : ImageList or None
         Camera images taken on this drive, where and as they were delivered.
 
@@ -65,10 +68,19 @@ class Drive:
         The folder is missing, incomplete or damaged.
     """
 
-    def __init__(self, folder: Path, pages: MappedPages | None = None) -> None:
+    def __init__(
+        self,
+        folder: Path,
+        pages: MappedPages | None = None,
+        correction: Correction | None = None,
+    ) -> None:
         self._folder = folder
         self.info: DriveInfo = read_drive_info(folder)
+        if correction is not None:
+            self.info = self.info.widened(correction.reach_m)
         self.columns = Columns(folder, self.info.count, pages)
+        quantisation = Quantisation(self.info.scale, self.info.offset)
+        self.coordinates = Coordinates(self.columns, quantisation, folder, correction)
         self.noted_images: ImageList | None = read_images(folder)
         self._offsets = read_offsets(folder)
         self._moves: tuple[FolderMove, ...] = ()
@@ -186,8 +198,7 @@ class Drive:
         (n, 3) float64
             m, project CRS, a copy.
         """
-        integers = self.columns["xyz"][points]
-        return np.asarray(integers * np.array(self.info.scale) + np.array(self.info.offset))
+        return self.coordinates.xyz(points)
 
     def local_xyz(self, points: PointSelection, origin: NDArray[np.float64]) -> NDArray[np.float32]:
         """Coordinates about a local origin, exact enough for drawing.
@@ -201,17 +212,7 @@ class Drive:
         -------
         (n, 3) float32
         """
-        integers = self.columns["xyz"][points]
-        shift = np.array(self.info.offset) - origin
-        local: NDArray[np.float32] = (integers * np.array(self.info.scale) + shift).astype(
-            np.float32
-        )
-        return local
-
-    @property
-    def coordinates(self) -> Coordinates:
-        """Where its points are, as integers."""
-        return Coordinates(self.columns["xyz"], self.info.scale, self.info.offset, self._folder)
+        return self.coordinates.local_xyz(points, origin)
 
     def sources(self, start: int, stop: int) -> tuple[NDArray[np.uint16], NDArray[np.int64]]:
         """Where the points ``start … stop − 1`` were delivered.

@@ -89,6 +89,15 @@ class DriveInfo:
     source_runs: tuple[SourceRun, ...] = ()
     scanner_position: Triple | None = None
 
+    def widened(self, by_m: float) -> DriveInfo:
+        """The same with an extent that reaches farther to all sides."""
+        (a, b, c), (d, e, f) = self.lowest, self.highest
+        return dataclasses.replace(
+            self,
+            lowest=(a - by_m, b - by_m, c - by_m),
+            highest=(d + by_m, e + by_m, f + by_m),
+        )
+
 
 def write_drive_info(folder: Path, info: DriveInfo) -> None:
     """Write a drive's facts into its folder, whole or not at all."""

@@ -57,7 +57,7 @@ def write_part(
     """
     with report_as_user_error(into):
         into.mkdir(parents=True)
-    names = [name for name in COLUMN_TYPES if drive.columns.has(name)]
+    names = [name for name in COLUMN_TYPES if name != "xyz" and drive.columns.has(name)]
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
     with ColumnWriter(into) as writer:
         for start in range(0, max(drive.count, 1), _AT_ONCE):
@@ -65,6 +65,7 @@ def write_part(
             stop = min(start + _AT_ONCE, drive.count)
             wanted = chosen(start, stop)
             read = {name: read_chunk(drive.folder, name, start, stop)[wanted] for name in names}
+            read["xyz"] = drive.coordinates.chunk(start, stop)[wanted]
             more = {name: values[wanted] for name, values in beside(start, stop).items()}
             writer.append({**read, **more})
             if len(read["xyz"]):
@@ -73,9 +74,9 @@ def write_part(
             monitor.report(stop / max(drive.count, 1))
         count = writer.count
     info = drive.info
-    scale, offset = np.array(info.scale), np.array(info.offset)
+    metres = drive.coordinates.quantisation.metres
     if count:
-        lowest, highest = (low * scale + offset).tolist(), (high * scale + offset).tolist()
+        lowest, highest = metres(low).tolist(), metres(high).tolist()
         info = replace(info, lowest=tuple(lowest), highest=tuple(highest))
     write_drive_info(into, replace(info, count=count, source_runs=()))
     if drive.revolutions is not None:

@@ -65,14 +65,16 @@ def points_in_cut(
     image = image_of(drive, drive.image_kinds[-1])
     stretches = image.stretches_in(_tiles_touched(drive, cut))
     found = np.empty(int((stretches[:, 1] - stretches[:, 0]).sum()), np.int64)
+    part = drive.coordinates.stretched(stretches)
     count = _inside_kernel(
-        np.asarray(drive.columns["xyz"]),
-        np.array(drive.info.scale[:2]),
-        stretches,
+        part.integers,
+        np.array(drive.coordinates.quantisation.scale[:2]),
+        part.stretches,
         _plan_of(drive, cut),
         found,
     )
-    inside = seen_points(drive.columns, np.sort(found[:count]), hides_noise=hides_noise)
+    points = np.sort(part.points(found[:count]))
+    inside = seen_points(drive.columns, points, hides_noise=hides_noise)
     count = inside.size
     return inside if count <= most else inside[np.arange(most) * count // most]
 
@@ -127,7 +129,7 @@ def _tiles_touched(drive: Drive, cut: Cut) -> _Integers:
 
 def _plan_of(drive: Drive, cut: Cut) -> _Floats:
     """The cut about the drive's offset: east, north, direction, half length, half width."""
-    offset = drive.info.offset
+    offset = drive.coordinates.quantisation.offset
     east, north = cut.middle[0] - offset[0], cut.middle[1] - offset[1]
     return np.array([east, north, *cut.direction, cut.half_length_m, cut.width_m / 2])
 

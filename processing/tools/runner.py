@@ -339,7 +339,7 @@ def _block_of(drive: Drive, image: PointCloudImage, rows: range) -> PointBlock:
 
     has_classes = drive.columns.has("classification")
     return PointBlock(
-        xyz=read("xyz") * np.array(drive.info.scale) + np.array(drive.info.offset),
+        xyz=drive.coordinates.chunk_xyz(points.start, points.stop),
         intensity=read("intensity"),
         time=read("time"),
         classification=(

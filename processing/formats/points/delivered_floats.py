@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from processing.core.errors import UNCHANGED, BadFile, report_as_user_error
 from processing.core.text import Text
 from processing.formats.points.point_chunk import PointChunk, PointFileInfo, Vector3
+from processing.recording.columns.quantisation import Quantisation
 
 # Any numeric type as the file has it; what must come is said in FloatFile.
 ColumnBlock = dict[str, NDArray[np.generic]]
@@ -132,7 +133,8 @@ def _chunk_columns(
     values: ColumnBlock, summary: _Summary, scale: float, offset: Vector3
 ) -> dict[str, NDArray[np.generic]]:
     count = values["xyz"].shape[0]
-    integers = np.rint((values["xyz"].astype(np.float64) - np.array(offset)) / scale)
+    quantisation = Quantisation((scale, scale, scale), offset)
+    integers = quantisation.rounded(values["xyz"].astype(np.float64))
     columns: dict[str, NDArray[np.generic]] = {
         "xyz": integers.astype(np.int32),
         "intensity": _intensity(values, summary),

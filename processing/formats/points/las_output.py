@@ -18,6 +18,7 @@ from processing.formats.points.las_crs import crs_of
 from processing.formats.points.las_header import HEADER_SIZES, LasHeader
 from processing.formats.points.las_records import PROMOTED
 from processing.formats.points.point_chunk import PointFileInfo
+from processing.recording.columns.quantisation import Quantisation
 
 _VLR_HEAD, _EVLR_HEAD = 54, 60
 _WKT_BIT, _ADJUSTED_BIT, _INTERNAL_WAVEFORMS_BIT = 16, 1, 2
@@ -81,6 +82,18 @@ class LasFrame:
         if minor == 4:
             file.seek(235)
             file.write(struct.pack("<QI", min(positions.values(), default=0), len(positions)))
+
+    @property
+    def quantisation(self) -> Quantisation:
+        """What makes metres of the integers of its points."""
+        a, b, c, d, e, f = struct.unpack_from("<6d", self.head, 131)
+        return Quantisation((a, b, c), (d, e, f))
+
+    def note_extent(self, file: BinaryIO, low: NDArray[np.int64], high: NDArray[np.int64]) -> None:
+        """Note the lowest and highest coordinates of the points, (3,) integers each."""
+        metres = self.quantisation.metres
+        file.seek(179)
+        file.write(np.column_stack([metres(high), metres(low)]).astype("<f8").tobytes())
 
     def note_returns(self, file: BinaryIO, of_return: NDArray[np.int64]) -> None:
         """Note how many points there are of each return, (16,), number 0 first."""

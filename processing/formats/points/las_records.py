@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.errors import OutOfRange
+from processing.core.text import Text
 from processing.formats.points.las_header import RECORD_SIZES
 from processing.formats.points.point_chunk import PointChunk
 
@@ -104,6 +106,33 @@ def set_classes(
         records[:, 16] = classes
     else:
         records[:, 15] = (records[:, 15] & np.uint8(0xE0)) | classes
+    return records
+
+
+def positions_in(records: NDArray[np.uint8]) -> NDArray[np.int32]:
+    """The integers of the coordinates of records: (n, 3) int32, a copy."""
+    return np.ascontiguousarray(records[:, :12]).view("<i4")
+
+
+def move_records(records: NDArray[np.uint8], steps: NDArray[np.float64]) -> NDArray[np.uint8]:
+    """The records, changed in place, moved by whole steps of their integers, (n, 3).
+
+    Raises
+    ------
+    OutOfRange
+        A file with this scale and offset can't hold the moved points.
+    """
+    moved, held = positions_in(records) + steps, np.iinfo(np.int32)
+    if not ((moved >= held.min) & (moved <= held.max)).all():
+        raise OutOfRange(
+            Text(
+                "Corrected points lie where the delivered file's scale and offset don't reach.",
+                "補正後の点が納品ファイルのスケールとオフセットで表せる範囲を超えています。",
+            ),
+            Text.same(f"{np.nanmax(np.abs(steps)):g}"),
+            Text("Check the correction of the drive.", "走行データの補正を確認してください。"),
+        )
+    records[:, :12] = np.ascontiguousarray(moved.astype("<i4")).view(np.uint8)
     return records
 
 

@@ -27,6 +27,8 @@ from processing.formats.points.las_records import (
     add_color_fields,
     description_of,
     extra_dimensions,
+    move_records,
+    positions_in,
     promote_records,
     records_of,
     set_classes,
@@ -40,8 +42,11 @@ ResultColumns = Mapping[str, NDArray[Any]]
 Results = ResultColumns | Callable[[int, int], ResultColumns]
 
 _CHUNK_POINTS = 1_000_000
+MOVED = "moved_m"
+"""A result: how far points are to be moved, (n, 3) float64, m."""
+
 _CLASS, _COLOR = "classification", "color"
-_OF_RECORDS = (_CLASS, _COLOR)
+_OF_RECORDS = (_CLASS, _COLOR, MOVED)
 _FIRST_COLORED_MINOR = 2
 
 
@@ -69,6 +74,33 @@ class _Plan:
     is_las: bool
 
 
+class _Written:
+    """What is known of points once they are written.
+
+    Attributes
+    ----------
+    of_return : (16,) int64
+        Points of each return.
+    low, high : (3,) int64
+        The lowest and highest integers.
+    """
+
+    def __init__(self) -> None:
+        self.of_return = np.zeros(16, np.int64)
+        self.low, self.high = np.full(3, 2**31), np.full(3, -(2**31))
+
+    def add(self, records: NDArray[np.uint8]) -> None:
+        """Count some records more."""
+        self.of_return += np.bincount(records[:, 14] & 15, minlength=16)
+
+    def reach(self, records: NDArray[np.uint8]) -> None:
+        """Let the extent hold some records more."""
+        if len(records):
+            xyz = positions_in(records)
+            self.low = np.minimum(self.low, xyz.min(axis=0))
+            self.high = np.maximum(self.high, xyz.max(axis=0))
+
+
 def write_results(
     source: Path,
     output: Path,
@@ -90,8 +122,10 @@ def write_results(
         ``.las`` or ``.laz``.
     results : mapping, or callable
         ``classification`` (n,) uint8 replaces the classes, ``color`` (n, 3) uint16 the colours,
-        for which the next point format that has them is taken; any other name (n,) of an integer or
-        floating type becomes an extra dimension, or replaces the one of this name and type.
+        for which the next point format that has them is taken; :data:`MOVED` moves the points to
+        the nearest places that the file's scale and offset can tell; any other name (n,) of an
+        integer or floating type becomes an extra dimension, or replaces the one of this name and
+        type.
         Arrays are in the file's order; or a function of ``start, stop`` that gives the part of
         these points, of length 0 when both are 0.
     columns : tuple of str
@@ -112,10 +146,12 @@ def write_results(
     with write_safely(output, never=(source,)) as temporary:
         plan = _plan_of(source, part, columns)
         with temporary.open("wb+") as file, source.open("rb") as source_file:
-            of_return = _write_points(file, plan, part, monitor, is_compressed=is_compressed)
+            written = _write_points(file, plan, part, monitor, is_compressed=is_compressed)
             plan.frame.finish(file, source_file)
             if not plan.is_las:
-                plan.frame.note_returns(file, of_return)
+                plan.frame.note_returns(file, written.of_return)
+            if MOVED in part(0, 0) and plan.count:
+                plan.frame.note_extent(file, written.low, written.high)
 
 
 def _is_compressed(output: Path) -> bool:
@@ -219,8 +255,8 @@ def _write_points(
     monitor: Monitor,
     *,
     is_compressed: bool,
-) -> NDArray[np.int64]:
-    """Write everything but the extended records; gives the number of points of each return."""
+) -> _Written:
+    """Write everything but the extended records."""
     standard = RECORD_SIZES[plan.frame.point_format]
     laz = lazrs.LazVlr.new_for_compression(plan.frame.point_format, plan.point_size - standard)
     file.write(
@@ -228,13 +264,16 @@ def _write_points(
     )
     reported = ReportedWrites(file)
     compressor = lazrs.ParLasZipCompressor(reported, laz) if is_compressed else None
-    of_return = np.zeros(16, dtype=np.int64)
+    written = _Written()
     start = 0
     for source_records in plan.records:
         monitor.check()
         stop = start + source_records.shape[0]
-        records = _with_results(source_records, plan, part(start, stop))
-        of_return += np.bincount(records[:, 14] & 15, minlength=16)
+        results = part(start, stop)
+        records = _with_results(source_records, plan, results)
+        written.add(records)
+        if MOVED in results:
+            written.reach(records)
         if compressor is None:
             file.write(records.data)
         else:
@@ -245,7 +284,7 @@ def _write_points(
     if compressor is not None:
         with report_write_failures(reported):
             compressor.done()
-    return of_return
+    return written
 
 
 def _with_results(
@@ -256,6 +295,8 @@ def _with_results(
         kept = add_color_fields(kept, plan.room_in)
     records = np.zeros((kept.shape[0], plan.point_size), dtype=np.uint8)
     records[:, : kept.shape[1]] = kept
+    if MOVED in results:
+        records = move_records(records, plan.frame.quantisation.steps(results[MOVED]))
     if _CLASS in results:
         classes = np.asarray(results[_CLASS], dtype=np.uint8)
         records = set_classes(records, plan.frame.point_format, classes)

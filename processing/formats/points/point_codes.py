@@ -15,6 +15,7 @@ from processing.core.text import Text
 from processing.formats.points.point_files import read_chunks, read_info
 from processing.formats.points.text_numbers import TextPart, number_blocks
 from processing.recording.columns.array_files import read_arrays
+from processing.recording.columns.quantisation import Quantisation
 from processing.scoring.coded_points import CodedFile, CodedPoints
 
 _NPY_MAGIC, _ZIP_MAGIC = b"\x93NUMPY", b"PK\x03\x04"
@@ -50,11 +51,11 @@ def read_result(path: Path) -> CodedFile:
             Text.same(str(path)),
             Text("Choose a LAS or LAZ file.", "LASまたはLAZを指定してください。"),
         )
-    scale, offset = np.array(info.scale), np.array(info.offset)
+    quantisation = Quantisation(info.scale, info.offset)
 
     def blocks() -> Iterator[CodedPoints]:
         for chunk in read_chunks(path, _BLOCK):
-            xyz = chunk.columns["xyz"] * scale + offset
+            xyz = quantisation.metres(chunk.columns["xyz"])
             yield CodedPoints(chunk.columns["classification"], xyz)
 
     return CodedFile(path, info.count, max(info.scale), has_positions=True, blocks=blocks)

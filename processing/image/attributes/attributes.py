@@ -243,7 +243,7 @@ def _height(drive: Drive, points: _Points, low: float, high: float) -> _Colours:
     ends = [
         value_at_percent(drive.folder, "xyz", drive.count, 2, percent) for percent in (low, high)
     ]
-    values = np.asarray(drive.columns["xyz"][points, 2], np.float64)
+    values = np.asarray(drive.coordinates.integers(points)[..., 2], np.float64)
     return height_ramp()[stretch_values(values, *ends)]
 
 
@@ -277,7 +277,10 @@ def _surfaces(drive: Drive, points: _Points) -> SurfaceShapes:
         image.segments,
         is_regular=image.kind is not ImageKind.TOP_VIEW,
     )
-    return surface_shapes(drive.columns["xyz"], drive.info.scale, layout, points, SHOWN_RADIUS_M)
+    coordinates = drive.coordinates
+    return surface_shapes(
+        coordinates.delivered, coordinates.quantisation.scale, layout, points, SHOWN_RADIUS_M
+    )
 
 
 def _segment(drive: Drive, points: _Points) -> _Colours:

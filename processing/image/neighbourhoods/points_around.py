@@ -39,11 +39,12 @@ def neighbours(drive: Drive, point: int, radius_m: float) -> _Integers:
     starts, stops = edges.reshape(2, -1)
     starts[1:] = np.maximum(starts[1:], stops[:-1])
     found = np.empty(int(np.maximum(0, stops - starts).sum()), np.int64)
-    integers, scale = np.asarray(drive.columns["xyz"]), np.array(drive.info.scale)
-    count = _near_kernel(
-        integers, scale, np.column_stack([starts, stops]), (point, radius_m), found
-    )
-    near = found[:count]
+    coordinates = drive.coordinates
+    part = coordinates.stretched(np.column_stack([starts, stops]))
+    middle = coordinates.integers(np.array([point]))[0].astype(np.float64)
+    scale = np.array(coordinates.quantisation.scale)
+    count = _near_kernel(part.integers, scale, part.stretches, (middle, radius_m), found)
+    near = part.points(found[:count])
     is_noise = class_columns(drive.columns).are_noise(near)
     return np.asarray(near[~is_noise | (near == point)])
 
@@ -82,17 +83,17 @@ def _near_kernel(
     integers: NDArray[np.int32],
     scale: _Floats,
     stretches: _Integers,
-    near: tuple[int, float],
+    near: tuple[_Floats, float],
     found: _Integers,
 ) -> int:
-    """Points of some stretches within a distance of a point; gives their number."""
-    point, radius = near
+    """Points of some stretches within a distance of a point's integers; gives their number."""
+    middle, radius = near
     count = 0
     for k in range(stretches.shape[0]):
         for i in range(stretches[k, 0], stretches[k, 1]):
             square = 0.0
             for j in range(3):
-                away = (float(integers[i, j]) - float(integers[point, j])) * scale[j]
+                away = (float(integers[i, j]) - middle[j]) * scale[j]
                 square += away * away
             if square <= radius * radius:
                 found[count] = i
@@ -103,4 +104,6 @@ def _near_kernel(
 def warm_up() -> None:
     """Compile the kernel."""
     stretches, found = np.array([[0, 1]]), np.empty(1, np.int64)
-    _near_kernel(np.zeros((1, 3), np.int32), np.ones(3), stretches, (0, 1.0), found)
+    integers = np.zeros((1, 3), np.int32)
+    integers.flags.writeable = False
+    _near_kernel(integers, np.ones(3), stretches, (np.zeros(3), 1.0), found)

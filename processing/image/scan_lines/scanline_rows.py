@@ -20,7 +20,7 @@ from processing.recording.columns.ordering import read_chunk
 from processing.recording.drive import Drive
 from processing.recording.passes import Pass, PathSurroundings
 from processing.recording.revolutions.revolutions import Revolutions
-from processing.recording.vehicle_path.pass_kernels import advanced_kernel, local_kernel
+from processing.recording.vehicle_path.pass_kernels import advanced_kernel
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -153,12 +153,9 @@ def read_rows(
     if start > stop:
         raise damaged_pulses(drive.folder)
     read = {
-        name: read_chunk(drive.folder, name, start, stop)
-        for name in ("pulse", "xyz", "time", "intensity")
+        name: read_chunk(drive.folder, name, start, stop) for name in ("pulse", "time", "intensity")
     }
-    shift = np.array(drive.info.offset) - vehicle_path.origin
-    local = np.empty((stop - start, 3))
-    local_kernel(read["xyz"], np.array(drive.info.scale), shift, local)
+    local = drive.coordinates.chunk_about(start, stop, vehicle_path.origin)
     ends = np.searchsorted(read["pulse"], rows.ends)
     found = vehicle_path.stations_of_local(local, read["time"], asked)
     is_noise = class_columns(drive.columns).noise_between(start, stop)

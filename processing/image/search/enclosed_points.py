@@ -14,7 +14,6 @@ from processing.core.kernels import kernel
 from processing.image.point_image import PointCloudImage
 from processing.image.tiles.tile_kernels import COUNT, HIGHEST, LOWEST
 from processing.image.tiles.tiles import TILE
-from processing.recording.columns.coordinates import Coordinates
 from processing.recording.drive import Drive
 
 Floats = NDArray[np.float64]
@@ -68,9 +67,8 @@ def points_enclosed(
     if outline.shape[0] < 3 or not drive.count:
         return found[0]
     bands = _Bands.of(outline)
-    info = drive.info
-    matrix = _of_integers(sight, info.scale, info.offset)
-    coordinates = Coordinates(drive.columns["xyz"], info.scale, info.offset, folder=drive.folder)
+    coordinates = drive.coordinates
+    matrix = coordinates.quantisation.of_integers(sight.matrix, sight.origin)
     for start, stop in _stretches(image, sight, bands.limits):
         inside = np.empty(stop - start, np.bool_)
         enclosed_kernel(
@@ -120,13 +118,6 @@ class _Bands:
         starts = np.searchsorted(strip[order], np.arange(count + 1)).astype(np.int64)
         limits = np.array([low[0], low[1], high[0], high[1]])
         return _Bands(limits, np.ascontiguousarray(edges[of_edge[order]]), starts)
-
-
-def _of_integers(sight: Sight, scale: tuple[float, ...], offset: tuple[float, ...]) -> Floats:
-    """The matrix for delivered integers in place of metres."""
-    shift = np.array(offset) - sight.origin
-    axes = sight.matrix[:, :3]
-    return np.column_stack([axes * np.array(scale), axes @ shift + sight.matrix[:, 3]])
 
 
 def _stretches(image: PointCloudImage, sight: Sight, limits: Floats) -> list[tuple[int, int]]:

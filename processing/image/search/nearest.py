@@ -118,15 +118,14 @@ class NearestSearch:
 
     def _points_about(self, positions: Floats, limit: float) -> tuple[Integers, Floats]:
         """Points of the stretch in the box about places, and where they are."""
-        scale, offset = np.array(self._coordinates.scale), np.array(self._coordinates.offset)
-        low = np.floor((positions.min(axis=0) - limit - offset) / scale)
-        high = np.ceil((positions.max(axis=0) + limit - offset) / scale)
+        quantisation = self._coordinates.quantisation
+        low, high = quantisation.box(positions.min(axis=0) - limit, positions.max(axis=0) + limit)
         easting = self._integers[:, 0]
         chosen = np.flatnonzero((easting >= low[0]) & (easting <= high[0]))
         for axis in (1, 2):
             values = self._integers[chosen, axis]
             chosen = chosen[(values >= low[axis]) & (values <= high[axis])]
-        return chosen + self._start, self._integers[chosen] * scale + offset
+        return chosen + self._start, quantisation.metres(self._integers[chosen])
 
 
 def nearest_point(drive: Drive, xyz: Floats, within_m: float) -> int:

@@ -110,12 +110,13 @@ class RayHits:
         window = np.array([[rows.start, rows.stop, columns.start, columns.stop]])
         stretches = image.stretches_in(window)
         room = int((stretches[:, 1] - stretches[:, 0]).sum())
-        xyz = drive.columns["xyz"].view(np.ndarray)
-        matrix = self._matrix_of_integers(drive.info.scale, drive.info.offset)
+        part = drive.coordinates.stretched(stretches)
+        matrix = drive.coordinates.quantisation.of_integers(self._sight.matrix, self._sight.origin)
         found = np.empty((room, 4))
         limits = self._limits(is_clipped=clip is not None or hides_noise)
-        count = hits_kernel(xyz, stretches, matrix, limits, found)
+        count = hits_kernel(part.integers, part.stretches, matrix, limits, found)
         found = found[:count]
+        found[:, _POINT] = part.points(found[:, _POINT].astype(np.int64))
         if clip is not None:
             points = found[:, _POINT].astype(np.int64)
             found = found[clip.holds(drive.xyz(points))]
@@ -170,10 +171,6 @@ class RayHits:
         close_px = -1.0 if is_clipped else CLOSE_PX
         ends = [self._sight.nearest, TOLERANCE_PX, close_px, self.front_m]
         return np.array([*self._sight.pixel, *ends, _SURFACE_M, _SURFACE_SHARE])
-
-    def _matrix_of_integers(self, scale: tuple[float, ...], offset: tuple[float, ...]) -> Floats:
-        axes, shift = self._sight.matrix[:, :3], np.array(offset) - self._sight.origin
-        return np.column_stack([axes * np.array(scale), axes @ shift + self._sight.matrix[:, 3]])
 
 
 def _behind(depth_m: float) -> float:

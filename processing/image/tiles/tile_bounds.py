@@ -68,7 +68,9 @@ class TileBounds:
         self._shapes = shapes
         sizes = [rows * columns for rows, columns in shapes]
         self.starts: Integers = np.concatenate([[0], np.cumsum(sizes)]).astype(np.int64)
-        self._files = TileFiles(coordinates.folder, image.kind, (int(self.starts[-1]), VALUES))
+        self._files = TileFiles(
+            coordinates.folder, image.kind, (int(self.starts[-1]), VALUES), coordinates.key
+        )
         self._lock = threading.Lock()
         self.is_begun = False
         self._kept_at = 0.0
@@ -175,7 +177,7 @@ class TileBounds:
                 self._coordinates.chunk(start, stop),
                 image.columns_of(start, stop),
                 image.row_starts[some.start : some.stop + 1] - start,
-                np.array(self._coordinates.scale),
+                np.array(self._coordinates.quantisation.scale),
                 some.start,
                 self.starts,
                 tile_columns,
@@ -220,10 +222,10 @@ class TileBounds:
         self.facts[own].reshape(*shape, VALUES)[rows] = united
 
     def _in_metres(self, sums: Floats) -> Floats:
-        scale, offset = np.array(self._coordinates.scale), np.array(self._coordinates.offset)
+        metres = self._coordinates.quantisation.metres
         facts = sums[..., :VALUES].copy()
-        facts[..., LOWEST] = facts[..., LOWEST] * scale + offset
-        facts[..., HIGHEST] = facts[..., HIGHEST] * scale + offset
+        facts[..., LOWEST] = metres(facts[..., LOWEST])
+        facts[..., HIGHEST] = metres(facts[..., HIGHEST])
         facts[..., STEPS] = _mean_steps(sums)
         return facts
 
@@ -269,9 +271,8 @@ class TileBounds:
     def _bounds_of_row(self, row: int) -> Floats:
         """(tile columns, 6): where the points of one row are, by their tile."""
         start, stop = self._image.row_starts[row : row + 2].tolist()
-        scale, offset = np.array(self._coordinates.scale), np.array(self._coordinates.offset)
         # So few points are mapped: a file need not be opened for each row.
-        xyz = self._coordinates.xyz[start:stop] * scale + offset
+        xyz = self._coordinates.xyz(slice(start, stop))
         # Columns don't fall within a row.
         tiles, firsts = np.unique(self._image.columns_of(start, stop) // TILE, return_index=True)
         bounds: Floats = _nowhere((1, self._shapes[0][1]))[0]

@@ -30,12 +30,17 @@ class TileFiles:
     kind : ImageKind
     shape : tuple of int
         Of the whole table.
+    key : str
+        What tells the coordinates from others of the recording.
     """
 
-    def __init__(self, folder: Path | None, kind: ImageKind, shape: tuple[int, int]) -> None:
+    def __init__(
+        self, folder: Path | None, kind: ImageKind, shape: tuple[int, int], key: str = ""
+    ) -> None:
         self._shape = shape
-        self._whole = None if folder is None else folder / f"tile_bounds_{kind.value}.npy"
-        self._begun = None if folder is None else folder / f"tile_bounds_{kind.value}.begun.npz"
+        name = f"tile_bounds_{kind.value}" + (f"_{key}" if key else "")
+        self._whole = None if folder is None else folder / f"{name}.npy"
+        self._begun = None if folder is None else folder / f"{name}.begun.npz"
 
     def whole(self) -> Floats | None:
         """The table; None where there is none of this shape."""

@@ -149,10 +149,16 @@ class _Search:
     def pairs_in(self, drive: Drive) -> _Pairs:
         """All points of a drive that are near a place, but for noise."""
         classes = class_columns(drive.columns)
-        xyz, starts, stops = drive.columns["xyz"], *self._stretches(_image_of(drive))
-        frame = np.array([*drive.info.scale, *(drive.info.offset - self.corner), self.cell_m])
+        coordinates, (starts, stops) = drive.coordinates, self._stretches(_image_of(drive))
+        scale, shift = coordinates.quantisation.about(self.corner)
+        frame = np.array([*scale, *shift, self.cell_m])
         found = [
-            self._pairs_among(_without(classes.noise_between(start, stop), xyz[start:stop]), frame)
+            self._pairs_among(
+                _without(
+                    classes.noise_between(start, stop), coordinates.integers(slice(start, stop))
+                ),
+                frame,
+            )
             for start, stop in zip(starts.tolist(), stops.tolist(), strict=True)
         ]
         return _united(found)

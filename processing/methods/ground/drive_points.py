@@ -10,7 +10,6 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.core.kernels import kernel
 from processing.core.monitor import Monitor
 from processing.labels.label_column import LABEL
 from processing.recording.columns.ordering import read_chunk
@@ -127,10 +126,7 @@ class DrivePoints:
     def measured_xyz(self, chunk: Chunk) -> NDArray[np.float64]:
         """Coordinates of a chunk's points, (n, 3) float64, m; noise too."""
         drive = self.drives[chunk.drive]
-        integers = read_chunk(drive.folder, "xyz", chunk.start, chunk.stop)
-        xyz = np.empty(integers.shape)
-        _metres_kernel(integers, np.array(drive.info.scale), np.array(drive.info.offset), xyz)
-        return xyz
+        return drive.coordinates.chunk_xyz(chunk.start, chunk.stop)
 
     def codes(self, chunk: Chunk) -> NDArray[np.uint8]:
         """The class of each point now: its label, or the delivered one; (n,) uint8."""
@@ -141,10 +137,9 @@ class DrivePoints:
     ) -> tuple[int, int, int, NDArray[np.float64], NDArray[np.float64], bool]:
         number, start, stop = span
         drive = self.drives[number]
-        integers = read_chunk(drive.folder, "xyz", start, stop)
-        scale, offset = np.array(drive.info.scale[:2]), np.array(drive.info.offset[:2])
-        ends = np.array([[part.min(), part.max()] for part in (integers[:, 0], integers[:, 1])])
-        low, high = ends[:, 0] * scale + offset, ends[:, 1] * scale + offset
+        integers = drive.coordinates.chunk(start, stop)
+        ends = np.array([[part.min(), part.max()] for part in integers.T])
+        low, high = drive.coordinates.quantisation.metres(ends.T)[:, :2]
         codes = classes_now(drive, start, stop)
         has_noise = bool(np.isin(codes, NOISE_CODES).any())
         return number, start, stop, low - _WIDE, high + _WIDE, has_noise
@@ -172,20 +167,3 @@ def read_ahead(read: Callable[[ChunkT], ReadT], chunks: Iterable[ChunkT]) -> Ite
             coming = following
         if coming is not None:
             yield coming.result()
-
-
-@kernel
-def _metres_kernel(
-    integers: NDArray[np.int32],
-    scale: NDArray[np.float64],
-    offset: NDArray[np.float64],
-    xyz: NDArray[np.float64],
-) -> None:
-    for point in range(integers.shape[0]):
-        for axis in range(3):
-            xyz[point, axis] = integers[point, axis] * scale[axis] + offset[axis]
-
-
-def warm_up() -> None:
-    """Compile the kernel of this file."""
-    _metres_kernel(np.zeros((1, 3), np.int32), np.ones(3), np.zeros(3), np.empty((1, 3)))

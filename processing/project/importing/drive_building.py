@@ -383,29 +383,27 @@ def _scanner_position(
     source = recording.sources[0]
     return check_scanner_position(
         Columns(recording.folder, recording.count),
-        recording.quantisation.scale,
-        recording.quantisation.offset,
+        recording.quantisation,
         found.cells_per_row,
         plan.scanner_positions.get((source, recording.scanner)),
     )
 
 
 def _top_view_of(recording: Recording) -> TopView:
-    count = recording.count
-    scale, offset = np.array(recording.quantisation.scale), np.array(recording.quantisation.offset)
+    count, metres = recording.count, recording.quantisation.metres
     integers = sample_column(recording.folder, "xyz", count, max(1, count // _SAMPLE_POINTS))
-    lowest, highest = recording.lowest * scale + offset, recording.highest * scale + offset
-    return top_view_of(integers * scale + offset, count, lowest, highest)
+    lowest, highest = metres(recording.lowest), metres(recording.highest)
+    return top_view_of(metres(integers), count, lowest, highest)
 
 
 def _order_for_top_view(
     recording: Recording, view: TopView, steps: BuildSteps, monitor: Monitor
 ) -> None:
-    scale, offset = np.array(recording.quantisation.scale), np.array(recording.quantisation.offset)
+    metres = recording.quantisation.metres
 
     def by_cell(columns: Mapping[str, NDArray[Any]]) -> tuple[NDArray[Any], NDArray[Any]]:
         integers = columns["xyz"]
-        return view.cells_of(integers * scale + offset), -integers[:, 2].astype(np.int64)
+        return view.cells_of(metres(integers)), -integers[:, 2].astype(np.int64)
 
     if steps.known(_SORTED_BY_CELL) is None:
         _sort(recording, steps, by_cell, PartMonitor(monitor, 0.0, 0.8))
@@ -414,4 +412,4 @@ def _order_for_top_view(
         for start, stop in chunk_ranges(recording.count, POINTS_AT_ONCE // 4):
             monitor.check()
             integers = read_chunk(recording.folder, "xyz", start, stop)
-            cells.append({"pulse": view.cells_of(integers * scale + offset)})
+            cells.append({"pulse": view.cells_of(metres(integers))})

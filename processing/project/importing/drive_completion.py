@@ -27,12 +27,12 @@ from processing.project.importing.drive_building import SOURCES, BuildPlan, buil
 from processing.project.importing.file_record import PointRun, Stream
 from processing.project.importing.import_journal import ImportJournal
 from processing.project.importing.import_layout import bytes_of
-from processing.project.importing.quantisation import Quantisation
 from processing.project.importing.recording import Recording, RecordingPart
 from processing.project.importing.trajectory_choice import NamedTrajectory
 from processing.recording.camera_images.image_store import write_images
 from processing.recording.columns.columns import column_path
 from processing.recording.columns.ordering import chunk_ranges, read_chunk, sort_points
+from processing.recording.columns.quantisation import Quantisation
 from processing.recording.columns.source_order import FILE, INDEX
 from processing.recording.drive import Drive
 from processing.recording.drive_info import read_drive_info, write_drive_info
@@ -198,8 +198,8 @@ def _by_source(columns: Mapping[str, NDArray[Any]]) -> tuple[NDArray[Any], NDArr
 def _recording_of(drive: Drive, folder: Path, names: tuple[str, ...]) -> Recording:
     """The drive's points as an import has them when they were read."""
     info = drive.info
-    scale, offset = np.array(info.scale), np.array(info.offset)
-    low, high = (np.rint((np.array(one) - offset) / scale) for one in (info.lowest, info.highest))
+    quantisation = Quantisation(info.scale, info.offset)
+    low, high = (quantisation.rounded(np.array(one)) for one in (info.lowest, info.highest))
     has_times, is_in_order = _times_of(folder, drive.count)
     own = tuple(name for name in (*names, POSITION) if name not in (FILE, INDEX))
     parts, first = [], 0
@@ -218,7 +218,7 @@ def _recording_of(drive: Drive, folder: Path, names: tuple[str, ...]) -> Recordi
         )
         parts.append(RecordingPart(source, 0, stream))
         first += count
-    return Recording(folder, Quantisation(info.scale, info.offset), info.scanner, own, parts)
+    return Recording(folder, quantisation, info.scanner, own, parts)
 
 
 def _parts_of(drive: Drive) -> list[tuple[int, int, list[PointRun]]]:

@@ -6,7 +6,7 @@ from dataclasses import asdict, dataclass, field
 from typing import Any
 
 from processing.project.importing.import_request import Labels
-from processing.project.importing.quantisation import Quantisation
+from processing.recording.columns.quantisation import Quantisation
 
 Integers3 = tuple[int, int, int]
 PointRun = tuple[int, int, int]

@@ -12,9 +12,10 @@ from processing.project.importing.delivery import DeliveredFile, Delivery
 from processing.project.importing.file_record import FileJob, FilePlacement, FileRecord
 from processing.project.importing.file_recorder import column_names, part_folder
 from processing.project.importing.import_request import FileMark, Labels
-from processing.project.importing.quantisation import Quantisation, shift_between
+from processing.project.importing.quantisation import shift_between
 from processing.project.importing.recording import Recording, RecordingPart
 from processing.recording.columns.columns import COLUMN_TYPES
+from processing.recording.columns.quantisation import Quantisation
 
 _MADE_LATER_BYTES = 8
 _FAR = np.iinfo(np.int32).max

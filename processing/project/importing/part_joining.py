@@ -13,10 +13,11 @@ from processing.project.importing.file_record import Stream
 from processing.project.importing.file_recorder import part_folder
 from processing.project.importing.import_journal import ImportJournal
 from processing.project.importing.import_layout import ImportLayout
-from processing.project.importing.quantisation import Quantisation, QuantisationShift, shift_between
+from processing.project.importing.quantisation import QuantisationShift, shift_between
 from processing.project.importing.recording import Recording
 from processing.recording.columns.offset_columns import OffsetColumnWriter
 from processing.recording.columns.ordering import chunk_ranges, read_chunk
+from processing.recording.columns.quantisation import Quantisation
 from processing.recording.columns.source_order import INDEX
 
 _POINTS = 1_000_000

@@ -1,4 +1,4 @@
-"""Lattice: the grid of integers on which a delivery's coordinates lie.
+"""From one file's quantisation to another's.
 
 Files of one drive may differ in scale and offset. Their integers are moved to one quantisation
 where that can be done exactly; where it can't, the file becomes a drive of its own.
@@ -11,15 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.recording.columns.quantisation import Quantisation
+
 _INT32 = np.iinfo(np.int32)
-
-
-@dataclass(frozen=True)
-class Quantisation:
-    """Metres = integers × scale + offset."""
-
-    scale: tuple[float, float, float]
-    offset: tuple[float, float, float]
 
 
 @dataclass(frozen=True)

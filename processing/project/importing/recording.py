@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 
 from processing.project.importing.file_record import NO_HIGHEST, NO_LOWEST, Stream
 from processing.project.importing.file_recorder import write_indices
-from processing.project.importing.quantisation import Quantisation, shift_between
+from processing.project.importing.quantisation import shift_between
 from processing.recording.columns.offset_columns import OffsetColumnWriter
+from processing.recording.columns.quantisation import Quantisation
 from processing.recording.columns.source_order import FILE, INDEX, SourceRun
 
 _MOST_RUNS = 10_000

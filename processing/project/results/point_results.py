@@ -14,7 +14,7 @@ from processing.core.monitor import Monitor, PartMonitor
 from processing.core.safe_write import refuse_inputs, write_safely
 from processing.core.scratch_folder import scratch_folder
 from processing.core.text import Text
-from processing.formats.points.las_results import write_results
+from processing.formats.points.las_results import MOVED, write_results
 from processing.project.results.delivered_order import DeliveredOrder, Values
 from processing.project.sources.source_check import require_delivered
 from processing.recording.columns.ordering import read_chunk
@@ -140,10 +140,13 @@ def _reader_of(
     results: Sequence[tuple[Drive, FinishedColumns]],
 ) -> Callable[[Drive, int, int], Values]:
     of_drive = {drive.id: result for drive, result in results}
+    is_moved = any(drive.coordinates.correction is not None for drive, _ in results)
 
     def read(drive: Drive, start: int, stop: int) -> Values:
         result = of_drive[drive.id]
         values = {name: result.read(name, start, stop) for name in result.names}
+        if is_moved:
+            values[MOVED] = drive.coordinates.moved_m(start, stop)
         if _SEEN_COLOR in values:
             seen = values.pop(_SEEN_COLOR).astype(np.uint16) * _SIXTEEN_BITS
             if drive.columns.has(_COLOR):

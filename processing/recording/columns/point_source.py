@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from processing.recording.columns.columns import column_path
 from processing.recording.columns.ordering import read_chunk
+from processing.recording.columns.quantisation import Quantisation
 
 Triple = tuple[float, float, float]
 
@@ -42,6 +43,11 @@ class PointColumns:
     number_of_returns: NDArray[np.uint8]
     origin: NDArray[np.float64] | None = None
     scan_angle_deg: NDArray[np.float32] | None = None
+
+    @property
+    def quantisation(self) -> Quantisation:
+        """What makes metres of the integers."""
+        return Quantisation(self.scale, self.offset)
 
     @property
     def count(self) -> int:

@@ -80,7 +80,7 @@ class _CentreFinder:
         every = max(1, part.count // _MOST_POINTS)
         middle = 0.5 * float(part.time[0] + part.time[-1])
         time = part.time[::every] - middle
-        positions = part.xyz[::every] * np.array(part.scale) + np.array(part.offset)
+        positions = part.quantisation.metres(part.xyz[::every])
         base = np.median(positions, axis=0)
         local = positions - base
         steady = np.column_stack([np.ones(time.size), time])

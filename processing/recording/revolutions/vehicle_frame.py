@@ -52,7 +52,7 @@ class Poses:
         last = int(np.searchsorted(points.time, self.time[-1], side="right"))
         chosen = slice(first, last, every)
         time = np.ascontiguousarray(points.time[chosen])
-        positions = points.xyz[chosen] * np.array(points.scale) + np.array(points.offset)
+        positions = points.quantisation.metres(points.xyz[chosen])
         origins = np.empty((0, 3)) if points.origin is None else points.origin[chosen]
         beam = np.empty((time.size, 3))
         _beams_kernel(

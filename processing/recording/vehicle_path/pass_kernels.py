@@ -128,14 +128,6 @@ def stations_kernel(
 
 
 @kernel
-def local_kernel(integers: NDArray[np.int32], scale: Floats, shift: Floats, local: Floats) -> None:
-    """Delivered integers as metres about an origin."""
-    for i in range(integers.shape[0]):
-        for axis in range(3):
-            local[i, axis] = integers[i, axis] * scale[axis] + shift[axis]
-
-
-@kernel
 def records_kernel(
     local: Floats, guesses: Floats, vehicle_path: tuple[float, Floats, Floats], stations: Floats
 ) -> None:
@@ -168,6 +160,5 @@ def warm_up() -> None:
     passed = (np.arange(3.0), np.arange(3.0))
     asked = (9.0, 9.0, np.zeros((3, 2)))
     stations_kernel(positions, np.arange(3.0), vehicle_path, passed, asked, np.empty((3, 3)))
-    local_kernel(np.zeros((1, 3), np.int32), np.ones(3), np.zeros(3), np.empty((1, 3)))
     records_kernel(positions, np.arange(3.0), vehicle_path, np.empty(3))
     advanced_kernel(np.arange(3.0), 0.5, np.zeros(3, np.bool_))

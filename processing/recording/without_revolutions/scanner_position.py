@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.recording.columns.columns import Columns
+from processing.recording.columns.quantisation import Quantisation
 
 ScannerPosition = tuple[float, float, float]
 
@@ -17,8 +18,7 @@ _THICKEST = 0.02
 
 def check_scanner_position(
     columns: Columns,
-    scale: ScannerPosition,
-    offset: ScannerPosition,
+    quantisation: Quantisation,
     sweep_length: int,
     position: ScannerPosition | None,
 ) -> ScannerPosition | None:
@@ -51,7 +51,7 @@ def check_scanner_position(
         if stop - start < _FEWEST_POINTS:
             continue
         step = max(1, int(stop - start) // _MOST_POINTS)
-        xyz = columns["xyz"][start:stop:step] * np.array(scale) + np.array(offset)
+        xyz = quantisation.metres(columns["xyz"][start:stop:step])
         beams = xyz - np.array(position)
         lengths = np.linalg.norm(beams, axis=1, keepdims=True)
         if (lengths > 0).all():

@@ -14,6 +14,7 @@ from processing.image.point_image import PointCloudImage
 from processing.image.tiles.tiles import TileKey
 from processing.recording.columns.columns import Columns
 from processing.recording.columns.coordinates import Coordinates
+from processing.recording.columns.quantisation import Quantisation
 from processing.recording.kinds import ImageKind
 from tests.processing.image.recordings import small_drive
 
@@ -70,6 +71,6 @@ def test_an_image_without_points_needs_nothing(tmp_path: Path) -> None:
 def cells_of(rows: int, width: int) -> PointCloudImage:
     """A top view with one point in each cell."""
     xyz = np.zeros((rows * width, 3), np.int32)
-    coordinates = Coordinates(xyz, (1.0, 1.0, 1.0), (0.0, 0.0, 0.0))
+    coordinates = Coordinates({"xyz": xyz}, Quantisation((1.0, 1.0, 1.0), (0.0, 0.0, 0.0)))
     pulses = np.arange(rows * width)
     return PointCloudImage(ImageKind.TOP_VIEW, pulses, width, coordinates=coordinates)

@@ -14,6 +14,7 @@ from processing.image.search.tile_choice import Camera3D, tiles_in_view
 from processing.image.tiles.tiles import TileKey, TilePyramid
 from processing.recording.columns.columns import ColumnWriter
 from processing.recording.columns.coordinates import Coordinates
+from processing.recording.columns.quantisation import Quantisation
 from processing.recording.kinds import ImageKind
 
 ROWS, WIDTH = 2600, 300
@@ -32,7 +33,7 @@ def hills(folder: Path | None = None) -> PointCloudImage:
         folder.mkdir(exist_ok=True)
         with ColumnWriter(folder) as writer:
             writer.append({"xyz": xyz, "pulse": cells})
-    coordinates = Coordinates(xyz, SCALE, OFFSET, folder)
+    coordinates = Coordinates({"xyz": xyz}, Quantisation(SCALE, OFFSET), folder)
     return PointCloudImage(ImageKind.TOP_VIEW, cells, WIDTH, coordinates=coordinates)
 
 
@@ -112,7 +113,7 @@ def test_preparing_can_be_cancelled_and_goes_on_from_there() -> None:
     # 780,000 points are one portion, so two images' worth is what can be stopped in between.
     cells = np.arange(6 * ROWS * WIDTH // 2)
     xyz = np.column_stack([cells % WIDTH, cells // WIDTH, cells * 0]).astype(np.int32)
-    coordinates = Coordinates(xyz, SCALE, OFFSET)
+    coordinates = Coordinates({"xyz": xyz}, Quantisation(SCALE, OFFSET))
     image = PointCloudImage(ImageKind.TOP_VIEW, cells, WIDTH, coordinates=coordinates)
     with pytest.raises(Cancelled):
         image.pyramid.prepare(Stopping())
@@ -134,9 +135,8 @@ def test_a_coarse_tile_without_points_of_its_own_does_not_hide_those_below() -> 
     # One column of points in odd rows, none of which a coarser level samples.
     cells = (np.arange(1, 2000, 2) * 300 + 7).astype(np.int64)
     xyz = np.column_stack([cells % 300 * STEP, cells // 300 * STEP, cells * 0]).astype(np.int32)
-    image = PointCloudImage(
-        ImageKind.TOP_VIEW, cells, 300, coordinates=Coordinates(xyz, SCALE, OFFSET)
-    )
+    coordinates = Coordinates({"xyz": xyz}, Quantisation(SCALE, OFFSET))
+    image = PointCloudImage(ImageKind.TOP_VIEW, cells, 300, coordinates=coordinates)
     pyramid = image.pyramid
     assert pyramid.bounds(pyramid.top) is not None
     chosen = tiles_in_view([pyramid], above(pyramid), 10**6)
@@ -157,7 +157,7 @@ def wall(levels: int = 40) -> PointCloudImage:
     """A top view of a wall that runs east, so many points above each other in each of its cells."""
     column, height = np.divmod(np.arange(300 * levels), levels)
     xyz = np.column_stack([column * STEP, column * 0, -height * STEP]).astype(np.int32)
-    coordinates = Coordinates(xyz, SCALE, OFFSET)
+    coordinates = Coordinates({"xyz": xyz}, Quantisation(SCALE, OFFSET))
     return PointCloudImage(ImageKind.TOP_VIEW, column, 300, coordinates=coordinates)
 
 
@@ -198,7 +198,7 @@ def hills_at(number: int) -> PointCloudImage:
     """A small level patch, so many metres further."""
     cells = np.arange(300 * 300)
     xyz = np.column_stack([cells % 300 * STEP, cells // 300 * STEP + 10 * number, cells * 0])
-    coordinates = Coordinates(xyz.astype(np.int32), SCALE, OFFSET)
+    coordinates = Coordinates({"xyz": xyz.astype(np.int32)}, Quantisation(SCALE, OFFSET))
     return PointCloudImage(ImageKind.TOP_VIEW, cells, 300, coordinates=coordinates)
 
 

@@ -12,6 +12,7 @@ from processing.image.point_image import PointCloudImage
 from processing.image.search.tile_choice import Camera3D, tiles_in_view, tiles_in_window
 from processing.image.tiles.tiles import TILE, TileKey, TilePyramid
 from processing.recording.columns.coordinates import Coordinates
+from processing.recording.columns.quantisation import Quantisation
 from processing.recording.kinds import ImageKind
 from tests.processing.image.recordings import random_recording, small_drive
 
@@ -23,7 +24,7 @@ def plane_image(rows: int = 700, width: int = 600, folder: Path | None = None) -
     """A top view whose points lie on a level grid, 0.1 m apart, all cells filled."""
     cells = np.arange(rows * width)
     xyz = np.column_stack([cells % width * 100, -(cells // width) * 100, cells * 0])
-    coordinates = Coordinates(xyz.astype(np.int32), SCALE, OFFSET, folder)
+    coordinates = Coordinates({"xyz": xyz.astype(np.int32)}, Quantisation(SCALE, OFFSET), folder)
     return PointCloudImage(ImageKind.TOP_VIEW, cells, width, coordinates=coordinates)
 
 
@@ -69,7 +70,7 @@ def test_a_coarse_tile_shows_points_of_its_children() -> None:
         ImageKind.TRAJECTORY_REVERSIBLE,
         recording.pulses,
         recording.revolutions,
-        coordinates=Coordinates(xyz, SCALE, OFFSET),
+        coordinates=Coordinates({"xyz": xyz}, Quantisation(SCALE, OFFSET)),
     )
     pyramid = image.pyramid
     key = pyramid.top
@@ -85,7 +86,7 @@ def test_bounds_hold_every_point_of_a_tile_and_touch_them() -> None:
     recording = random_recording(1, pulses_per_revolution=300, revolutions=600)
     random = np.random.default_rng(0)
     xyz = random.integers(-50_000, 50_000, (recording.pulses.size, 3)).astype(np.int32)
-    coordinates = Coordinates(xyz, SCALE, OFFSET)
+    coordinates = Coordinates({"xyz": xyz}, Quantisation(SCALE, OFFSET))
     image = PointCloudImage(
         ImageKind.FEATURE_CENTER, recording.pulses, recording.revolutions, coordinates=coordinates
     )

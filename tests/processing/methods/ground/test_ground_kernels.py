@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from scipy import ndimage
 
-from processing.methods.ground import drive_points
 from processing.methods.ground.filters import band, cells, morphology, openings, walls
 
 
@@ -86,16 +85,6 @@ def test_the_least_along_a_diagonal_uncompiled_is_what_the_kernel_gives() -> Non
         np.testing.assert_array_equal(compiled, plain)
         line = heights[[4, 5, 6, 7, 8], np.array([2, 3, 4, 5, 6])[::east]]
         assert compiled[6, 4] == line.min()
-
-
-def test_metres_are_the_delivered_integers_times_their_scale_and_moved() -> None:
-    integers = np.array([[1, -2, 3], [2**31 - 1, 0, -(2**31)]], np.int32)
-    scale, offset = np.array([0.001, 0.01, 0.1]), np.array([-12_000.0, 5.5, 0.0])
-    xyz = np.empty((2, 3))
-    drive_points._metres_kernel(integers, scale, offset, xyz)
-    np.testing.assert_array_equal(xyz, integers * scale + offset)
-    drive_points._metres_kernel.py_func(integers, scale, offset, xyz)
-    np.testing.assert_array_equal(xyz, integers * scale + offset)
 
 
 def test_the_height_at_a_place_is_bilinear_and_goes_on_beyond_the_last_centres() -> None:

@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from processing.project.importing.quantisation import Quantisation, shift_between
+from processing.project.importing.quantisation import shift_between
+from processing.recording.columns.quantisation import Quantisation
 
 MILLIMETRES = Quantisation((0.001,) * 3, (1000.0, 2000.0, 0.0))
 

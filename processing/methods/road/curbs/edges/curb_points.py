@@ -21,7 +21,6 @@ from processing.methods.road.curbs.edges.curb_point_kernels import (
     in_cells_kernel,
     order_kernel,
 )
-from processing.recording.columns.ordering import read_chunk
 from processing.recording.drive import Drive
 
 _Floats = NDArray[np.float64]
@@ -134,7 +133,7 @@ def points_near(
     def near(start: int) -> tuple[_Integers, NDArray[np.int32], _Integers]:
         monitor.check()
         stop = min(start + POINTS_AT_ONCE, drive.count)
-        block = read_chunk(drive.folder, "xyz", start, stop)
+        block = drive.coordinates.chunk(start, stop)
         chosen, quarter = np.empty(stop - start, np.int64), np.empty(stop - start, np.int64)
         count = in_cells_kernel(block, position, (slots, keys), heights, (chosen, quarter))
         return chosen[:count] + start, block[chosen[:count]], quarter[:count].copy()
@@ -175,8 +174,7 @@ def _slots_of(keys: _Integers) -> _Integers:
 
 def _position(drive: Drive, origin: _Floats, cell_m: float) -> _Floats:
     """What makes metres about an origin of integers, and the size of a cell."""
-    scale, offset = np.array(drive.info.scale), np.array(drive.info.offset) - origin
-    return np.concatenate([scale, offset, [cell_m]])
+    return np.concatenate([*drive.coordinates.quantisation.about(origin), [cell_m]])
 
 
 class LineCells:
@@ -216,7 +214,7 @@ class LineCells:
         def near(start: int) -> tuple[_Integers, _Integers, _Floats]:
             monitor.check()
             stop = min(start + points_at_once, drive.count)
-            found = self._found(read_chunk(drive.folder, "xyz", start, stop), position)
+            found = self._found(drive.coordinates.chunk(start, stop), position)
             return found[0] + start, found[1], found[2]
 
         starts = range(0, drive.count, points_at_once)
