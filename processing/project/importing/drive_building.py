@@ -36,6 +36,7 @@ from processing.recording.columns.ordering import (
     sort_points,
 )
 from processing.recording.columns.replacing import new_columns, replace_columns
+from processing.recording.columns.varying_columns import varying_bytes
 from processing.recording.drive import SCAN, Drive, write_trajectory
 from processing.recording.drive_info import DriveInfo, SourceFile, write_drive_info
 from processing.recording.revolutions.revolutions import (
@@ -265,7 +266,8 @@ def _restore_time_order(
 
 def _sort(recording: Recording, steps: BuildSteps, keys: SortKeys, monitor: Monitor) -> None:
     names = _names_to_sort(recording, steps)
-    refuse_small_disk(recording.folder, 2 * recording.count * bytes_of(names))
+    room = 2 * recording.count * bytes_of(names) + varying_bytes(recording.folder)
+    refuse_small_disk(recording.folder, room)
     sort_points(recording.folder, names, recording.count, keys, monitor)
 
 

@@ -19,6 +19,7 @@ from processing.core.errors import UNCHANGED, BadFile, report_as_user_error
 from processing.core.owned_files import new_file
 from processing.core.text import Text
 from processing.recording.columns.mapped_pages import MappedPages
+from processing.recording.columns.varying_columns import VaryingColumn, starts_path
 
 COLUMN_TYPES: Mapping[str, tuple[str, int]] = {
     "xyz": ("<i4", 3),
@@ -131,6 +132,7 @@ class Columns:
         self._maps: dict[str, NDArray[Any]] = {}
         self._files: dict[str, mmap.mmap] = {}
         self._held: dict[str, NDArray[Any]] = {}
+        self._varying: dict[str, VaryingColumn] = {}
 
     @property
     def count(self) -> int:
@@ -160,6 +162,22 @@ class Columns:
         if name not in self._maps:
             self._maps[name] = self._mapped(name)
         return self._maps[name]
+
+    def has_varying(self, name: str) -> bool:
+        """Whether the recording has this column of varying length."""
+        return name in self._varying or starts_path(self._folder, name).is_file()
+
+    def varying(self, name: str) -> VaryingColumn:
+        """A column whose points have as many values as they have.
+
+        Raises
+        ------
+        BadFile, MissingInput
+            As :class:`VaryingColumn` says.
+        """
+        if name not in self._varying:
+            self._varying[name] = VaryingColumn(self._folder, name, self._count, self._pages)
+        return self._varying[name]
 
     def expect(self, name: str, starts: NDArray[np.int64], stops: NDArray[np.int64]) -> None:
         """Tell the system which points of a column are read next, so that the disk begins now.
@@ -244,6 +262,7 @@ class Columns:
         """Forget the map of a column; arrays already handed out stay valid."""
         self._maps.pop(name, None)
         self._files.pop(name, None)
+        self._varying.pop(name, None)
 
     def _mapped(self, name: str) -> NDArray[Any]:
         dtype, width = COLUMN_TYPES[name]
