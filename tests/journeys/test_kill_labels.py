@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import random
 import shutil
-import sqlite3
 from contextlib import closing
 from pathlib import Path
 
@@ -116,16 +115,3 @@ def test_killed_between_database_and_file_the_step_is_completed(street, tmp_path
     for _ in range(2):
         with closing(Project.open(folder)) as project:
             np.testing.assert_array_equal(all_labels(project.drives[0]), after)
-
-
-def test_a_project_of_an_earlier_version_gets_the_table_and_keeps_its_history(street, tmp_path):
-    folder = Path(shutil.copytree(street, tmp_path / "a.zuka"))
-    with closing(sqlite3.connect(folder / "project.gpkg")) as connection:
-        connection.execute("DROP TABLE zuka_history_labels")
-        connection.execute("DELETE FROM gpkg_extensions WHERE table_name = 'zuka_history_labels'")
-        connection.execute("UPDATE zuka_settings SET value = '2' WHERE key = 'schema'")
-        connection.commit()
-    with closing(Project.open(folder)) as project:
-        paint(project, range(10), 6)
-        project.features.undo()
-        assert not all_labels(project.drives[0]).any()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import sqlite3
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
@@ -13,11 +13,8 @@ from processing.project.store.database_errors import damaged, report_database_er
 from processing.project.store.geometry_blob import SQL_FUNCTIONS
 from processing.project.store.reading_connection import connect, connect_for_reading
 from processing.project.store.schema import (
-    MIGRATIONS,
-    Migration,
-    migrate,
-    refuse_newer,
-    refuse_older,
+    make_tables,
+    refuse_other_version,
     stored_version,
 )
 
@@ -31,20 +28,16 @@ class Database:
         Made by :meth:`create`.
     writing : bool
         False: not a byte is written.
-    steps : sequence of Step
-        Tables of an older version are brought up to the last of them.
 
     Raises
     ------
     BadFile
-        It is no project, a damaged one, or one of a newer version of the program.
+        It is no project, a damaged one, or one of another version of the program.
     NoSpace, InUse
         It can't be written; another program holds it.
     """
 
-    def __init__(
-        self, path: Path, *, writing: bool, steps: Sequence[Migration] = MIGRATIONS
-    ) -> None:
+    def __init__(self, path: Path, *, writing: bool) -> None:
         self.path = path
         with ExitStack() as stack, report_database_errors(path):
             if writing:
@@ -55,18 +48,12 @@ class Database:
             stack.callback(self._connection.close)
             self._prepare(writing=writing)
             self._check_length()
-            version = stored_version(self._connection, path)
-            refuse_newer(version, len(steps), path)
-            if not writing:
-                refuse_older(version, len(steps), path)
-            elif version < len(steps):
-                with self.transaction() as connection:
-                    migrate(connection, version, steps)
+            refuse_other_version(stored_version(self._connection, path), path)
             self._seen = self._data_version()
             self._closing = stack.pop_all()
 
     @staticmethod
-    def create(path: Path, *, steps: Sequence[Migration] = MIGRATIONS) -> None:
+    def create(path: Path) -> None:
         """Make the database of a new project; there must be no such file.
 
         Raises
@@ -77,7 +64,7 @@ class Database:
         with report_database_errors(path), contextlib.closing(connect(path, "rwc")) as connection:
             connection.execute("PRAGMA encoding = 'UTF-8'")
             connection.execute("BEGIN IMMEDIATE")
-            migrate(connection, 0, steps)
+            make_tables(connection)
             connection.execute("COMMIT")
 
     @contextmanager

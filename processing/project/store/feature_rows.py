@@ -139,8 +139,7 @@ def _from_plain(plain: dict[str, Any]) -> Feature:
         id=plain["id"],
         kind=plain["kind"],
         geometry=Geometry(plain["geometry"]),
-        # Histories of the first schema say nothing of occluded vertices.
-        vertices=_vertices(positions, plain["measured"], plain.get("occluded", [])),
+        vertices=_vertices(positions, plain["measured"], plain["occluded"]),
         attributes=_mapping(plain["attributes"]),
         status=Status(plain["status"]),
         provenance=Provenance(**plain["provenance"]),

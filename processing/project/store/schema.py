@@ -1,9 +1,8 @@
-"""The tables of a project: a GeoPackage's own, the map's, and the steps between versions."""
+"""The tables of a project: a GeoPackage's own and the map's."""
 
 from __future__ import annotations
 
 import sqlite3
-from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from processing.core.errors import BadFile
@@ -12,7 +11,8 @@ from processing.core.text import Text
 APPLICATION_ID = 0x47504B47  # "GPKG"
 GEOPACKAGE_VERSION = 10300
 
-Migration = Callable[[sqlite3.Connection], None]
+SCHEMA = 1
+"""Version of the tables; a project of another one is refused."""
 
 _GEOPACKAGE = """
 CREATE TABLE gpkg_spatial_ref_sys (
@@ -42,12 +42,12 @@ CREATE TABLE gpkg_extensions (
   table_name TEXT, column_name TEXT, extension_name TEXT NOT NULL, definition TEXT NOT NULL,
   scope TEXT NOT NULL, CONSTRAINT ge_tce UNIQUE (table_name, column_name, extension_name));
 """
-_FIRST_TABLES = """
+_TABLES = """
 CREATE TABLE features (
   fid INTEGER PRIMARY KEY AUTOINCREMENT NOT NULL, geom GEOMETRY NOT NULL,
   id TEXT NOT NULL UNIQUE, kind TEXT NOT NULL, layer TEXT NOT NULL, status TEXT NOT NULL,
   confidence DOUBLE NOT NULL, attributes TEXT NOT NULL, provenance TEXT NOT NULL,
-  measured TEXT NOT NULL);
+  measured TEXT NOT NULL, occluded TEXT NOT NULL);
 INSERT INTO gpkg_contents (table_name, data_type, identifier, description, srs_id)
   VALUES ('features', 'features', 'features', 'The map', -1);
 INSERT INTO gpkg_geometry_columns VALUES ('features', 'geom', 'GEOMETRY', -1, 2, 0);
@@ -63,41 +63,27 @@ CREATE TABLE zuka_drives (id TEXT PRIMARY KEY NOT NULL, place INTEGER NOT NULL);
 CREATE TABLE zuka_history (
   place INTEGER PRIMARY KEY NOT NULL, label_en TEXT NOT NULL, label_ja TEXT NOT NULL,
   change TEXT NOT NULL);
+CREATE TABLE zuka_history_labels (
+  place INTEGER NOT NULL, number INTEGER NOT NULL, drive TEXT NOT NULL, count INTEGER NOT NULL,
+  points BLOB NOT NULL, before BLOB NOT NULL, after BLOB NOT NULL, PRIMARY KEY (place, number));
 INSERT INTO gpkg_extensions VALUES
   ('zuka_settings', NULL, 'zuka_project', 'Tables of the program Zuka', 'read-write'),
   ('zuka_drives', NULL, 'zuka_project', 'Tables of the program Zuka', 'read-write'),
-  ('zuka_history', NULL, 'zuka_project', 'Tables of the program Zuka', 'read-write');
+  ('zuka_history', NULL, 'zuka_project', 'Tables of the program Zuka', 'read-write'),
+  ('zuka_history_labels', NULL, 'zuka_project', 'Tables of the program Zuka', 'read-write');
 """
+# features.occluded: a JSON list of the numbers of vertices that rest on no measured point.
+# zuka_history_labels: points whose labels a step changed; packed, since they are millions.
 
 
-def _add_occluded(connection: sqlite3.Connection) -> None:
-    """Which vertices of a feature rest on no measured point: a JSON list of their numbers."""
-    connection.execute("ALTER TABLE features ADD COLUMN occluded TEXT NOT NULL DEFAULT '[]'")
-
-
-def _add_history_labels(connection: sqlite3.Connection) -> None:
-    """Points whose labels a step of the history changed; packed, since they are millions."""
-    connection.execute(
-        "CREATE TABLE zuka_history_labels (place INTEGER NOT NULL, number INTEGER NOT NULL,"
-        " drive TEXT NOT NULL, count INTEGER NOT NULL, points BLOB NOT NULL, before BLOB NOT NULL,"
-        " after BLOB NOT NULL, PRIMARY KEY (place, number))"
-    )
-    connection.execute(
-        "INSERT INTO gpkg_extensions VALUES ('zuka_history_labels', NULL, 'zuka_project',"
-        " 'Tables of the program Zuka', 'read-write')"
-    )
-
-
-def _make_first_tables(connection: sqlite3.Connection) -> None:
-    for statement in (_GEOPACKAGE + _FIRST_TABLES).split(";\n"):
+def make_tables(connection: sqlite3.Connection) -> None:
+    """Make the tables of a new project in an empty file, in the caller's transaction."""
+    for statement in (_GEOPACKAGE + _TABLES).split(";\n"):
         if statement.strip():
             connection.execute(statement)
     connection.execute(f"PRAGMA application_id = {APPLICATION_ID}")
     connection.execute(f"PRAGMA user_version = {GEOPACKAGE_VERSION}")
-
-
-MIGRATIONS: tuple[Migration, ...] = (_make_first_tables, _add_occluded, _add_history_labels)
-"""The step from each schema version to the next, from an empty file on."""
+    connection.execute("INSERT INTO zuka_settings VALUES ('schema', ?)", (str(SCHEMA),))
 
 
 def stored_version(connection: sqlite3.Connection, path: Path) -> int:
@@ -124,55 +110,19 @@ def stored_version(connection: sqlite3.Connection, path: Path) -> int:
     return int(found[0])
 
 
-def migrate(connection: sqlite3.Connection, version: int, steps: Sequence[Migration]) -> None:
-    """Bring tables from a version to the newest, in the caller's transaction.
-
-    Parameters
-    ----------
-    version : int
-        0 for an empty file.
-    """
-    for step in steps[version:]:
-        step(connection)
-    connection.execute(
-        "INSERT OR REPLACE INTO zuka_settings VALUES ('schema', ?)", (str(len(steps)),)
-    )
-
-
-def refuse_newer(version: int, newest: int, path: Path) -> None:
-    """Refuse what only a later program understands.
+def refuse_other_version(version: int, path: Path) -> None:
+    """Refuse tables that only another version of the program understands.
 
     Raises
     ------
     BadFile
     """
-    if version > newest:
+    if version != SCHEMA:
         raise BadFile(
             Text(
-                "The project was made by a newer version of Zuka.",
-                "新しいバージョンのZukaで作成されたプロジェクトです。",
+                "The project was made by another version of Zuka.",
+                "別のバージョンのZukaで作成されたプロジェクトです。",
             ),
-            Text.same(f"{path}: {version} > {newest}"),
-            Text("Open it with that version.", "新しいバージョンのZukaで開いてください。"),
-        )
-
-
-def refuse_older(version: int, newest: int, path: Path) -> None:
-    """Refuse to read tables of an earlier version where they must not be changed.
-
-    Raises
-    ------
-    BadFile
-    """
-    if version < newest:
-        raise BadFile(
-            Text(
-                "The project was made by an older version of Zuka.",
-                "古いバージョンのZukaで作成されたプロジェクトです。",
-            ),
-            Text.same(f"{path}: {version} < {newest}"),
-            Text(
-                "Open it once in the window, which brings it up to date.",
-                "一度ウィンドウで開くと、新しい形式に更新されます。",
-            ),
+            Text.same(f"{path}: {version}, {SCHEMA}"),
+            Text("Open it with that version.", "そのバージョンのZukaで開いてください。"),
         )

@@ -1,4 +1,4 @@
-"""Vertices without a measured point: kept, undone and redone, absent in older projects."""
+"""Vertices without a measured point: kept, undone and redone."""
 
 from __future__ import annotations
 
@@ -43,28 +43,3 @@ def test_a_gis_program_reads_which_vertices_they_are(tmp_path: Path) -> None:
     with closing(sqlite3.connect(folder / "project.gpkg")) as connection:
         ((occluded,),) = connection.execute("SELECT occluded FROM features")
     assert json.loads(occluded) == [1, 3]
-
-
-def test_a_project_of_the_first_schema_is_opened_with_its_history(tmp_path: Path) -> None:
-    line = curb("a", vertices=3)
-    folder = new_project(tmp_path / "street.zuka", line)
-    with closing(sqlite3.connect(folder / "project.gpkg")) as connection, connection:
-        connection.execute("ALTER TABLE features DROP COLUMN occluded")
-        connection.execute("DROP TABLE zuka_history_labels")
-        connection.execute("DELETE FROM gpkg_extensions WHERE table_name = 'zuka_history_labels'")
-        connection.execute("UPDATE zuka_settings SET value = '1' WHERE key = 'schema'")
-        for position, text in connection.execute(
-            "SELECT place, change FROM zuka_history"
-        ).fetchall():
-            change = json.loads(text)
-            for feature in change["added"]:
-                del feature["occluded"]
-            connection.execute(
-                "UPDATE zuka_history SET change = ? WHERE place = ?", (json.dumps(change), position)
-            )
-    with closing(Project.open(folder)) as project:
-        assert features_of(project) == {"a": line}
-        project.features.undo()
-        assert features_of(project) == {}
-        project.features.redo()
-        assert features_of(project) == {"a": line}
