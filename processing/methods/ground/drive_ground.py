@@ -21,9 +21,16 @@ from processing.methods.ground.filters.plan_tiles import PlanTile, plan_tiles
 from processing.methods.ground.ground_columns import GroundColumns
 from processing.methods.ground.stored_surface import SurfaceTile, SurfaceWriter
 
-_AROUND = 1.05
+_MARGIN_WIDTHS = 1.05
+"""Margin of a tile in widths of the largest thing: the thing and a little of the ground around it,
+so that neighbours see it alike."""
+
 _WORKERS = 2
-_CHOOSING = 0.1
+"""Tiles worked on at a time: each takes some 0.4 GiB (``plan_tiles.MOST_CELLS``)."""
+
+_CHOOSING_SHARE = 0.1
+"""Of the progress bar, for choosing cells and tiles: a few of the twenty passes."""
+
 _LOOKING = Text("Looking for the ground", "地面を探しています")
 
 
@@ -53,27 +60,27 @@ def adaptive_ground(
     Raises
     ------
     OutOfRange
-        Points that are no noise at fewer than three places.
+        Points that are no noise at fewer than three positions.
     NoSpace, Cancelled
     """
     monitor.report(0.0, _LOOKING)
     grid = choose_cells(points.blocks, habits.grid_m, None)
-    tiles = plan_tiles(points.blocks, grid, _AROUND * habits.widest_m)
+    tiles = plan_tiles(points.blocks, grid, _MARGIN_WIDTHS * habits.widest_m)
     habits = replace(habits, grid_m=grid.size_m)
     crs = next((drive.info.crs for drive in points.drives if drive.info.crs), "")
-    finding = PartMonitor(monitor, _CHOOSING, 1.0)
+    finding = PartMonitor(monitor, _CHOOSING_SHARE, 1.0)
     with (
         GroundColumns(points, folders, monitor) as columns,
         SurfaceWriter(surface, grid, crs) as writer,
     ):
         search = _TileSearch(points, habits, grid, columns)
-        for done, tile in enumerate(_found(search, tiles, finding), 1):
+        for done, tile in enumerate(_surface_tiles(search, tiles, finding), 1):
             writer.add(tile)
             finding.report(done / len(tiles), _LOOKING)
     return grid
 
 
-def _found(
+def _surface_tiles(
     search: _TileSearch, tiles: tuple[PlanTile, ...], monitor: Monitor
 ) -> Iterator[SurfaceTile]:
     """The surface of each tile in their order; two are worked on at a time."""
@@ -105,7 +112,7 @@ def _one_thread_of_opencv() -> Iterator[None]:
 
 
 class _OnlyChecks:
-    """Asks another monitor whether to go on, and tells it nothing: several tiles are at work."""
+    """Asks another monitor whether to go on, and reports nothing: several tiles are at work."""
 
     def __init__(self, whole: Monitor) -> None:
         self._whole = whole
@@ -160,7 +167,7 @@ class _TileSearch:
         """Heights; NaN farther from measured ground than the largest thing on it is wide."""
         import cv2
 
-        away = cv2.distanceTransform((~found.measured).view(np.uint8), cv2.DIST_L2, 5)
+        away = cv2.distanceTransform((~found.measured).view(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_5)
         heights = found.band.heights.copy()
         heights[away * found.grid.size_m > self._habits.widest_m] = np.nan
         return heights

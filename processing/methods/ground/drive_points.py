@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,10 +16,18 @@ from processing.recording.columns.ordering import read_chunk
 from processing.recording.drive import Drive
 
 NOISE_CODES = (7, 18)
+"""Low and high noise, as LAS 1.4 numbers classes (table 9 and 17 of its specification)."""
 _CLASS = "classification"
-_CHUNK = 1 << 17
-_LEAST = 1000
-_WIDE = 1e-6
+
+_CHUNK_POINTS = 1 << 17
+"""Points read at a time, at most: 3 MiB of coordinates, so that the search for points of a tile
+leaves most of a long drive unread."""
+
+_LEAST_POINTS = 1000
+"""Points read at a time, at least: fewer cost more to ask for than to read."""
+
+_EXTENT_MARGIN_M = 1e-6
+"""Widens extents by more than coordinates round off when scale and offset are applied."""
 
 ChunkT = TypeVar("ChunkT")
 ReadT = TypeVar("ReadT")
@@ -46,6 +54,15 @@ class Chunk:
     low: NDArray[np.float64]
     high: NDArray[np.float64]
     has_noise: bool
+    first: int
+
+
+class _Span(NamedTuple):
+    """Points ``start … stop − 1`` of a drive, the first of them number ``first`` among all."""
+
+    drive: int
+    start: int
+    stop: int
     first: int
 
 
@@ -79,19 +96,18 @@ class DrivePoints:
         self.drives = drives
         self._echoes = tuple(echoes) or (None,) * len(drives)
         self._monitor = monitor
-        size = int(np.clip(at_once, _LEAST, _CHUNK))
+        size = int(np.clip(at_once, _LEAST_POINTS, _CHUNK_POINTS))
         self.count = sum(drive.count for drive in drives)
+        firsts = np.cumsum([0, *(drive.count for drive in drives)]).tolist()
         spans = [
-            (number, start, min(start + size, drive.count))
+            _Span(number, start, min(start + size, drive.count), firsts[number] + start)
             for number, drive in enumerate(drives)
             for start in range(0, drive.count, size)
         ]
         chunks: list[Chunk] = []
-        first = 0
-        for chunk in read_ahead(self._measured, spans):
+        for chunk in read_ahead(self._measure, spans):
             monitor.check()
-            chunks.append(Chunk(*chunk, first))
-            first += chunk[2] - chunk[1]
+            chunks.append(chunk)
         self.chunks = tuple(chunks)
         self._lows = np.array([chunk.low for chunk in chunks]).reshape(-1, 2)
         self._highs = np.array([chunk.high for chunk in chunks]).reshape(-1, 2)
@@ -117,7 +133,7 @@ class DrivePoints:
         return xyz
 
     def is_echo(self, chunk: Chunk) -> NDArray[np.bool_]:
-        """Which of a chunk's points were told to be noise whatever their class: (n,) bool."""
+        """Which of a chunk's points are noise whatever their class says: (n,) bool."""
         echoes = self._echoes[chunk.drive]
         if echoes is None:
             return np.zeros(chunk.stop - chunk.start, np.bool_)
@@ -132,17 +148,16 @@ class DrivePoints:
         """The class of each point now: its label, or the delivered one; (n,) uint8."""
         return classes_now(self.drives[chunk.drive], chunk.start, chunk.stop)
 
-    def _measured(
-        self, span: tuple[int, int, int]
-    ) -> tuple[int, int, int, NDArray[np.float64], NDArray[np.float64], bool]:
-        number, start, stop = span
-        drive = self.drives[number]
+    def _measure(self, span: _Span) -> Chunk:
+        """A chunk with its extent and whether it holds noise."""
+        drive, start, stop = self.drives[span.drive], span.start, span.stop
         integers = drive.coordinates.chunk(start, stop)
         ends = np.array([[part.min(), part.max()] for part in integers.T])
         low, high = drive.coordinates.quantisation.metres(ends.T)[:, :2]
         codes = classes_now(drive, start, stop)
         has_noise = bool(np.isin(codes, NOISE_CODES).any())
-        return number, start, stop, low - _WIDE, high + _WIDE, has_noise
+        low, high = low - _EXTENT_MARGIN_M, high + _EXTENT_MARGIN_M
+        return Chunk(span.drive, start, stop, low, high, has_noise, span.first)
 
 
 def classes_now(drive: Drive, start: int, stop: int) -> NDArray[np.uint8]:

@@ -15,7 +15,8 @@ from processing.methods.ground.filters.lowest_points import lowest_ground
 from processing.methods.ground.filters.published_method import PublishedSteps, published_surface
 from processing.methods.ground.ground_columns import GroundColumns
 
-_FINDING = 0.5
+_FINDING_SHARE = 0.5
+"""Of the progress bar, for the surface; the rest for comparing every point with it."""
 
 ChunkClassifier = Callable[
     [Chunk, NDArray[np.float64]], tuple[NDArray[np.bool_], NDArray[np.float64]]
@@ -33,7 +34,7 @@ def published_ground_of(
         As :func:`processing.methods.ground.filters.published_method.published_surface`.
     NoSpace, Cancelled
     """
-    surface = published_surface(points.blocks, steps, PartMonitor(monitor, 0.0, _FINDING))
+    surface = published_surface(points.blocks, steps, PartMonitor(monitor, 0.0, _FINDING_SHARE))
 
     def judge(
         _chunk: Chunk, xyz: NDArray[np.float64]
@@ -56,7 +57,7 @@ def lowest_ground_of(
     Raises
     ------
     OutOfRange
-        Points that are no noise at fewer than three places.
+        Points that are no noise at fewer than three positions.
     NoSpace, Cancelled
     """
     require_three_positions(points.blocks)
@@ -80,4 +81,4 @@ def _write(
             is_ground, above = judge(chunk, points.measured_xyz(chunk))
             columns.put(chunk, np.ones(is_ground.shape, np.bool_), is_ground, above)
             done += chunk.stop - chunk.start
-            monitor.report(_FINDING + (1.0 - _FINDING) * done / points.count)
+            monitor.report(_FINDING_SHARE + (1.0 - _FINDING_SHARE) * done / points.count)

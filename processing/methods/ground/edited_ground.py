@@ -12,13 +12,16 @@ from processing.methods.ground.surface_line import SurfaceLine
 Floats = NDArray[np.float64]
 
 _BIN_M = 0.25
-"""Of the offsets within which points give one height; about what the surface is made on."""
+"""Width of offset within which points give one height: about the smallest cell of the surface,
+0.2 m."""
 
 _LOW_PERCENT, _LAYER_M = 10, 0.3
-"""Heights of a bin this near to its low ones are of one surface, roughness and slope included."""
+"""Heights of a bin up to ``_LAYER_M`` above its low ones are of one surface, roughness and slope
+included; ``_LOW_PERCENT`` leaves strays under the ground out. By trial."""
 
 _NEAR_BINS = 2
-"""Heights farther apart than these have nothing measured between them."""
+"""Heights farther apart than these have nothing measured between them; by trial, so that single
+empty bins of sparse points are no gaps."""
 
 
 def update_ground_lines(
@@ -113,7 +116,7 @@ def _outside(line: SurfaceLine, low_m: float, high_m: float) -> Iterable[Surface
 
 
 def _pieces(nodes: Floats) -> Iterable[SurfaceLine]:
-    """Lines through places: filled in where neighbours are far from each other."""
+    """Lines through points: filled in where neighbours are far from each other."""
     is_far = np.diff(nodes[:, 0]) > _NEAR_BINS * _BIN_M
     ends = np.flatnonzero(np.diff(is_far.astype(np.int8))) + 1
     for start, stop in zip([0, *ends.tolist()], [*ends.tolist(), is_far.size], strict=True):

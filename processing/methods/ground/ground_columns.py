@@ -1,4 +1,4 @@
-"""What a search for ground says of every point, written into column files place by place."""
+"""What a search for ground says of every point, written into column files part by part."""
 
 from __future__ import annotations
 
@@ -20,6 +20,7 @@ from processing.recording.columns.columns import COLUMN_TYPES, column_path
 
 CLASS, HEIGHT = "classification", "height_above_ground"
 GROUND, OTHER = 2, 1
+"""Classes: 2 as LAS 1.4 numbers them, 1 as everything that is not ground is written."""
 
 
 class GroundColumns:

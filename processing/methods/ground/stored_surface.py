@@ -30,6 +30,10 @@ FILE_NAME = "ground_surface.tiles"
 _START = struct.Struct("<8sQ")
 _MAGIC = b"ZUKAGND1"
 _KEPT_TILES = 8
+"""Tiles held in memory, of 10 MB at most each: a section or a view crosses a few."""
+
+_BYTES_PER_CELL = 5
+"""A height in single precision and a byte that says whether it is filled in."""
 
 
 @dataclass(frozen=True)
@@ -53,7 +57,9 @@ class SurfaceTile:
 
 
 @dataclass(frozen=True)
-class _Place:
+class _TilePosition:
+    """Where a tile lies: its cells in the whole grid, and its first byte in the file."""
+
     row: int
     column: int
     rows: int
@@ -161,7 +167,7 @@ class StoredSurface:
             self._take(json.loads(text))
         except (ValueError, TypeError, KeyError) as error:
             raise _damaged(path, at) from error
-        if any(one.at + 5 * one.rows * one.columns > at for one in self._positions):
+        if any(one.at + _BYTES_PER_CELL * one.rows * one.columns > at for one in self._positions):
             raise _damaged(path, at)
         self._held: OrderedDict[int, SurfaceTile] = OrderedDict()
 
@@ -171,10 +177,12 @@ class StoredSurface:
         size_m = float(facts["cell_m"])
         self.grid = CellGrid(origin, size_m, int(facts["rows"]), int(facts["columns"]))
         self.crs = str(facts["crs"])
-        self._positions = [_Place(*(int(value) for value in tile)) for tile in facts["tiles"]]
+        self._positions = [
+            _TilePosition(*(int(value) for value in tile)) for tile in facts["tiles"]
+        ]
 
     def heights_at(self, xy: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Ground height at places, m: (n,) float64; NaN where there is no surface.
+        """Ground height at positions, m: (n,) float64; NaN where there is no surface.
 
         Parameters
         ----------
@@ -235,14 +243,14 @@ class StoredSurface:
         return heights, filled
 
     def _by_tile(self, xy: NDArray[np.float64]) -> Iterator[tuple[int, NDArray[np.int64]]]:
-        """Tiles that hold places, and which places; each place is given to one tile."""
+        """Tiles that hold positions, and which ones; each position goes to one tile."""
         column, row = ((xy - self.grid.origin[:2]) / self.grid.size_m).T
         is_free = np.isfinite(column) & np.isfinite(row)
         if not is_free.any():
             return
         low = row[is_free].min(), column[is_free].min()
         high = row[is_free].max(), column[is_free].max()
-        # Tiles overlap by a cell on either side: where two have a place, the inner one knows more.
+        # Tiles overlap by a cell on either side: where two hold a position, the inner knows more.
         for edge in (1, 0):
             for number, tile in enumerate(self._positions):
                 top, right = tile.row + tile.rows, tile.column + tile.columns

@@ -17,7 +17,11 @@ if TYPE_CHECKING:  # named in annotations only
 Floats = NDArray[np.float64]
 
 _STEPS_PER_CELL = 2
+"""Heights asked along a cell's side: a line through them follows heights between the centres of
+cells to a few per cent of a cell's rise."""
+
 _MOST_POSITIONS = 4000
+"""Heights asked in a section: more than a screen has pixels across."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,7 +67,7 @@ def surface_lines(surface: StoredSurface, cut: Cut) -> tuple[SurfaceLine, ...]:
     heights, is_filled = surface.heights_at(xy), surface.is_filled_at(xy)
     positions = np.column_stack([offsets, heights])
     is_there = np.isfinite(heights)
-    # A piece lies between two places; it is measured where both are.
+    # A piece lies between two positions; it is measured where both are.
     between = is_there[1:] & is_there[:-1]
     state = np.where(between, np.where(is_filled[1:] | is_filled[:-1], 2, 1), 0)
     ends = np.flatnonzero(np.diff(state)) + 1

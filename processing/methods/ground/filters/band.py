@@ -1,9 +1,14 @@
-"""The ground's own band: its mean height, its roughness, and what stands in it."""
+"""The ground's own band: its mean height, its roughness, and what stands in it.
+
+Where a constant says “by trial”, no measurement varied it alone: docs/accuracy.md judges all values
+together, on simulated earthwork sites and on airborne samples of the ISPRS filter test.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,18 +16,78 @@ from numpy.typing import NDArray
 from processing.core.kernels import kernel
 from processing.methods.ground.filters.cell_positions import Blocks
 from processing.methods.ground.filters.cells import CellGrid
-from processing.methods.ground.filters.feet import attached_feet
+from processing.methods.ground.filters.feet import SIDE_PARTS, attached_feet
 from processing.methods.ground.filters.morphology import steepness_of
-from processing.methods.ground.filters.walls import column_tops, faces
+from processing.methods.ground.filters.walls import BIN_M, BINS, column_tops, faces
 
 _UNIT_M = 1e-4
-_BIN_M = 0.1
-_WINDOW = 5
+"""Offsets are summed in whole units of this size: whole numbers add up to the same in any order.
+A tenth of a millimetre is finer than any scanner measures."""
+
+_WINDOW_CELLS = 5
+"""Side of the window whose points give a cell its roughness, by trial: a single cell of a sparse
+cloud holds too few points for a standard deviation."""
+
 _LEAST_PER_CELL = 0.2
-_ROUNDS = 2
+"""Points a cell, on average over the window, for a roughness of its own: five in its 25 cells."""
+
+_MEAN_ROUNDS = 2
+"""Rounds in which the surface moves to the mean of its points, each a pass over the cloud. Once it
+was three; with one fewer, and with fewer windows (``regions``), no score got worse."""
+
 _OWN_POINTS = 3
+"""A cell with so many points moves to its own mean, by trial; one with fewer takes the mean of
+its neighbours, since one or two points may be strays."""
+
+_MEAN_CELLS = 3
+"""Side of the window of those neighbours: the cells that touch it."""
+
+_NO_WEIGHT = 0.05
+"""Share of that window with points: less than one cell of nine (0.11) is rounding, not a cell."""
+
+_ROUGHNESS_SHARES = 0.5, 1.5
+"""Roughness of a cell as a share of the typical one, at least and at most, by trial: a cell of
+grass must not widen the band by its own grass, nor a smooth one lose all tolerance."""
+
+_NO_DIVISOR = 1e-9
+"""Keeps divisions by an empty window finite; what they give is not used."""
+
+_WITHIN_CELL = 0.5
+"""Of a cell's rise: a point lies up to half a side from the cell's centre."""
+
 _FOOT_REACH_M = 0.4
+"""How far above the band a thing is looked for whose foot holds no ground, by trial: what begins
+higher, as a branch or a wire, does not stand on that part of the cell."""
+
 _FINE_CELL_M = 0.5
+"""Cells larger than this have no faces and no feet: between two of them lies the jump from a roof
+to the ground as well as a step, and a sixteenth of one is wider than what stands on it. Measured
+together with the feet: ISPRS sample 12, total error 3.10 % before and 2.94 % after."""
+
+
+class _OffsetSums(NamedTuple):
+    """Points near the surface in each cell, their offsets and squared offsets, in ``_UNIT_M``."""
+
+    counts: NDArray[np.int64]
+    totals: NDArray[np.int64]
+    squares: NDArray[np.int64]
+
+
+class _StandingPoints(NamedTuple):
+    """Bits for tenths of a metre above the surface, and for the parts of a cell stood upon."""
+
+    bins: NDArray[np.uint64]
+    feet: NDArray[np.uint16]
+
+
+class _BandGrids(NamedTuple):
+    """The grids of a :class:`GroundBand` that a kernel compares points with."""
+
+    heights: NDArray[np.float32]
+    below: NDArray[np.float32]
+    above: NDArray[np.float32]
+    face_low: NDArray[np.float32]
+    face_high: NDArray[np.float32]
 
 
 @dataclass(frozen=True)
@@ -61,15 +126,20 @@ class Tolerances:
     Attributes
     ----------
     near_m, near_share : float
-        What is averaged at first lies within ``near_m`` and this share of a cell's side.
+        What is averaged at first lies within ``near_m`` and this share of a cell's side: the
+        roughness of graded ground, and what it may rise within a cell. By trial.
     deviations : float
-        Thickness in standard deviations of the ground's own roughness.
+        Thickness in standard deviations of the ground's own roughness; three hold 99.7 % of what
+        is scattered normally.
     side_share, slope_share : float
-        What is added for the surface between cells: this share of a side, and of its rise.
+        What is added for the surface between cells: this share of a side, and of its rise. By
+        trial.
     foot_deviations : float
-        Thickness where something stands.
+        Thickness where something stands: half of the usual one, so that the lowest parts of the
+        thing stay outside, while 87 % of normally scattered ground stays inside. By trial.
     face_slope : float
-        Rise over run from which a cell holds the face of a step.
+        Rise over run from which a cell holds the face of a step: 45°, steeper than loose earth
+        lies.
     """
 
     near_m: float = 0.04
@@ -101,22 +171,21 @@ def ground_band(
 
     size_m = grid.size_m
     steepness = steepness_of(surface, size_m)
-    reach = tolerances.near_m + size_m * (tolerances.near_share + 0.5 * steepness)
+    reach = tolerances.near_m + size_m * (tolerances.near_share + _WITHIN_CELL * steepness)
     reach = np.where(ground, reach, 0.0).astype(np.float32)
     # Larger cells hold no face of a step, but the jump from a roof to the ground.
     is_level = (steepness <= tolerances.face_slope) | (size_m > _FINE_CELL_M)
-    for _ in range(_ROUNDS):
-        counts, totals, _ = _sums(blocks, grid, surface, reach)
+    for _ in range(_MEAN_ROUNDS):
+        sums = _sums(blocks, grid, surface, reach)
         # Beside a step the mean swings more from round to round; the lowest heights serve there.
-        surface = surface + np.where(is_level, _mean_offset(counts, totals), np.float32(0.0))
-    counts, _, squares = _sums(blocks, grid, surface, reach)
-    roughness, typical = _roughness(counts, squares)
+        surface = surface + np.where(is_level, _mean_offset(sums), np.float32(0.0))
+    roughness, typical = _roughness(_sums(blocks, grid, surface, reach))
     rise = size_m * steepness
     spread = tolerances.deviations * roughness
     thick: NDArray[np.float32] = (
         spread + tolerances.side_share * size_m + tolerances.slope_share * rise
     ).astype(np.float32)
-    bins, feet = _what_stands(blocks, grid, surface, thick)
+    bins, feet = _find_standing_points(blocks, grid, surface, thick)
     foot = tolerances.foot_deviations * roughness + tolerances.slope_share * rise
     above = np.where(_stands(bins, thick) | ~ground, np.minimum(thick, foot), thick)
     lowest = cv2.erode(surface, np.ones((3, 3), np.uint8))
@@ -137,24 +206,23 @@ def ground_band(
     )
 
 
-def _what_stands(
+def _find_standing_points(
     blocks: Blocks, grid: CellGrid, surface: NDArray[np.float32], thick: NDArray[np.float32]
-) -> tuple[NDArray[np.uint64], NDArray[np.uint16]]:
+) -> _StandingPoints:
     """Columns of points by tenths of a metre, and the parts of cells over which things stand."""
     bins = np.zeros(surface.shape, np.uint64)
     feet = np.zeros(surface.shape, np.uint16)
+    found = _StandingPoints(bins, feet)
     for xyz in blocks():
-        _columns_kernel(
-            np.ascontiguousarray(xyz), grid.origin, grid.size_m, surface, thick, (bins, feet)
-        )
+        _columns_kernel(np.ascontiguousarray(xyz), grid.origin, grid.size_m, surface, thick, found)
     if grid.size_m > _FINE_CELL_M:
         feet[:] = 0
     elif feet.any():
-        feet = _held_feet(blocks, grid, surface, thick, feet)
-    return bins, feet
+        feet = _attached_feet(blocks, grid, surface, thick, feet)
+    return _StandingPoints(bins, feet)
 
 
-def _held_feet(
+def _attached_feet(
     blocks: Blocks,
     grid: CellGrid,
     surface: NDArray[np.float32],
@@ -176,7 +244,7 @@ def classify(xyz: NDArray[np.float64], grid: CellGrid, band: GroundBand) -> NDAr
         np.ascontiguousarray(xyz),
         grid.origin,
         grid.size_m,
-        (band.heights, band.below, band.above, band.face_low, band.face_high),
+        _BandGrids(band.heights, band.below, band.above, band.face_low, band.face_high),
         band.feet,
         is_ground,
     )
@@ -186,7 +254,7 @@ def classify(xyz: NDArray[np.float64], grid: CellGrid, band: GroundBand) -> NDAr
 def heights_at(
     xy: NDArray[np.float64], grid: CellGrid, surface: NDArray[np.float32]
 ) -> NDArray[np.float64]:
-    """Height of a grid's surface at places: (n,) m; NaN outside the grid."""
+    """Height of a grid's surface at positions: (n,) m; NaN outside the grid."""
     heights = np.full(len(xy), np.nan)
     _heights_kernel(np.ascontiguousarray(xy), grid.origin, grid.size_m, surface, heights)
     return heights
@@ -197,47 +265,39 @@ def _sums(
     grid: CellGrid,
     surface: NDArray[np.float32],
     reach: NDArray[np.float32],
-) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
-    """Points near the surface, their offsets and squared offsets, in whole tenths of a mm.
-
-    Whole numbers add up to the same whatever the order of the points.
-    """
-    counts = np.zeros(surface.shape, np.int64)
-    totals = np.zeros(surface.shape, np.int64)
-    squares = np.zeros(surface.shape, np.int64)
-    for xyz in blocks():
-        _sums_kernel(
-            np.ascontiguousarray(xyz),
-            grid.origin,
-            grid.size_m,
-            surface,
-            reach,
-            (counts, totals, squares),
-        )
-    return counts, totals, squares
-
-
-def _mean_offset(counts: NDArray[np.int64], totals: NDArray[np.int64]) -> NDArray[np.float32]:
-    has_points = counts > 0
-    own = np.where(has_points, totals / np.maximum(counts, 1) * _UNIT_M, 0.0)
-    weight = _smooth(has_points.astype(np.float64), 3)
-    around = np.where(weight > 0.05, _smooth(own, 3) / np.maximum(weight, 1e-9), 0.0)
-    return np.where(counts >= _OWN_POINTS, own, around).astype(np.float32)
-
-
-def _roughness(
-    counts: NDArray[np.int64], squares: NDArray[np.int64]
-) -> tuple[NDArray[np.float64], float]:
-    per_cell = _smooth(counts.astype(np.float64), _WINDOW)
-    mean_square = _smooth(squares.astype(np.float64) * _UNIT_M**2, _WINDOW) / np.maximum(
-        per_cell, 1e-9
+) -> _OffsetSums:
+    """What the points near the surface say in each cell, whatever their order."""
+    sums = _OffsetSums(
+        np.zeros(surface.shape, np.int64),
+        np.zeros(surface.shape, np.int64),
+        np.zeros(surface.shape, np.int64),
     )
+    for xyz in blocks():
+        _sums_kernel(np.ascontiguousarray(xyz), grid.origin, grid.size_m, surface, reach, sums)
+    return sums
+
+
+def _mean_offset(sums: _OffsetSums) -> NDArray[np.float32]:
+    has_points = sums.counts > 0
+    own = np.where(has_points, sums.totals / np.maximum(sums.counts, 1) * _UNIT_M, 0.0)
+    weight = _smooth(has_points.astype(np.float64), _MEAN_CELLS)
+    mean = _smooth(own, _MEAN_CELLS) / np.maximum(weight, _NO_DIVISOR)
+    around = np.where(weight > _NO_WEIGHT, mean, 0.0)
+    return np.where(sums.counts >= _OWN_POINTS, own, around).astype(np.float32)
+
+
+def _roughness(sums: _OffsetSums) -> tuple[NDArray[np.float64], float]:
+    """Standard deviation about the surface, m: of each cell, and in the median of the cells."""
+    per_cell = _smooth(sums.counts.astype(np.float64), _WINDOW_CELLS)
+    total_square = _smooth(sums.squares.astype(np.float64) * _UNIT_M**2, _WINDOW_CELLS)
+    mean_square = total_square / np.maximum(per_cell, _NO_DIVISOR)
     deviation = np.sqrt(np.maximum(mean_square, 0.0))
     enough = per_cell > _LEAST_PER_CELL
-    with_points = deviation[enough & (counts > 0)]
+    with_points = deviation[enough & (sums.counts > 0)]
     typical = float(np.median(with_points)) if len(with_points) else 0.0
-    # A cell of grass must not widen the band by its own grass.
-    return np.clip(np.where(enough, deviation, typical), 0.5 * typical, 1.5 * typical), typical
+    least, most = _ROUGHNESS_SHARES
+    own = np.where(enough, deviation, typical)
+    return np.clip(own, least * typical, most * typical), typical
 
 
 def _smooth(values: NDArray[np.float64], window: int) -> NDArray[np.float64]:
@@ -249,7 +309,8 @@ def _smooth(values: NDArray[np.float64], window: int) -> NDArray[np.float64]:
 
 def _stands(bins: NDArray[np.uint64], thick: NDArray[np.float32]) -> NDArray[np.bool_]:
     """Where points go on above the band without a gap of two tenths of a metre."""
-    first = np.minimum(np.ceil(thick / _BIN_M), 62).astype(np.uint64)
+    # Two bits are looked at: the last two at the most.
+    first = np.minimum(np.ceil(thick / BIN_M), BINS - 2).astype(np.uint64)
     stands: NDArray[np.bool_] = ((bins >> first) & np.uint64(3)) > 0
     return stands
 
@@ -273,9 +334,8 @@ def _sums_kernel(
     size_m: float,
     surface: NDArray[np.float32],
     reach: NDArray[np.float32],
-    sums: tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]],
+    sums: _OffsetSums,
 ) -> None:
-    counts, totals, squares = sums
     for point in range(xyz.shape[0]):
         x = (xyz[point, 0] - origin[0]) / size_m
         y = (xyz[point, 1] - origin[1]) / size_m
@@ -284,10 +344,10 @@ def _sums_kernel(
             row, column = int(y), int(x)
             offset = z - _at(surface, y, x)
             if abs(offset) < reach[row, column]:
-                units = int(np.rint(offset / 1e-4))
-                counts[row, column] += 1
-                totals[row, column] += units
-                squares[row, column] += units * units
+                units = int(np.rint(offset / _UNIT_M))
+                sums.counts[row, column] += 1
+                sums.totals[row, column] += units
+                sums.squares[row, column] += units * units
 
 
 @kernel
@@ -297,21 +357,21 @@ def _columns_kernel(
     size_m: float,
     surface: NDArray[np.float32],
     thick: NDArray[np.float32],
-    held: tuple[NDArray[np.uint64], NDArray[np.uint16]],
+    found: _StandingPoints,
 ) -> None:
-    bins, feet = held
     for point in range(xyz.shape[0]):
         x = (xyz[point, 0] - origin[0]) / size_m
         y = (xyz[point, 1] - origin[1]) / size_m
         z = xyz[point, 2] - origin[2]
         if np.isfinite(z) and 0.0 <= x < surface.shape[1] and 0.0 <= y < surface.shape[0]:
             offset = z - _at(surface, y, x)
-            if 0.0 <= offset < 6.4:
+            if 0.0 <= offset < BINS * BIN_M:
                 row, column = int(y), int(x)
-                bins[row, column] |= np.uint64(1) << np.uint64(int(offset / 0.1))
+                found.bins[row, column] |= np.uint64(1) << np.uint64(int(offset / BIN_M))
                 if thick[row, column] < offset < thick[row, column] + _FOOT_REACH_M:
-                    part = int(4 * (y - row)) * 4 + int(4 * (x - column))
-                    feet[row, column] |= np.uint16(1) << np.uint16(part)
+                    north, east = int(SIDE_PARTS * (y - row)), int(SIDE_PARTS * (x - column))
+                    part = north * SIDE_PARTS + east
+                    found.feet[row, column] |= np.uint16(1) << np.uint16(part)
 
 
 @kernel
@@ -319,17 +379,11 @@ def _classify_kernel(
     xyz: NDArray[np.float64],
     origin: NDArray[np.float64],
     size_m: float,
-    grids: tuple[
-        NDArray[np.float32],
-        NDArray[np.float32],
-        NDArray[np.float32],
-        NDArray[np.float32],
-        NDArray[np.float32],
-    ],
+    band: _BandGrids,
     feet: NDArray[np.uint16],
     is_ground: NDArray[np.bool_],
 ) -> None:
-    surface, below, above, face_low, face_high = grids
+    surface = band.heights
     for point in range(xyz.shape[0]):
         x = (xyz[point, 0] - origin[0]) / size_m
         y = (xyz[point, 1] - origin[1]) / size_m
@@ -337,9 +391,9 @@ def _classify_kernel(
         if np.isfinite(z) and 0.0 <= x < surface.shape[1] and 0.0 <= y < surface.shape[0]:
             row, column = int(y), int(x)
             offset = z - _at(surface, y, x)
-            in_band = -below[row, column] <= offset <= above[row, column]
-            on_face = face_low[row, column] <= z <= face_high[row, column]
-            part = int(4 * (y - row)) * 4 + int(4 * (x - column))
+            in_band = -band.below[row, column] <= offset <= band.above[row, column]
+            on_face = band.face_low[row, column] <= z <= band.face_high[row, column]
+            part = int(SIDE_PARTS * (y - row)) * SIDE_PARTS + int(SIDE_PARTS * (x - column))
             if (feet[row, column] >> np.uint16(part)) & np.uint16(1):
                 in_band = False
             is_ground[point] = in_band or on_face

@@ -1,4 +1,4 @@
-"""Whether a cloud has enough places in plan for a ground; the same sentence for every method."""
+"""Whether a cloud has enough positions in plan for a ground; the same sentence for all methods."""
 
 from __future__ import annotations
 
@@ -13,15 +13,16 @@ from processing.core.text import Text
 Blocks = Callable[[], Iterable[NDArray[np.float64]]]
 
 _LEAST = 3
+"""Positions in plan: a surface needs a triangle."""
 
 
 def require_three_positions(blocks: Blocks) -> None:
-    """Raise when finite points lie at fewer than three places in plan; copies are one place.
+    """Raise when finite points lie at fewer than three positions in plan; copies count once.
 
     Parameters
     ----------
     blocks : callable
-        Gives the cloud's blocks, each (n, 3) float64, m; those after the third place are not read.
+        Gives the cloud's blocks, each (n, 3) float64, m; read until the third position is met.
 
     Raises
     ------

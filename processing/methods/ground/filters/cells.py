@@ -11,19 +11,61 @@ from processing.core.kernels import kernel
 from processing.methods.ground.filters.cell_positions import Blocks, require_three_positions
 
 MOST_CELLS = 48_000_000
-_MOST_COARSE = 256
-_MOST_PARTS = 4096
+"""Of a grid that is not cut into tiles: at some 80 bytes a cell 4 GB of memory."""
+
+_MOST_COARSE, _MOST_PARTS = 256, 4096
+"""Coarse parts along one side, at most: of a small extent, and of a long one, where a share of
+the extent says little about a street. Counts of 4,096 by 4,096 parts take 128 MiB."""
+
 _COARSE_M = 5.0
+"""Width of a coarse part on a long extent: about a lane, narrower than a road."""
+
 _POINTS_OF_COARSE = 50
-_SMALLEST_CELL_M = 0.20
-_LARGEST_CELL_M = 10.0
+"""Points that a coarse part would hold if the cloud were even; by trial, enough to count by."""
+
+_SMALLEST_CELL_M, _LARGEST_CELL_M = 0.20, 10.0
+"""What the data may choose, by trial."""
+
 _THIN_SHARE = 0.40
+"""Of the coarse parts, from the thinnest on: the one that shall have one point in a cell. By trial;
+the thinnest of all lie in shadow or at the edge."""
+
+_SPACING_DECIMALS = 2
+"""A chosen cell has whole centimetres, so that it can be said and set."""
+
+_A_LITTLE_MORE = 1.0 + 1e-9
+"""Makes the parts so much wider that the farthest point is no thin part of its own."""
+
+_LEAST_COARSE_M = 1e-3
+"""Keeps parts of a cloud without extent from being empty."""
+
 _SHRINKS = 4
-_SHRINK = 0.5
+"""Most looks for far points, each a pass over the cloud; ``_SHRINK_SHARE`` ends them earlier."""
+
+_SHRINK_SHARE = 0.5
+"""A look that leaves more than this of each side ends them: the next would see as finely."""
+
 _PARTS = 1024
+"""Bins along each axis in such a look."""
+
 _FEW_POINTS = 1000
+"""Fewer points have no far ones: a thousandth of them is less than one."""
+
 _FAR_SHARE = 1e-3
+"""Share of the points at either end that may be far ones; by trial."""
+
 _EMPTY_BINS = 64
+"""Far points lie beyond so many bins, a sixteenth of the extent; by trial. Nearer ones stay."""
+
+_PERSON_M = 3.0
+"""Height above the lowest point within which points above it are counted: as high as a person with
+a tool reaches, and no crown or roof. By trial; ``layers`` takes the same."""
+
+_ROUNDING_M = 1e-3
+"""The lowest height is kept in single precision, which rounds by less than this up to 16 km."""
+
+_MOST_COUNTED = 60_000
+"""Counts stop here, below what 16 bits hold: shares are known well enough."""
 
 
 @dataclass(frozen=True)
@@ -84,14 +126,15 @@ def choose_cells(
     Raises
     ------
     OutOfRange
-        Points at fewer than three places.
+        Points at fewer than three positions.
     """
     require_three_positions(blocks)
     low, high, count = _extent(blocks)
     low, high = _without_far_points(blocks, low, high, count)
     extent = high[:2] - low[:2]
-    # Whole centimetres, so that what was chosen can be said and set.
-    size_m = grid_m if grid_m > 0.0 else round(_spacing(blocks, low, extent, count), 2)
+    size_m = grid_m
+    if size_m <= 0.0:
+        size_m = round(_spacing(blocks, low, extent, count), _SPACING_DECIMALS)
     if most_cells is not None:
         largest = max(float(np.sqrt(extent.prod() / most_cells)), float(extent.max() / most_cells))
         size_m = max(size_m, largest)
@@ -105,8 +148,7 @@ def _spacing(
     # On a long street a share of its extent says little: parts are some metres wide there.
     most = int(np.clip(extent.max() / _COARSE_M, _MOST_COARSE, _MOST_PARTS))
     parts = int(np.clip(np.sqrt(count / _POINTS_OF_COARSE), 1, most))
-    # A little more, so that the farthest point doesn't count as a thin part of its own.
-    coarse_m = max(float(extent.max()) / parts * (1.0 + 1e-9), 1e-3)
+    coarse_m = max(float(extent.max()) / parts * _A_LITTLE_MORE, _LEAST_COARSE_M)
     counts = np.zeros((parts + 1, parts + 1), np.int64)
     for xyz in blocks():
         _count_kernel(np.ascontiguousarray(xyz), low, coarse_m, counts)
@@ -158,7 +200,7 @@ def _without_far_points(
         first, last = np.array(bounds).T
         kept = (last[:2] + 1 - first[:2]) / _PARTS
         low, high = low + first * step, np.minimum(high, low + (last + 1) * step)
-        if np.all(kept > _SHRINK):
+        if np.all(kept > _SHRINK_SHARE):
             break
     return low, high
 
@@ -267,9 +309,9 @@ def _second_kernel(
             off = z - lowest[row, column]
             if off > gap_m:
                 second[row, column] = min(second[row, column], np.float32(z))
-                if off < 3.0 and above[row, column] < 60000:
+                if off < _PERSON_M and above[row, column] < _MOST_COUNTED:
                     above[row, column] += 1
-            elif off >= -1e-3 and near[row, column] < 60000:
+            elif off >= -_ROUNDING_M and near[row, column] < _MOST_COUNTED:
                 near[row, column] += 1
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,8 +11,24 @@ from numpy.typing import NDArray
 from processing.core.kernels import kernel
 from processing.methods.ground.filters.cells import CellGrid
 
-_PARTS = 16
+SIDE_PARTS = 4
+"""A cell is looked at in four by four parts, as many as a 16-bit number has bits: with the finest
+cells, of 0.2 m, parts of 5 cm, about as wide as a post."""
+
+_PARTS = SIDE_PARTS * SIDE_PARTS
+
 _BAND_PER_FOOT = 5
+"""Points of the band for each point over a part, up to which that part is a foot. By trial, on
+sites with thousands of points in a cell, where each part had a stray over it: a foot hides the
+ground below it from the scanner, dense ground with a stray does not."""
+
+
+class _FootCells(NamedTuple):
+    """For each cell: its row among those with feet or −1, and what the band and a foot reach, m."""
+
+    rows: NDArray[np.int32]
+    thick: NDArray[np.float32]
+    top: NDArray[np.float32]
 
 
 def attached_feet(
@@ -41,10 +58,9 @@ def attached_feet(
     rows = np.full(feet.shape, -1, np.int32)
     rows[stood] = np.arange(np.count_nonzero(stood), dtype=np.int32)
     excess = np.zeros((int(np.count_nonzero(stood)), _PARTS), np.int32)
+    cells = _FootCells(rows, thick, top)
     for xyz, above in offsets:
-        _excess_kernel(
-            np.ascontiguousarray(xyz), above, grid.origin, grid.size_m, (rows, thick, top), excess
-        )
+        _excess_kernel(np.ascontiguousarray(xyz), above, grid.origin, grid.size_m, cells, excess)
     bits = np.left_shift(np.uint16(1), np.arange(_PARTS, dtype=np.uint16))
     held = np.zeros_like(feet)
     held[stood] = np.where(excess >= 0, bits, np.uint16(0)).sum(axis=1).astype(np.uint16)
@@ -57,11 +73,11 @@ def _excess_kernel(
     above: NDArray[np.float64],
     origin: NDArray[np.float64],
     size_m: float,
-    cells: tuple[NDArray[np.int32], NDArray[np.float32], NDArray[np.float32]],
+    cells: _FootCells,
     excess: NDArray[np.int32],
 ) -> None:
     """Points over each part's foot, five times each, less those in the band."""
-    rows, thick, top = cells
+    thick, top = cells.thick, cells.top
     for point in range(xyz.shape[0]):
         offset = above[point]
         if not np.isfinite(offset):
@@ -69,10 +85,10 @@ def _excess_kernel(
         x = (xyz[point, 0] - origin[0]) / size_m
         y = (xyz[point, 1] - origin[1]) / size_m
         row, column = int(y), int(x)
-        own = rows[row, column]
+        own = cells.rows[row, column]
         if own < 0:
             continue
-        part = int(4 * (y - row)) * 4 + int(4 * (x - column))
+        part = int(SIDE_PARTS * (y - row)) * SIDE_PARTS + int(SIDE_PARTS * (x - column))
         if thick[row, column] < offset < top[row, column]:
             excess[own, part] += _BAND_PER_FOOT
         elif abs(offset) <= thick[row, column]:

@@ -4,15 +4,25 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from processing.methods.ground.filters.cell_positions import Blocks
 
-_Some = tuple[NDArray[np.int64], NDArray[np.float64], NDArray[np.int64]]
+
+class _KeyedPoints(NamedTuple):
+    """Points with their keys: (m, parts) keys, (m, 3) coordinates, (m,) numbers."""
+
+    keys: NDArray[np.int64]
+    xyz: NDArray[np.float64]
+    numbers: NDArray[np.int64]
+
 
 _MOST_WAITING = 1_000_000
+"""Lowest points of blocks that wait to be sorted in, or as many as are held: some 50 MB. Sorting
+costs each point about the same then, however many blocks come."""
 
 
 class LowestPoints:
@@ -26,47 +36,50 @@ class LowestPoints:
     """
 
     def __init__(self, parts: int) -> None:
-        self._held = (np.empty((0, parts), np.int64), np.empty((0, 3)), np.empty(0, np.int64))
-        self._waiting: list[_Some] = []
+        self._held = _KeyedPoints(
+            np.empty((0, parts), np.int64), np.empty((0, 3)), np.empty(0, np.int64)
+        )
+        self._waiting: list[_KeyedPoints] = []
 
     @property
     def keys(self) -> NDArray[np.int64]:
         """Each once, in rising order, the last number changing slowest: (m, parts)."""
-        return self._taken_in()[0]
+        return self._take_in().keys
 
     @property
     def xyz(self) -> NDArray[np.float64]:
         """The points in the order of their keys: (m, 3)."""
-        return self._taken_in()[1]
+        return self._take_in().xyz
 
     @property
     def numbers(self) -> NDArray[np.int64]:
         """Their numbers as they were given: (m,)."""
-        return self._taken_in()[2]
+        return self._take_in().numbers
 
     @property
     def count_so_far(self) -> int:
         """How many there are at least; asking costs nothing."""
-        return len(self._held[0])
+        return len(self._held.keys)
 
     def add(
         self, keys: NDArray[np.int64], xyz: NDArray[np.float64], numbers: NDArray[np.int64]
     ) -> None:
         """Take in a block; how points are cut into blocks changes nothing."""
         chosen = _lowest_of(keys, xyz[:, 2])
-        self._waiting.append((keys[chosen], xyz[chosen], numbers[chosen]))
+        self._waiting.append(_KeyedPoints(keys[chosen], xyz[chosen], numbers[chosen]))
         # Sorting all that is held for every block would take longer the more is held.
-        if sum(len(own) for own, _, _ in self._waiting) > max(_MOST_WAITING, len(self._held[0])):
-            self._taken_in()
+        waiting = sum(len(own.keys) for own in self._waiting)
+        if waiting > max(_MOST_WAITING, len(self._held.keys)):
+            self._take_in()
 
-    def _taken_in(self) -> _Some:
+    def _take_in(self) -> _KeyedPoints:
         if self._waiting:
             keys, xyz, numbers = (
                 np.concatenate(parts) for parts in zip(self._held, *self._waiting, strict=True)
             )
             self._waiting.clear()
             chosen = _lowest_of(keys, xyz[:, 2])
-            self._held = keys[chosen], xyz[chosen], numbers[chosen]
+            self._held = _KeyedPoints(keys[chosen], xyz[chosen], numbers[chosen])
         return self._held
 
 

@@ -8,7 +8,11 @@ from numpy.typing import NDArray
 from processing.core.kernels import kernel
 
 _SQUARE_SHARE = 0.414
+"""Of an octagon's radius the half side of its square, √2 − 1: with it all eight sides are alike."""
+
 _FEW_CROSSES = 10
+"""So many crosses are laid on one after the other; more of them cost more than two diagonals. The
+result is the same."""
 
 
 def open_heights(heights: NDArray[np.float32], radius: int) -> NDArray[np.float32]:

@@ -19,9 +19,20 @@ from processing.methods.ground.filters.cells import CellGrid
 
 MOST_CELLS = 2_000_000
 """In a tile with its margin: some 0.4 GiB while its ground is looked for."""
+
 _MOST_PARTS = 4096
+"""Parts along one side, marked where they hold points: 16 MiB of marks."""
+
+_PART_M = 4.0
+"""Width of a part where they need not be wider, by trial: narrower than a road, so that tiles
+follow it, and many of the finest cells."""
+
 _SMALLEST_M = 60.0
-_LINED_UP = 32
+"""Side from which a tile is halved no more, by trial: its margin, as wide as a hall on every side,
+is then most of what it looks at."""
+
+_LINED_UP_CELLS = 32
+"""Tiles begin at a multiple of this, so that five halvings of neighbours' cells fall together."""
 
 
 @dataclass(frozen=True)
@@ -60,11 +71,11 @@ def plan_tiles(blocks: Blocks, grid: CellGrid, margin_m: float) -> tuple[PlanTil
     if grid.rows * grid.columns <= MOST_CELLS:
         return (PlanTile(range(grid.rows), range(grid.columns), grid, 0, 0),)
     margin = int(np.ceil(margin_m / grid.size_m))
-    part = max(1, -(-max(grid.rows, grid.columns) // _MOST_PARTS), int(4.0 / grid.size_m))
+    part = max(1, -(-max(grid.rows, grid.columns) // _MOST_PARTS), int(_PART_M / grid.size_m))
     occupied = np.zeros((-(-grid.rows // part), -(-grid.columns // part)), np.uint8)
     for xyz in blocks():
         _occupied_kernel(xyz, grid.origin, grid.size_m, part, occupied)
-    most = max(int(np.sqrt(MOST_CELLS)) - 2 * margin - _LINED_UP, margin)
+    most = max(int(np.sqrt(MOST_CELLS)) - 2 * margin - _LINED_UP_CELLS, margin)
     smallest = max(part, int(_SMALLEST_M / grid.size_m))
     sides = [max(part, most // part * part)]
     while sides[-1] // 2 >= smallest:
@@ -122,7 +133,7 @@ def _inside(cells: range, held: NDArray[np.int64], part: int) -> range:
 
 def _tile(grid: CellGrid, rows: range, columns: range, seen: tuple[range, range]) -> PlanTile:
     # Lined up, so that coarser grids of neighbours halve the same cells.
-    first_row, first_column = (cells.start // _LINED_UP * _LINED_UP for cells in seen)
+    first_row, first_column = (cells.start // _LINED_UP_CELLS * _LINED_UP_CELLS for cells in seen)
     end_row, end_column = min(seen[0].stop, grid.rows), min(seen[1].stop, grid.columns)
     origin = grid.origin + grid.size_m * np.array([first_column, first_row, 0.0])
     looked_at = CellGrid(origin, grid.size_m, end_row - first_row, end_column - first_column)

@@ -15,27 +15,34 @@ from processing.methods.ground.filters.lowest_points import LowestPoints, lowest
 from processing.methods.ground.filters.triangles import Triangles, triangulate_points
 
 MOST_CORNERS = 1_000_000
+"""What is joined in memory: triangulating so many corners once takes some 10 s."""
+
 _FEWEST_CORNERS = 3
+"""Of one triangle: removing goes no further."""
+
+_FINE_PARTS = 5.0
+"""Columns on slopes along the grid's side, whose number the paper leaves open; by judgement."""
 
 
 @dataclass(frozen=True)
 class PublishedSteps:
-    """The paper's numbers.
+    """The paper's numbers (Sakurai et al., sections 3(2) and 4(2)); defaults are its own.
 
     Attributes
     ----------
     grid_m : float
         Side of the cells whose lowest points make the first triangles: about 1.5 times the width
-        of what is to be removed.
+        of what is to be removed, 3 m for a machine of 2 m (section 3(2)a), which is also the best
+        of 1, 3 and 10 m in its table 2.
     steep_deg : float
-        A triangle this steep or steeper loses its highest corner.
+        A triangle this steep or steeper loses its highest corner (section 3(2)a).
     slope_from_deg : float
-        Triangles from here up to ``steep_deg`` are slopes and are divided.
+        Triangles from here up to ``steep_deg`` are slopes and are divided (section 4(2)a).
     fine_grid_m : float
         Side of the columns that divide slopes; 0 takes a fifth of ``grid_m``, which the paper
         does not say.
     distance_m : float
-        A point no farther from the triangles, vertically, is ground.
+        A point no farther from the triangles, vertically, is ground (section 4(2)a).
     most_removals : int
         How often steep triangles are sought: 1 as published, more until none is left.
     """
@@ -98,11 +105,12 @@ def published_surface(blocks: Blocks, steps: PublishedSteps, monitor: Monitor) -
     Raises
     ------
     OutOfRange
-        Finite points at fewer than three places; more corners than can be joined in memory.
+        Finite points at fewer than three positions; more corners than can be joined in memory.
 
     References
     ----------
-    Specification noise_ground.md, B3.1 and B3.2.
+    Sakurai et al., 地上設置型レーザスキャナを用いた出来高管理のための地表面抽出手法の検討,
+    section 3(2).
     """
     require_three_positions(blocks)
     monitor.report(0.0, Text("Looking for the ground", "地面を探しています"))
@@ -155,7 +163,7 @@ def _lowest_on_slopes(
     """Lowest point of each fine column of each sloping triangle, (m, 3) float64."""
     slopes = triangles.slopes_deg()
     is_slope = (slopes >= steps.slope_from_deg) & (slopes < steps.steep_deg)
-    fine_m = steps.fine_grid_m if steps.fine_grid_m > 0.0 else steps.grid_m / 5.0
+    fine_m = steps.fine_grid_m if steps.fine_grid_m > 0.0 else steps.grid_m / _FINE_PARTS
     lowest = LowestPoints(3)
     for xyz in blocks():
         monitor.check()

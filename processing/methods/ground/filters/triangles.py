@@ -1,10 +1,10 @@
-"""A surface of triangles over scattered points: heights, slopes, and the triangle at a place."""
+"""A surface of triangles over scattered points: heights, slopes, the triangle at a position."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,10 +14,39 @@ from processing.core.kernels import kernel
 if TYPE_CHECKING:
     from scipy.spatial import cKDTree
 
-_BLOCK = 1_000_000
+_POSITIONS_AT_ONCE = 1_000_000
+"""Positions looked up at a time: their shares take 24 MB."""
+
 _ON_EDGE = 1e-9
+"""Share of a triangle's height within which a position is on its edge: more than rounding leaves,
+and far below a scanner's resolution."""
+
 _OUTSIDE = -1e-12
+"""Share of a triangle's area by which a position must lie beyond the hull to be outside it: more
+than rounding, so that corners of the hull are inside."""
+
 _STRIP_TRIANGLES = 3.0
+"""Width of the strips in which positions are walked through, in mean triangles; it changes only the
+time. By trial."""
+
+_NARROWEST_STRIP_M = 1e-6
+"""Keeps strips over corners on one line from having no width."""
+
+_FEWEST_CORNERS = 3
+
+
+class _AskedPositions(NamedTuple):
+    """Positions in plan, m from the mesh's origin, and the order in which to look them up."""
+
+    positions: NDArray[np.float64]
+    order: NDArray[np.int64]
+
+
+class _LocatedPositions(NamedTuple):
+    """The triangle of each position or −1, and its barycentric shares there: (n,) and (n, 3)."""
+
+    triangles: NDArray[np.int64]
+    shares: NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -49,13 +78,13 @@ class Triangles:
         return slopes
 
     def triangle_of(self, xy: NDArray[np.float64]) -> NDArray[np.int64]:
-        """Triangle that holds each place, one only; −1 outside the hull: (m,) int64."""
+        """Triangle that holds each position, one only; −1 outside the hull: (m,) int64."""
         if self.mesh is None:
             return np.full(len(xy), -1, np.int64)
         positions = xy - self.origin[:2]
         found = [
-            self._one_triangle(positions[start : start + _BLOCK])
-            for start in range(0, len(positions), _BLOCK)
+            self._one_triangle(positions[start : start + _POSITIONS_AT_ONCE])
+            for start in range(0, len(positions), _POSITIONS_AT_ONCE)
         ]
         return np.concatenate(found) if found else np.empty(0, np.int64)
 
@@ -65,9 +94,9 @@ class Triangles:
         mesh: Any = self.mesh
         triangle = np.empty(len(positions), np.int64)
         shares = np.zeros((len(positions), 3))
-        order = self._along_the_plan(positions)
+        asked = _AskedPositions(positions, self._along_the_plan(positions))
         _walk_kernel(
-            self.xyz, mesh.simplices, mesh.neighbors, (positions, order), (triangle, shares)
+            self.xyz, mesh.simplices, mesh.neighbors, asked, _LocatedPositions(triangle, shares)
         )
         inside = np.flatnonzero(triangle >= 0)
         of, shares = triangle[inside], shares[inside]
@@ -82,13 +111,13 @@ class Triangles:
         return triangle
 
     def _along_the_plan(self, positions: NDArray[np.float64]) -> NDArray[np.int64]:
-        """An order in which each place is near the one before it: a short walk from triangle to it.
+        """An order in which each position is near the one before it: short walks over the mesh.
 
         Strips of a few triangles' width, every second one backwards.
         """
         size = self.xyz[:, :2].max(axis=0)
         wide = _STRIP_TRIANGLES * float(np.sqrt(size.prod() / len(self.corners)))
-        strip = np.floor(positions[:, 1] / max(wide, 1e-6))
+        strip = np.floor(positions[:, 1] / max(wide, _NARROWEST_STRIP_M))
         along = np.where(strip % 2 == 0, positions[:, 0], -positions[:, 0])
         return np.lexsort((along, strip))
 
@@ -103,7 +132,7 @@ class Triangles:
         return self.located(xy)[0]
 
     def located(self, xy: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
-        """Heights as :meth:`heights_at`, and which places are outside the hull: (m,) bool."""
+        """Heights as :meth:`heights_at`, and which positions are outside the hull: (m,) bool."""
         positions = xy - self.origin[:2]
         triangle = self.triangle_of(xy)
         heights = np.empty(len(xy))
@@ -123,7 +152,7 @@ class Triangles:
 
 
 def triangulate_points(xyz: NDArray[np.float64]) -> Triangles:
-    """Triangles over points; of points at one place in plan the lowest is taken.
+    """Triangles over points; of points at one position in plan the lowest is taken.
 
     Parameters
     ----------
@@ -138,7 +167,7 @@ def triangulate_points(xyz: NDArray[np.float64]) -> Triangles:
     corners = ordered[is_first]
     origin = corners.min(axis=0)
     local = corners - origin
-    if len(local) < 3:
+    if len(local) < _FEWEST_CORNERS:
         return Triangles(local, origin, np.empty((0, 3), np.int64), None)
     try:
         mesh = Delaunay(local[:, :2])
@@ -152,10 +181,10 @@ def _walk_kernel(
     corners: NDArray[np.float64],
     triangles: NDArray[np.int32],
     neighbours: NDArray[np.int32],
-    asked: tuple[NDArray[np.float64], NDArray[np.int64]],
-    found: tuple[NDArray[np.int64], NDArray[np.float64]],
+    asked: _AskedPositions,
+    found: _LocatedPositions,
 ) -> None:
-    """The triangle of each place, from that of the last one over edges that it lies beyond.
+    """The triangle of each position, from that of the last one over edges that it lies beyond.
 
     Such a walk ends in a Delaunay mesh; it never turns back, which rounding could make it do.
 
@@ -163,28 +192,29 @@ def _walk_kernel(
     ----------
     Devillers, Pion & Teillaud 2002, the remembering walk.
     """
-    positions, order = asked
-    held, shares = found
+    positions = asked.positions
+    held, shares = found.triangles, found.shares
     now = 0
     most = triangles.shape[0] + 3
-    for number in order:
+    for number in asked.order:
         x, y = positions[number, 0], positions[number, 1]
         before = -2
         is_outside = False
         for _ in range(most):
             ends = triangles[now]
-            area = _turn(
+            area = _double_area(
                 corners[ends[0]], corners[ends[1]], corners[ends[2], 0], corners[ends[2], 1]
             )
             following = -1
             for side in range(3):
-                turn = _turn(corners[ends[(side + 1) % 3]], corners[ends[(side + 2) % 3]], x, y)
-                shares[number, side] = turn / area if area != 0.0 else 0.0
+                first, second = ends[(side + 1) % 3], ends[(side + 2) % 3]
+                part = _double_area(corners[first], corners[second], x, y)
+                shares[number, side] = part / area if area != 0.0 else 0.0
                 beyond = neighbours[now, side]
-                if turn < 0.0 and beyond != before and following < 0:
+                if part < 0.0 and beyond != before and following < 0:
                     if beyond >= 0:
                         following = beyond
-                    elif turn < _OUTSIDE * area:
+                    elif part < _OUTSIDE * area:
                         is_outside = True
             if following < 0 or is_outside:
                 break
@@ -193,8 +223,8 @@ def _walk_kernel(
 
 
 @kernel
-def _turn(start: NDArray[np.float64], end: NDArray[np.float64], x: float, y: float) -> float:
-    """Twice the area of a triangle; positive where the place lies to the left of the edge."""
+def _double_area(start: NDArray[np.float64], end: NDArray[np.float64], x: float, y: float) -> float:
+    """Twice the area of a triangle; positive where its third corner lies left of the edge."""
     return float((end[0] - start[0]) * (y - start[1]) - (end[1] - start[1]) * (x - start[0]))
 
 

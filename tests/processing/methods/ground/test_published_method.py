@@ -109,13 +109,14 @@ def test_walking_uncompiled_finds_what_the_kernel_finds() -> None:
     whole = triangulate_points(np.random.default_rng(4).uniform(0.0, 9.0, (20, 3)))
     corners, mesh = whole.xyz, whole.mesh
     positions = np.random.default_rng(5).uniform(-1.0, 10.0, (40, 2))
+    asked = triangles._AskedPositions(positions, np.arange(40))
     results = []
     for walk in (triangles._walk_kernel, triangles._walk_kernel.py_func):
-        found = np.empty(40, np.int64), np.zeros((40, 3))
-        walk(corners, mesh.simplices, mesh.neighbors, (positions, np.arange(40)), found)
+        found = triangles._LocatedPositions(np.empty(40, np.int64), np.zeros((40, 3)))
+        walk(corners, mesh.simplices, mesh.neighbors, asked, found)
         results.append(found)
-    assert np.array_equal(results[0][0], results[1][0])
-    np.testing.assert_allclose(results[0][1], results[1][1])
+    assert np.array_equal(results[0].triangles, results[1].triangles)
+    np.testing.assert_allclose(results[0].shares, results[1].shares)
 
 
 def test_large_coordinates_and_duplicates_do_not_change_the_ground() -> None:
