@@ -39,11 +39,20 @@ MODELS = "models/noise"
 FIRST_LOOK = "first_look.onnx"
 WITH_BEAMS = "with_beams.onnx", "with_beams_again.onnx"
 IN_SPACE = "in_space.onnx", "in_space_again.onnx"
-# Log-odds: where no beams are known, the second look may confirm what the first held possible, and
-# not find noise where it saw none: it learned from more, and grass and clods lie side by side, too.
+
 _OPEN_IN_SPACE = -1.0
+"""Log-odds (27 % likely) from which the second look is asked where no beams are known: it may
+confirm what the first held possible, and not find noise where it saw none, since it learned from
+more, and grass and clods lie side by side, too. By trial."""
+
 _FEWEST = 20
-_FEWEST_IN_SPACE = 1_000  # fewer don't tell what is usual around them
+"""Points of a recording below which no row shows a surface; by trial."""
+
+_FEWEST_IN_SPACE = 1_000
+"""Points of a cloud below which they don't tell what is usual around them; by trial."""
+
+_LEAST_STRICTNESS = 1e-6
+"""Keeps the odds of a strictness of 0 or 1 finite."""
 
 
 def noise_codes_with_beams(
@@ -53,11 +62,11 @@ def noise_codes_with_beams(
     *,
     monitor: Monitor | None = None,
 ) -> NDArray[np.uint8]:
-    """Noise of a recording, or a stretch of its rows, whose beams are known.
+    """Noise of a recording, or of a chunk of its rows, whose beams are known.
 
     Parameters
     ----------
-    beams : Beams
+    beams : PointBeams
     intensity : (n,) uint16
         Any scale; all the same where there is none.
     strictness : float
@@ -86,7 +95,7 @@ def noise_codes_with_beams(
 def noise_codes_in_space(
     xyz: NDArray[np.float64], strictness: float = 0.5, *, monitor: Monitor | None = None
 ) -> NDArray[np.uint8]:
-    """Noise of a cloud of which only places are known.
+    """Noise of a cloud of which only positions are known.
 
     Parameters
     ----------
@@ -126,7 +135,7 @@ def _codes(
     odds = log_odds(_trees(models[0]), candidates.features, monitor)
     is_open = np.flatnonzero(odds > open_odds)
     again = candidates.seen_again(odds, is_open, monitor)
-    share = min(max(strictness, 1e-6), 1 - 1e-6)
+    share = min(max(strictness, _LEAST_STRICTNESS), 1 - _LEAST_STRICTNESS)
     is_noise = log_odds(_trees(models[1]), again, monitor) > np.log((1 - share) / share)
     noise, heights = candidates.points[is_open[is_noise]], candidates.around.heights
     codes = np.zeros(heights.size, np.uint8)

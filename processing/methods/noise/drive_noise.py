@@ -31,10 +31,19 @@ from processing.recording.columns.ordering import read_chunk
 from processing.recording.drive import Drive
 
 _TILE_M = 1.0
+"""Side of a tile: wider than the radius of the study (0.5 m), so that a point's neighbours lie in
+nine tiles."""
+
 _SORTING, _FINDING = 0.1, 0.9
+"""Of the progress bar: when points are in tiles, and when outliers are found."""
+
 _REACH_SPACINGS = 40.0
 _LEAST_REACH_M, _MOST_REACH_M = 1.0, 10.0
+"""What a part of a cloud sees around it where no beams are known: the widest cells that features
+are taken from (16 spacings, with the cells beside them 48), within limits. By trial."""
+
 _POINTS_IN_SPACE = 2_000_000
+"""Points of such a part: some 2 GB while their features are worked out. By trial."""
 
 
 @dataclass(frozen=True)

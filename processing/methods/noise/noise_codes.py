@@ -9,10 +9,11 @@ from processing.core.monitor import Monitor
 from processing.methods.noise.features.ground_heights import ground_of, low_heights
 from processing.methods.noise.tiles_of_space import POINTS_PER_PART, TiledCloud
 
-LOW_NOISE = 7
-HIGH_NOISE = 18
+LOW_NOISE, HIGH_NOISE = 7, 18
+"""Classes, as LAS 1.4 numbers them."""
 
-_CHUNK = 4_000_000
+_POINTS_AT_ONCE = 4_000_000
+"""Codes read at a time: 4 MB."""
 
 
 def codes_by_height(heights: NDArray[np.float64]) -> NDArray[np.uint8]:
@@ -55,9 +56,9 @@ def part_noise_by_ground(
             cells, low = low_heights(xyz[:, 2], cloud.tiles_of(xyz))
             grid.ravel()[cells] = low
     ground = ground_of(grid).ravel()
-    for start in range(0, cloud.count, _CHUNK):
+    for start in range(0, cloud.count, _POINTS_AT_ONCE):
         monitor.check()
-        noise = start + np.flatnonzero(codes[start : start + _CHUNK])
+        noise = start + np.flatnonzero(codes[start : start + _POINTS_AT_ONCE])
         if noise.size:
             xyz = cloud.read(noise)
             codes[noise] = codes_by_height(xyz[:, 2] - ground[cloud.tiles_of(xyz)])

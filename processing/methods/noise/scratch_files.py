@@ -12,6 +12,7 @@ from numpy.typing import DTypeLike, NDArray
 from processing.core.errors import report_as_user_error
 
 _BLOCK = 1 << 24
+"""Bytes written at a time, so that a full disk is met before the work begins: 16 MiB."""
 
 
 # The type of the values is the caller's.

@@ -1,6 +1,6 @@
-"""A cloud of any size, read by places: an order of its points by square tiles, kept in a file.
+"""A cloud of any size, read by position: an order of its points by square tiles, kept in a file.
 
-A drive passes the same place more than once, so that neighbours in space may lie anywhere in the
+A drive passes the same position more than once, so that neighbours in space may lie anywhere in the
 recording. Three passes over the recording put the numbers of its points in the order of tiles;
 after that every part of space is one short read, and parts are as small as memory asks.
 """
@@ -20,9 +20,20 @@ from processing.methods.noise.scratch_files import scratch_array
 XyzReader = Callable[[NDArray[np.int64] | slice], NDArray[np.float64]]
 
 POINTS_PER_PART = 2_000_000
-_CHUNK = 1_000_000
-_MOST_TILES = 2_000  # along one side
-_SAMPLE = 100_000
+"""Points in memory at a time, with those around: some 200 MB."""
+
+_POINTS_AT_ONCE = 1_000_000
+"""Points read at a time while they are sorted into tiles: 24 MB."""
+
+_MOST_TILES = 2_000
+"""Along one side: 32 MB of beginnings."""
+
+_SAMPLE, _ENDS_PERCENT = 100_000, 0.1
+"""The extent is that of so many points without this share at either end, which may be spikes; what
+lies beyond is in the outermost tiles."""
+
+_COUNTING_SHARE = 0.5
+"""Of the progress of sorting, for counting; the rest for putting in order."""
 
 
 @dataclass(frozen=True)
@@ -84,8 +95,8 @@ class TiledCloud:
         sample = sample[np.isfinite(sample).all(axis=1)]
         if not sample.size:
             sample = np.zeros((1, 2))
-        self._low = np.percentile(sample, 0.1, axis=0) - tile_m
-        extent = np.percentile(sample, 99.9, axis=0) + tile_m - self._low
+        self._low = np.percentile(sample, _ENDS_PERCENT, axis=0) - tile_m
+        extent = np.percentile(sample, 100 - _ENDS_PERCENT, axis=0) + tile_m - self._low
         self._side = max(tile_m, float(extent.max()) / _MOST_TILES)
         across, along = np.ceil(extent / self._side).astype(np.int64) + 1
         self.shape = (int(across), int(along))
@@ -128,7 +139,7 @@ class TiledCloud:
             yield self._part((x0, y0, x1, y1), ring, reach_m)
 
     def tiles_of(self, xyz: NDArray[np.float64]) -> NDArray[np.int64]:
-        """(n,) int64: numbers of the tiles of places, row by row of the tiles' `shape`."""
+        """(n,) int64: numbers of the tiles of positions, row by row of the tiles' `shape`."""
         positions = np.nan_to_num((xyz[:, :2] - self._low) / self._side, nan=0.0)
         tiles = np.clip(positions, 0, np.array(self.shape) - 1).astype(np.int64)
         numbers: NDArray[np.int64] = tiles[:, 0] * self.shape[1] + tiles[:, 1]
@@ -163,12 +174,15 @@ class TiledCloud:
         return [(int(starts[x * width + y0]), int(starts[x * width + y1])) for x in rows]
 
     def _sort(self, monitor: Monitor) -> None:
-        chunks = [slice(a, min(a + _CHUNK, self.count)) for a in range(0, self.count, _CHUNK)]
+        chunks = [
+            slice(a, min(a + _POINTS_AT_ONCE, self.count))
+            for a in range(0, self.count, _POINTS_AT_ONCE)
+        ]
         for chunk in chunks:
             monitor.check()
             tiles = self.tiles_of(self.read(chunk))
             self._starts[1:] += np.bincount(tiles, minlength=self._starts.size - 1)
-            monitor.report(0.5 * chunk.stop / self.count)
+            monitor.report(_COUNTING_SHARE * chunk.stop / self.count)
         np.cumsum(self._starts, out=self._starts)
         nexts = self._starts[:-1].copy()
         for chunk in chunks:
@@ -179,4 +193,5 @@ class TiledCloud:
             positions = np.repeat(nexts[found] - firsts, counts) + np.arange(order.size)
             self._order[positions] = order + chunk.start
             nexts[found] += counts
-            monitor.report(0.5 + 0.5 * chunk.stop / self.count)
+            done = chunk.stop / self.count
+            monitor.report(_COUNTING_SHARE + (1.0 - _COUNTING_SHARE) * done)

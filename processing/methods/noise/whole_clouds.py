@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,9 +20,29 @@ from processing.methods.noise.neighbours.statistical import DEVIATIONS, Distance
 from processing.methods.noise.scratch_files import scratch_array
 from processing.methods.noise.tiles_of_space import POINTS_PER_PART, SpacePart, TiledCloud
 
-_CHUNK = 4_000_000
-_WIDENING = 4.0
+_POINTS_AT_ONCE = 4_000_000
+"""Points whose means are added up at a time: 32 MB."""
+
 _MARGIN = 2.0
+"""Of the radius of a circle that holds the neighbours at the usual spacing: what a part sees around
+it at first. It changes the time only; points that need more are measured again."""
+
+_WIDENING = 4.0
+"""By which a part sees more each time that points are left over."""
+
+
+class _Search(NamedTuple):
+    """How many neighbours are asked for, and how far around a part they are looked for, m."""
+
+    neighbours: int
+    reach_m: float
+
+
+class _Progress(NamedTuple):
+    """The mean distance of every point, m, and which points are still to be measured."""
+
+    means: NDArray[np.float64]
+    is_open: NDArray[np.bool_]
 
 
 def radius_outliers_by_parts(
@@ -76,33 +97,35 @@ def statistical_outliers_by_parts(
         return
     means = scratch_array(scratch / "means", np.float64, cloud.count)
     is_open = scratch_array(scratch / "open", np.bool_, cloud.count)
-    for start in range(0, cloud.count, _CHUNK):
-        means[start : start + _CHUNK] = np.nan
-        is_open[start : start + _CHUNK] = True
+    for start in range(0, cloud.count, _POINTS_AT_ONCE):
+        means[start : start + _POINTS_AT_ONCE] = np.nan
+        is_open[start : start + _POINTS_AT_ONCE] = True
     reach = _MARGIN * math.sqrt(neighbours / math.pi) * cloud.spacing_m
     left = cloud.count
+    state = _Progress(means, is_open)
     while left:
+        search = _Search(neighbours, reach)
         for part in cloud.parts(reach, points_per_part, is_open):
             monitor.report(1.0 - left / cloud.count)
-            left -= _measure(cloud, part, (neighbours, reach), (means, is_open), monitor)
+            left -= _measure(cloud, part, search, state, monitor)
         reach *= _WIDENING
     total = DistanceSums()
-    for start in range(0, cloud.count, _CHUNK):
-        total += DistanceSums.of(np.asarray(means[start : start + _CHUNK]))
+    for start in range(0, cloud.count, _POINTS_AT_ONCE):
+        total += DistanceSums.of(np.asarray(means[start : start + _POINTS_AT_ONCE]))
     limit = total.limit(deviations)
-    for start in range(0, cloud.count, _CHUNK):
-        found[start : start + _CHUNK] = ~(means[start : start + _CHUNK] <= limit)
+    for start in range(0, cloud.count, _POINTS_AT_ONCE):
+        found[start : start + _POINTS_AT_ONCE] = ~(means[start : start + _POINTS_AT_ONCE] <= limit)
 
 
 def _measure(
     cloud: TiledCloud,
     part: SpacePart,
-    options: tuple[int, float],
-    state: tuple[NDArray[np.float64], NDArray[np.bool_]],
+    search: _Search,
+    state: _Progress,
     monitor: Monitor,
 ) -> int:
     """Settle the open points of a part whose neighbours are all known to be near enough."""
-    (neighbours, reach), (means, is_open) = options, state
+    means, is_open = state
     own = cloud.read(part.own)
     wanted = np.flatnonzero(is_open[part.own])
     is_finite = np.isfinite(own[wanted]).all(axis=1)
@@ -112,10 +135,10 @@ def _measure(
     if not wanted.size:
         return settled_before
     xyz = np.concatenate([own, cloud.read(part.around)])
-    found, farthest = distances_of(xyz, wanted, neighbours, monitor=monitor)
+    found, farthest = distances_of(xyz, wanted, search.neighbours, monitor=monitor)
     xy = own[wanted, :2]
     to_edge = np.minimum(xy - part.low, part.high - xy).min(axis=1)
-    is_settled = farthest <= np.maximum(to_edge, 0.0) + reach
+    is_settled = farthest <= np.maximum(to_edge, 0.0) + search.reach_m
     if xyz.shape[0] == cloud.count:
         is_settled[:] = True
     settled = part.own[wanted[is_settled]]

@@ -1,6 +1,10 @@
 """Beams in rows, and where surfaces go on from pulse to pulse and from row to row.
 
 Every point has a row, a column and a range from where its beam began. Noise seldom goes on.
+
+Sizes and limits here shape what the trees are told (see :mod:`processing.methods.noise.combined`):
+they learned with these values, so that a change asks for new training. They were set by trial, on
+simulated scenes; no measurement varied one alone.
 """
 
 from __future__ import annotations
@@ -17,6 +21,34 @@ _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
 
 SURE, SQUARE = 1, 2
+"""What a surface that goes on is called: see :func:`surface_kernel`."""
+
+_COLUMNS_BESIDE = 8
+"""Columns within which the next row's point tells the distance between rows."""
+
+_NEAREST_M = 1e-6
+"""Keeps a range of nothing from dividing."""
+
+_SPACINGS_BETWEEN_ROWS, _STEPS_BETWEEN_ROWS, _SCATTER_M = 2.5, 4, 0.01
+"""How far the point of the row beside may lie on a surface that goes on: so many spacings of rows
+and steps from pulse to pulse, for surfaces that stand aslant, and a scanner's noise."""
+
+_COLUMNS_BESIDE_IN_ROW = 3
+"""Columns within which the row beside must have a point."""
+
+_COLUMNS_OF_FIVE = 6
+"""Columns that a point and two on either side may span: five, and lost pulses for two."""
+
+_OFF_LINE_M, _OFF_LINE_SHARE = 0.02, 0.15
+"""How far a pulse beside may lie off the line, along its beam: a scanner's noise, and a share of
+the range's change from pulse to pulse."""
+
+_STEEPEST_STEPS = 8
+"""Change of range from pulse to pulse, in steps across the beam, from which nothing is sure: 83°
+from square."""
+
+_SQUARE_STEPS = 0.1
+"""Change of range below which a surface stands square to the beam: 6°."""
 
 
 class PointBeams(NamedTuple):
@@ -51,8 +83,8 @@ def spacing_kernel(beams: PointBeams, first: int, stop: int, spacings: _Floats) 
                 column = beams.columns[point]
                 while position + 1 < end and beams.columns[position + 1] <= column:
                     position += 1
-                if position < end and abs(beams.columns[position] - column) <= 8:
-                    share = reach / max(beams.ranges[position], 1e-6)
+                if position < end and abs(beams.columns[position] - column) <= _COLUMNS_BESIDE:
+                    share = reach / max(beams.ranges[position], _NEAREST_M)
                     shift = (column - beams.columns[position]) * reach * beams.turn
                     square = 0.0
                     for axis in range(3):
@@ -88,7 +120,11 @@ def surface_kernel(
                 continue
             i = _advance(beams, i, above, beams.columns[point])
             j = _advance(beams, j, below, beams.columns[point])
-            limit = 2.5 * spacings[point] + 4 * beams.ranges[point] * beams.turn + 0.01
+            limit = (
+                _SPACINGS_BETWEEN_ROWS * spacings[point]
+                + _STEPS_BETWEEN_ROWS * beams.ranges[point] * beams.turn
+                + _SCATTER_M
+            )
             if _is_near(beams, point, i, limit) and _is_near(beams, point, j, limit):
                 found[point] = kind
 
@@ -98,26 +134,28 @@ def _goes_on_along(beams: PointBeams, point: int) -> int:
     """Whether the two pulses on either side met the same line: 0, `SURE` or `SQUARE`."""
     step = beams.ranges[point] * beams.turn
     left, right = point - 1, point + 1
-    if beams.columns[point + 2] - beams.columns[point - 2] > 6:
+    if beams.columns[point + 2] - beams.columns[point - 2] > _COLUMNS_OF_FIVE:
         return 0
     here = 1 / beams.ranges[point]
     slope = (1 / beams.ranges[right] - 1 / beams.ranges[left]) / max(
         1, beams.columns[right] - beams.columns[left]
     )
-    tolerance = (0.02 + 0.15 * abs(slope) / here * beams.ranges[point]) * here * here
+    tolerance = (
+        (_OFF_LINE_M + _OFF_LINE_SHARE * abs(slope) / here * beams.ranges[point]) * here * here
+    )
     for other in range(point - 2, point + 3):
         steps = beams.columns[other] - beams.columns[point]
         if abs(1 / beams.ranges[other] - here - slope * steps) > tolerance * max(1, abs(steps)):
             return 0
     far = beams.ranges[point] * abs(slope) / here
-    if far >= 8 * step:
+    if far >= _STEEPEST_STEPS * step:
         return 0
-    return SURE if far > 0.1 * step else SQUARE
+    return SURE if far > _SQUARE_STEPS * step else SQUARE
 
 
 @kernel
 def _advance(beams: PointBeams, position: int, row: int, column: int) -> int:
-    """The point of a row whose column is nearest, from a place at or before it."""
+    """The point of a row whose column is nearest, from one at or before it on."""
     end = beams.row_starts[row + 1]
     while position + 1 < end and abs(beams.columns[position + 1] - column) <= abs(
         beams.columns[position] - column
@@ -128,7 +166,9 @@ def _advance(beams: PointBeams, position: int, row: int, column: int) -> int:
 
 @kernel
 def _is_near(beams: PointBeams, point: int, other: int, limit: float) -> bool:
-    if other >= beams.xyz.shape[0] or abs(beams.columns[other] - beams.columns[point]) > 3:
+    if other >= beams.xyz.shape[0] or abs(beams.columns[other] - beams.columns[point]) > (
+        _COLUMNS_BESIDE_IN_ROW
+    ):
         return False
     square = 0.0
     for axis in range(3):

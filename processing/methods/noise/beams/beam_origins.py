@@ -1,8 +1,10 @@
 """Where the beams of a recording began, found from the points alone.
 
-Within a turn the beam sweeps at a steady rate about one centre, and noise, too, lies along its
-beam; so a few turns say where the centre is. With a trajectory it stays at one place of the
-vehicle, and one place serves the whole drive; without, every stretch of turns has its own.
+Within a revolution the beam sweeps at a steady rate about one centre, and noise, too, lies along
+its beam; so a few revolutions say where the centre is. With a trajectory it stays at one position
+in the vehicle, which serves the whole drive; without, every stretch of revolutions has its own.
+
+Where a constant says “by trial”, no measurement varied it alone.
 """
 
 from __future__ import annotations
@@ -18,14 +20,45 @@ from processing.recording.vehicle_path.trajectory import Trajectory
 
 _Floats = NDArray[np.float64]
 
-_CHUNKS = 24
+_MOMENTS = 24
+"""Moments, spread over a drive, whose centres are found; by trial, so that some that fail are no
+harm to the median."""
+
+_REVOLUTIONS = 2.0
+"""Revolutions around a moment: the vehicle moves by some decimetres meanwhile, far less than what
+they show. By trial."""
+
 _MOST_POINTS = 4_000
-_FEWEST_POINTS = 60
-_FEWEST_RADIANS = 0.7
-_FARTHEST_M = 8.0  # of a scanner from the vehicle's reference point
+"""Of a moment, evenly chosen: more don't make the centre surer, by trial."""
+
+_FEWEST_POINTS, _FEWEST_RADIANS = 60, 0.7
+"""Of a moment, and the angle (40°) that they span: fewer or narrower ones don't tell a centre. By
+trial."""
+
+_NEAR_M = 100.0
+"""From the middle of a moment's points; farther ones are spikes or tell little. By trial."""
+
+_PLANE_ROUNDS = 3
+"""Rounds in which the plane of the beams is fitted and what lies off it is left out; by trial."""
+
+_OFF_PLANE_MEDIANS, _OFF_PLANE_M = 4, 0.01
+"""Distance from the plane, in medians of all and at least, up to which points are used: about 2.7
+standard deviations of a normal distribution, and a scanner's noise."""
+
+_FARTHEST_M = 8.0
+"""Of a scanner from the vehicle's reference point: the length of a large van."""
+
 _MOST_MISFIT_M = 0.5
-_TURNS = 2.0
+"""How far beams may pass beside their centre, and centres lie from their middle, in the median; by
+trial: a scanner is smaller, and beams are asked for directions at metres and more."""
+
 _KNOT_POINTS = 64
+"""From point to point at which the scanner's position is worked out, linear between: a fraction of
+a revolution, in which it hardly leaves a line."""
+
+_LEAST_SCALE = 1e-9
+_LEAST_LENGTH = 1e-12
+"""Keep points that all lie at one position from dividing by nothing."""
 
 
 @dataclass(frozen=True)
@@ -54,7 +87,7 @@ class BeamOrigins:
             times = np.clip(times, trajectory.time[0], trajectory.time[-1])
             if times.size <= _KNOT_POINTS or (np.diff(times) < 0).any():
                 return _carried(trajectory, times, self.in_vehicle)
-            knots = np.append(times[::_KNOT_POINTS], times[-1])  # a fraction of a turn apart
+            knots = np.append(times[::_KNOT_POINTS], times[-1])
             carried = _carried(trajectory, knots, self.in_vehicle)
             return np.column_stack([np.interp(times, knots, axis) for axis in carried.T])
         return np.column_stack(
@@ -63,7 +96,7 @@ class BeamOrigins:
 
 
 def _carried(trajectory: Trajectory, times: _Floats, in_vehicle: _Floats) -> _Floats:
-    """(n, 3): where a place of the vehicle was at some times."""
+    """(n, 3): where a point of the vehicle was at some times."""
     turned = trajectory.rotations_at(times) @ in_vehicle
     return np.asarray(trajectory.positions_at(times) + turned)
 
@@ -97,14 +130,14 @@ def beam_origins(drive: Drive) -> BeamOrigins | None:
 
 
 def _middles(count: int) -> NDArray[np.int64]:
-    shares = (np.arange(_CHUNKS) + 0.5) / _CHUNKS
+    shares = (np.arange(_MOMENTS) + 0.5) / _MOMENTS
     return np.unique((shares * count).astype(np.int64))
 
 
 def _fit(drive: Drive, per_revolution: float, middle: int) -> tuple[int, _Floats | None]:
-    """The centre of the turns around a point, in the vehicle's frame where there is one."""
+    """The centre of the revolutions around a point, in the vehicle's frame where there is one."""
     pulses = drive.columns["pulse"]
-    half = _TURNS / 2 * per_revolution
+    half = _REVOLUTIONS / 2 * per_revolution
     start = int(np.searchsorted(pulses, pulses[middle] - half))
     stop = int(np.searchsorted(pulses, pulses[middle] + half))
     if stop - start < _FEWEST_POINTS:
@@ -123,13 +156,14 @@ def _fit(drive: Drive, per_revolution: float, middle: int) -> tuple[int, _Floats
 def _centre(xyz: _Floats, angles: _Floats) -> _Floats | None:
     """(3,): the centre from which beams at these angles of one plane pass through the points."""
     middle = np.median(xyz, axis=0)
-    near = np.linalg.norm(xyz - middle, axis=1) <= 100.0
+    near = np.linalg.norm(xyz - middle, axis=1) <= _NEAR_M
     used = near.copy()
-    for _ in range(3):
+    for _ in range(_PLANE_ROUNDS):
         mean = xyz[used].mean(axis=0)
         _, _, axes = np.linalg.svd(xyz[used] - mean, full_matrices=False)
         away = np.abs((xyz - mean) @ axes[2])
-        used = near & (away <= max(4 * float(np.median(away[near])), 0.01))
+        usual = float(np.median(away[near]))
+        used = near & (away <= max(_OFF_PLANE_MEDIANS * usual, _OFF_PLANE_M))
         if used.sum() < _FEWEST_POINTS:
             return None
     if np.ptp(angles[used]) < _FEWEST_RADIANS:
@@ -144,16 +178,16 @@ def _centre(xyz: _Floats, angles: _Floats) -> _Floats | None:
 
 
 def _turned_centre(flat: _Floats, angles: _Floats) -> tuple[_Floats, float]:
-    """Centre and misfit (m) of beams at known angle differences, as in ``image/beam.py``."""
+    """Centre and misfit (m) of beams at known angle differences, all in one plane."""
     x, y = flat.T
     sines, cosines = np.sin(angles), np.cos(angles)
-    scale = max(float(np.abs(flat).max()), 1e-9)
+    scale = max(float(np.abs(flat).max()), _LEAST_SCALE)
     rows = np.column_stack(
         [(x * sines - y * cosines) / scale, (x * cosines + y * sines) / scale, -sines, -cosines]
     )
     _, values, basis = np.linalg.svd(rows, full_matrices=False)
     cos_p, sin_p, a, b = basis[-1]
-    length = max(float(np.hypot(cos_p, sin_p)), 1e-12)
+    length = max(float(np.hypot(cos_p, sin_p)), _LEAST_LENGTH)
     cos_p, sin_p, a, b = cos_p / length, sin_p / length, a * scale / length, b * scale / length
     centre = np.array([a * cos_p + b * sin_p, a * sin_p - b * cos_p])
     return centre, float(values[-1]) / length * scale / np.sqrt(angles.size)

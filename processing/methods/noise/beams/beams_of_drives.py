@@ -11,7 +11,13 @@ from processing.methods.noise.beams.beam_origins import BeamOrigins
 from processing.recording.drive import Drive
 
 _NEAREST_M = 1e-3
+"""Least range, so that a point at its own scanner divides nothing by zero."""
+
 _SAMPLE = 20_000
+"""Points or pairs whose median is taken: sure to a hundredth of their spread."""
+
+_LEAST_STEP_RAD = 1e-6
+"""From column to column, at least: far finer than scanners step."""
 
 
 def along_rows(origins: BeamOrigins, row_starts: NDArray[np.int64]) -> NDArray[np.float64]:
@@ -27,7 +33,7 @@ def beams_of(
 ) -> tuple[PointBeams, slice]:
     """The beams of a chunk of rows, and which points of the drive they are.
 
-    Coordinates are about the middle of the stretch.
+    Coordinates are relative to the middle of the chunk.
     """
     grid, points = image.grid(rows)
     xyz, positions = drive.xyz(points), origins.of(np.arange(points.start, points.stop))
@@ -62,4 +68,4 @@ def _turn(directions: NDArray[np.float64], columns: NDArray[np.int32], width: in
     if not firsts.size:
         return 2 * np.pi / max(width, 1)
     gaps = np.linalg.norm(directions[firsts + 1] - directions[firsts], axis=1)
-    return float(max(np.median(gaps), 1e-6))
+    return float(max(np.median(gaps), _LEAST_STEP_RAD))

@@ -8,6 +8,7 @@ nearer. Ground beyond a crest has open air above it, ground beneath a boom has g
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,21 +20,74 @@ from processing.recording.drive import Drive
 
 Floats = NDArray[np.float64]
 
-_AT_ONCE = 1 << 22
+_POINTS_AT_ONCE = 1 << 22
+"""Points judged together: some 200 MB, and of a recording in its order enough to lie densely."""
+
 _FINEST_RAD, _COARSEST_RAD = np.radians(0.1), np.radians(1.5)
+"""Angles that a bin may span: from what tripod scanners step to what still is one surface beside
+another at some ten metres (26 cm). By trial."""
+
+_WIDENING = np.sqrt(2.0)
+"""From one size of bin to the next: twice as many points in each."""
+
 _POINTS_IN_BIN = 3
-_ROWS_BESIDE = 3
+"""Points in the bin of a point, in the median, for which bins are made wide enough; by trial, so
+that the nine bins on one side hold more than ``_FEWEST``."""
+
+_ROWS_BESIDE, _COLUMNS_BESIDE = 3, 1
+"""Bins above or below a point's own, and to either side of those, that are asked; by trial."""
+
 _MARGIN_M = 0.05
+"""By how much a beam has to end nearer: several times a scanner's noise and the ground's roughness.
+By trial."""
+
 _FEWEST = 8
+"""Beams on either side, at least, so that shares and deviations say something; by trial."""
+
 _FARTHER_SHARE = 0.15
+"""Of these beams that may end as far or farther, as through holes in a surface; by trial."""
+
 _DEVIATIONS = 3.0
+"""By how many times as much as they differ among themselves the beams must end nearer: what is seen
+through grass or a hedge lies behind beams that differ widely. By trial."""
+
 _ROUNDS = 2
+"""The second no longer counts what the first found, which stood beside echoes of its kind.
+
+On five dense simulated sites echoes had sunk the ground by 46 m³; left out with these values it is
+3 m³, and 0.01 % of the true ground goes with them."""
+
+
+class _Limits(NamedTuple):
+    """The constants above, as the kernel takes them."""
+
+    margin_m: float
+    farther_share: float
+    deviations: float
+    fewest: int
+
+
+class _BinGrid(NamedTuple):
+    """Bins row by row: how many in a row, where each begins, and the bin of every beam."""
+
+    columns: int
+    starts: NDArray[np.int64]
+    bins: NDArray[np.int64]
+
+
+class _Beam(NamedTuple):
+    """The bin of a beam, the side to look to (1 up, −1 down), and its range, m."""
+
+    row: int
+    column: int
+    side: int
+    away: float
 
 
 def echoes_of(drive: Drive, monitor: Monitor) -> NDArray[np.bool_] | None:
     """Which points of a drive lie behind a surface: (n,) bool; None where nobody knows.
 
-    That is so where the scanner moved, and where nothing tells its place.
+    That is so where the scanner moved, and where nothing tells its position.
 
     Raises
     ------
@@ -43,9 +97,9 @@ def echoes_of(drive: Drive, monitor: Monitor) -> NDArray[np.bool_] | None:
     if stand is None:
         return None
     behind = np.zeros(drive.count, np.bool_)
-    for start in range(0, drive.count, _AT_ONCE):
+    for start in range(0, drive.count, _POINTS_AT_ONCE):
         monitor.check()
-        part = slice(start, min(start + _AT_ONCE, drive.count))
+        part = slice(start, min(start + _POINTS_AT_ONCE, drive.count))
         behind[part] = behind_surfaces(drive.xyz(part), stand)
     return behind
 
@@ -56,7 +110,7 @@ def behind_surfaces(xyz: Floats, stand: Floats) -> NDArray[np.bool_]:
     Parameters
     ----------
     xyz : (n, 3) float64
-        Measured from one place, in the order of the recording, m; rows with NaN are passed over.
+        Measured from one position, in the order of the recording, m; rows with NaN are passed over.
     stand : (3,) float64
         Where the scanner stood, m, in the same frame.
 
@@ -72,10 +126,10 @@ def behind_surfaces(xyz: Floats, stand: Floats) -> NDArray[np.bool_]:
     beams = _beams(xyz, stand, _FINEST_RAD)
     size = _FINEST_RAD
     while size < _COARSEST_RAD and _middle_count(beams) < _POINTS_IN_BIN:
-        size *= np.sqrt(2.0)
+        size *= _WIDENING
         beams = _beams(xyz, stand, size)
-    limits = (_MARGIN_M, _FARTHER_SHARE, _DEVIATIONS, _FEWEST)
-    grid = (beams.columns, beams.starts, beams.bins)
+    limits = _Limits(_MARGIN_M, _FARTHER_SHARE, _DEVIATIONS, _FEWEST)
+    grid = _BinGrid(beams.columns, beams.starts, beams.bins)
     found = np.zeros(beams.bins.size, np.bool_)
     for _ in range(_ROUNDS):
         _behind_kernel(grid, beams.ranges, limits, found.copy(), found)
@@ -151,56 +205,55 @@ def _order_kernel(
 
 @kernel
 def _behind_kernel(
-    grid: tuple[int, NDArray[np.int64], NDArray[np.int64]],
+    grid: _BinGrid,
     ranges: NDArray[np.float32],
-    limits: tuple[float, float, float, int],
+    limits: _Limits,
     gone: NDArray[np.bool_],
     found: NDArray[np.bool_],
 ) -> None:
-    columns, _, bins = grid
+    columns, bins = grid.columns, grid.bins
     for point in range(ranges.size):
         if not found[point]:
             row, column = bins[point] // columns, bins[point] % columns
-            above = _ends_nearer(grid, ranges, limits, gone, (row, column, 1, ranges[point]))
-            found[point] = above and _ends_nearer(
-                grid, ranges, limits, gone, (row, column, -1, ranges[point])
+            above = _Beam(row, column, 1, ranges[point])
+            below = _Beam(row, column, -1, ranges[point])
+            found[point] = _ends_nearer(grid, ranges, limits, gone, above) and _ends_nearer(
+                grid, ranges, limits, gone, below
             )
 
 
 @kernel
 def _ends_nearer(
-    grid: tuple[int, NDArray[np.int64], NDArray[np.int64]],
+    grid: _BinGrid,
     ranges: NDArray[np.float32],
-    limits: tuple[float, float, float, int],
+    limits: _Limits,
     gone: NDArray[np.bool_],
-    beam: tuple[int, int, int, float],
+    beam: _Beam,
 ) -> bool:
     """Whether the beams to one side of another ended nearer, and together."""
-    columns, starts, _ = grid
-    margin_m, share, deviations, fewest = limits
-    row, column, side, away = beam
+    columns, starts = grid.columns, grid.starts
     count, farther, total, squares = 0, 0, 0.0, 0.0
-    for step in range(1, 4):
-        first = (row + side * step) * columns
+    for step in range(1, _ROWS_BESIDE + 1):
+        first = (beam.row + beam.side * step) * columns
         if first < 0 or first + columns >= starts.size:
             continue
-        for beside in range(-1, 2):
-            own = first + (column + beside) % columns
+        for beside in range(-_COLUMNS_BESIDE, _COLUMNS_BESIDE + 1):
+            own = first + (beam.column + beside) % columns
             for other in range(starts[own], starts[own + 1]):
                 if gone[other]:
                     continue
                 count += 1
-                nearer = away - ranges[other]
-                if nearer <= margin_m:
+                nearer = beam.away - ranges[other]
+                if nearer <= limits.margin_m:
                     farther += 1
                 else:
                     total += nearer
                     squares += nearer * nearer
-    if count < fewest or farther > share * count:
+    if count < limits.fewest or farther > limits.farther_share * count:
         return False
     mean = total / (count - farther)
     spread = max(squares / (count - farther) - mean * mean, 0.0)
-    return mean * mean >= deviations * deviations * spread
+    return mean * mean >= limits.deviations * limits.deviations * spread
 
 
 def warm_up() -> None:

@@ -19,24 +19,67 @@ from processing.recording.drive import Drive
 Floats = NDArray[np.float64]
 
 _MOMENTS = 24
-_OF_MOMENT = 1000
-_APART = 8
-_LEAST_M = 0.5
+"""Moments, spread over a recording: of a full turn of the head one every 15°, so that their lines
+cross at good angles."""
+
+_POINTS_OF_MOMENT = 1000
+"""Consecutive points of a moment: a few sweeps of the mirror, in which the head hardly turns. By
+trial."""
+
+_PULSES_APART = 8
+"""Pulses between two points that are compared; from one to the next the noise is as large as the
+step. By trial."""
+
+_LEAST_LENGTH_M = 0.5
+"""Of the line through two such points, in plan: shorter ones have no sure direction. By trial."""
+
+_PULSES_WITHIN = 2 * _PULSES_APART
+"""Pulses that may have passed between them: with more, the mirror jumped over a part of the sky."""
+
 _FEWEST = 200
+"""Points or lines that tell anything; by trial."""
+
 _MOST_SPREAD_M = 0.3
+"""Of lines about the position where they meet, and of centres about their middle, in the median: a
+scanner that moved spreads them farther. By trial."""
+
 _ROUNDS = 30
+"""Of reweighted least squares; by trial, after fewer nothing moves any more."""
+
+_WORST_CONDITION = 1e6
+"""Of the normal equations: above, all lines run the same way and do not cross."""
+
+_LEAST_SPREAD_M = 1e-3
+"""Keeps weights finite where lines meet to better than a scanner measures."""
+
+_SIGMA_PER_MEDIAN = 1.4826
+"""Standard deviation of a normal distribution over its median absolute deviation."""
+
+_GROUND_PERCENT, _GROUND_NEAR_M = 10, 6.0
+"""The ground below a tripod: this percentile of heights within this distance. By trial; nearest is
+a blind cone, and the lowest points may be echoes."""
+
 _SEEN_HEIGHTS_M = (0.5, 3.5)
+"""Above that ground between which the scanner is looked for: tripods from the lowest to those that
+are set up with a ladder."""
+
 _STEPS_M = (0.05, 0.01)
-_USUAL_M = 1.7
-_CLEARLY = 0.5
+"""Of the first and the second search: the second looks about what the first found, to 1 cm."""
+
+_USUAL_HEIGHT_M = 1.7
+"""Of a tripod, at a person's eyes: taken where the points tell none."""
+
+_CLEARLY_SHARE = 0.5
+"""A height is told where it leaves less than this share of the usual unevenness; by trial."""
+
 _SAME_PULSE = 0.5
-_NEAR_M = 6.0
+"""Pulses by which a count may be off its whole number: the nearest whole number is meant."""
 
 
 def scanner_position_of(drive: Drive) -> Floats | None:
     """Where a drive's scanner stood: (3,) float64, m, project CRS; None where nothing tells.
 
-    Deliveries without times, and scanners that moved, don't tell.
+    Deliveries without times, and scanners that moved, don't tell it.
     """
     if drive.info.scanner_position is not None:
         return np.array(drive.info.scanner_position)
@@ -55,7 +98,7 @@ def scanner_position_of(drive: Drive) -> Floats | None:
 
 
 def _middle_of_revolutions(drive: Drive) -> Floats | None:
-    """The centre of all turns; None where it moved."""
+    """The centre of all revolutions; None where it moved."""
     origins = beam_origins(drive)
     if origins is None:
         return None
@@ -70,10 +113,12 @@ def _moments(drive: Drive) -> list[Floats]:
     if times.size < _FEWEST or not np.isfinite(times).all() or times.min() == times.max():
         return []
     order = np.argsort(times, kind="stable")
-    starts = np.unique(np.linspace(0, max(times.size - _OF_MOMENT, 0), _MOMENTS).astype(np.int64))
+    starts = np.unique(
+        np.linspace(0, max(times.size - _POINTS_OF_MOMENT, 0), _MOMENTS).astype(np.int64)
+    )
     found = []
     for start in starts:
-        points = order[start : start + _OF_MOMENT]
+        points = order[start : start + _POINTS_OF_MOMENT]
         steps = np.diff(times[points])
         # What lies between two pulses without a return is no step of the mirror.
         pulse_s = float(np.median(steps[steps > 0])) if (steps > 0).any() else 0.0
@@ -86,10 +131,10 @@ def _crossing(moments: list[Floats]) -> Floats | None:
     """Where the lines of the moments meet in plan: (2,); None where they don't."""
     starts, normals = [], []
     for moment in moments:
-        first, second = moment[:-_APART], moment[_APART:]
+        first, second = moment[:-_PULSES_APART], moment[_PULSES_APART:]
         directions = second[:, :2] - first[:, :2]
         long = np.hypot(directions[:, 0], directions[:, 1])
-        is_line = (long > _LEAST_M) & (second[:, 3] - first[:, 3] <= 2 * _APART)
+        is_line = (long > _LEAST_LENGTH_M) & (second[:, 3] - first[:, 3] <= _PULSES_WITHIN)
         directions = directions[is_line] / long[is_line, None]
         starts.append(first[is_line, :2])
         normals.append(np.column_stack([-directions[:, 1], directions[:, 0]]))
@@ -101,11 +146,12 @@ def _crossing(moments: list[Floats]) -> Floats | None:
     weights, position, spread = np.ones(len(across)), np.zeros(2), np.inf
     for _ in range(_ROUNDS):
         form = across.T @ (across * weights[:, None])
-        if np.linalg.cond(form) > 1e6:
+        if np.linalg.cond(form) > _WORST_CONDITION:
             return None
         position = np.linalg.solve(form, across.T @ (weights * offsets))
         misses = across @ position - offsets
-        spread = max(1.4826 * float(np.median(np.abs(misses))), 1e-3)
+        middle_miss = float(np.median(np.abs(misses)))
+        spread = max(_SIGMA_PER_MEDIAN * middle_miss, _LEAST_SPREAD_M)
         weights = 1.0 / np.square(1.0 + np.square(misses / spread))
     return position + middle if spread <= _MOST_SPREAD_M else None
 
@@ -114,13 +160,13 @@ def _height_over(moments: list[Floats], position: Floats) -> float:
     """Where the points of a moment are evenly spaced by their angles, m; else the usual height."""
     everything = np.concatenate(moments)
     away = np.hypot(*(everything[:, :2] - position).T)
-    near = everything[away < _NEAR_M, 2]
-    below = (
-        float(np.percentile(near, 10)) if near.size >= _FEWEST else float(everything[:, 2].min())
-    )
+    near = everything[away < _GROUND_NEAR_M, 2]
+    below = float(everything[:, 2].min())
+    if near.size >= _FEWEST:
+        below = float(np.percentile(near, _GROUND_PERCENT))
     low, high = below + _SEEN_HEIGHTS_M[0], below + _SEEN_HEIGHTS_M[1]
     slants = [_slants_of(moment, position) for moment in moments]
-    best, least, usual = below + _USUAL_M, np.inf, np.inf
+    best, least, usual = below + _USUAL_HEIGHT_M, np.inf, np.inf
     for step in _STEPS_M:
         heights = np.arange(low, high, step)
         uneven = [_unevenness(slants, float(height)) for height in heights]
@@ -128,7 +174,7 @@ def _height_over(moments: list[Floats], position: Floats) -> float:
         # The first search spans all heights: what most of them would give.
         usual = usual if np.isfinite(usual) else float(np.median(uneven))
         low, high = best - step, best + step
-    return best if least < _CLEARLY * usual else below + _USUAL_M
+    return best if least < _CLEARLY_SHARE * usual else below + _USUAL_HEIGHT_M
 
 
 @dataclass(frozen=True)
@@ -142,8 +188,9 @@ class _Slants:
 
 def _slants_of(moment: Floats, position: Floats) -> _Slants:
     away = np.hypot(*(moment[:, :2] - position).T)
-    # Over some pulses: from one to the next the noise is as large as the step.
-    is_whole = np.abs(moment[_APART:, 3] - moment[:-_APART, 3] - _APART) < _SAME_PULSE
+    is_whole = (
+        np.abs(moment[_PULSES_APART:, 3] - moment[:-_PULSES_APART, 3] - _PULSES_APART) < _SAME_PULSE
+    )
     return _Slants(away, moment[:, 2].copy(), is_whole)
 
 
@@ -151,7 +198,7 @@ def _unevenness(slants: list[_Slants], height: float) -> float:
     spreads = []
     for moment in slants:
         angles = np.arctan2(moment.z - height, moment.away_m)
-        steps = (angles[_APART:] - angles[:-_APART])[moment.is_whole]
+        steps = (angles[_PULSES_APART:] - angles[:-_PULSES_APART])[moment.is_whole]
         if steps.size:
             spreads.append(_middle(np.abs(steps - _middle(steps))))
     return _middle(np.array(spreads)) if spreads else np.inf

@@ -1,8 +1,14 @@
-"""What the beams beside a beam met: loops over windows of pixels around a point."""
+"""What the beams beside a beam met: loops over windows of pixels around a point.
+
+Sizes and limits here shape what the trees are told (see :mod:`processing.methods.noise.combined`):
+they learned with these values, so that a change asks for new training. They were set by trial, on
+simulated scenes; no measurement varied one alone.
+"""
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,14 +20,51 @@ _Integers = NDArray[np.int64]
 _Rows = NDArray[np.float32]
 
 _PER_WINDOW = 7
+"""Features of a window; its counts are one more, in this order."""
+
+_USED, _CLOSE, _FAIR, _FAR, _FRONT, _BEHIND, _SURE_FRONT, _ROWS_USED = range(_PER_WINDOW + 1)
+"""A point meets itself in the counts from ``_USED`` to ``_FAR``."""
+
 NEAR_FEATURES = 2 * _PER_WINDOW
 WIDE_FEATURES = _PER_WINDOW + 1
 SUSPICION_FEATURES = 4
 _ROWS = np.array([-4, -2, -1, 0, 1, 2, 4])
-_NEAR, _MIDDLE = 3, 12  # pulses to either side
+"""Rows of the near window (up to two to either side) and of the middle one (every second)."""
+
+_NEAR_ROWS, _MIDDLE_ROWS, _MIDDLE_STEP = 2, 4, 2
+
+_NEAR, _MIDDLE = 3, 12
+"""Pulses to either side in these windows."""
+
 _WIDE, _WIDE_ROWS, _ROW_STEP, _STRIDE = 64, 10, 5, 2
+"""The wide window: pulses and rows to either side, and every which row and pulse is asked."""
+
 _CLOSE_M, _FAIR_M, _FAR_M = 0.025, 0.1, 0.4
+"""Differences of range that count as on the same surface, on the same thing, and near it: each four
+times the one before, the first some times a scanner's noise."""
+
+_LEAST_RANGE_M = 0.1
+"""Keeps a logarithm finite; no scanner measures nearer."""
+
 _A_FEW = 16
+"""Columns that are gone through one by one before the search by halves begins, which costs more."""
+
+
+class _Window(NamedTuple):
+    """Pulses and rows to either side of a point, and every which row is asked."""
+
+    aside: int
+    reach: int
+    step: int
+
+
+class _Suspicions(NamedTuple):
+    """Sums and counts over a window: of all pixels, and of those at about the same range."""
+
+    total: float
+    count: float
+    like: float
+    likes: float
 
 
 @kernel
@@ -49,7 +92,7 @@ def near_beams_kernel(
                 positions[number] = beams.row_starts[other]
             end = beams.row_starts[other + 1]
             at = positions[number]
-            if abs(_ROWS[number]) <= 2:
+            if abs(_ROWS[number]) <= _NEAR_ROWS:
                 at[0] = _first_from(beams.columns, at[0], end, column - _NEAR)
                 at[1] = _first_from(beams.columns, at[1], end, column + _NEAR + 1)
                 _count(beams, is_sure, beams.ranges[point], at[0], at[1], 1, counts[0])
@@ -57,7 +100,7 @@ def near_beams_kernel(
                 at[2] = _first_from(beams.columns, at[2], end, column - _MIDDLE)
                 at[3] = _first_from(beams.columns, at[3], end, column + _MIDDLE + 1)
                 _count(beams, is_sure, beams.ranges[point], at[2], at[3], 1, counts[1])
-        counts[:, 0:4] -= 1  # the point itself
+        counts[:, _USED : _FAR + 1] -= 1  # the point itself
         _shares(counts[0], _NEAR, 1, found[i, 0:_PER_WINDOW])
         _shares(counts[1], _MIDDLE, 1, found[i, _PER_WINDOW:NEAR_FEATURES])
 
@@ -83,9 +126,9 @@ def wide_beams_kernel(
             stop = _first_from(beams.columns, first, end, column + _WIDE + 1)
             _count(beams, is_sure, beams.ranges[point], first, stop, _STRIDE, counts)
             if other == row and (point - first) % _STRIDE == 0:
-                counts[0:4] -= 1
+                counts[_USED : _FAR + 1] -= 1
         _shares(counts, _WIDE, _STRIDE, found[i, 0:_PER_WINDOW])
-        found[i, _PER_WINDOW] = math.log2(max(beams.ranges[point], 0.1))
+        found[i, _PER_WINDOW] = math.log2(max(beams.ranges[point], _LEAST_RANGE_M))
 
 
 @kernel
@@ -103,11 +146,13 @@ def suspicion_kernel(
     """
     for i in range(points.size):
         for window in range(2):
-            aside, step = (_MIDDLE, 2) if window == 0 else (_WIDE, _ROW_STEP)
-            reach = 4 if window == 0 else _WIDE_ROWS
-            sums = _suspicion(beams, suspicions, points[i], rows[i], (aside, reach, step))
-            found[i, 2 * window] = sums[0] / max(sums[1], 1.0)
-            found[i, 2 * window + 1] = sums[2] / max(sums[3], 1.0)
+            if window == 0:
+                around = _Window(_MIDDLE, _MIDDLE_ROWS, _MIDDLE_STEP)
+            else:
+                around = _Window(_WIDE, _WIDE_ROWS, _ROW_STEP)
+            sums = _suspicion(beams, suspicions, points[i], rows[i], around)
+            found[i, 2 * window] = sums.total / max(sums.count, 1.0)
+            found[i, 2 * window + 1] = sums.like / max(sums.likes, 1.0)
 
 
 @kernel
@@ -116,12 +161,12 @@ def _suspicion(
     suspicions: NDArray[np.float32],
     point: int,
     row: int,
-    window: tuple[int, int, int],
-) -> tuple[float, float, float, float]:
-    aside, reach, step = window
+    window: _Window,
+) -> _Suspicions:
+    aside, reach = window.aside, window.reach
     stride = _STRIDE if aside == _WIDE else 1
     column, total, count, like, likes = beams.columns[point], 0.0, 0.0, 0.0, 0.0
-    for other in range(row - reach, row + reach + 1, step):
+    for other in range(row - reach, row + reach + 1, window.step):
         if not _is_beside(beams.segments, row, other):
             continue
         end = beams.row_starts[other + 1]
@@ -136,7 +181,7 @@ def _suspicion(
             if abs(beams.ranges[position] - beams.ranges[point]) < _FAIR_M:
                 like += suspicions[position]
                 likes += 1
-    return total, count, like, likes
+    return _Suspicions(total, count, like, likes)
 
 
 @kernel
@@ -159,19 +204,19 @@ def _count(
         front += gap < -_FAIR_M
         behind += gap > _FAIR_M
         sure += is_sure[position] and gap < -_FAIR_M
-    counts[0] += (stop - first + stride - 1) // stride
-    counts[1] += near
-    counts[2] += fair
-    counts[3] += wide
-    counts[4] += front
-    counts[5] += behind
-    counts[6] += sure
-    counts[7] += 1
+    counts[_USED] += (stop - first + stride - 1) // stride
+    counts[_CLOSE] += near
+    counts[_FAIR] += fair
+    counts[_FAR] += wide
+    counts[_FRONT] += front
+    counts[_BEHIND] += behind
+    counts[_SURE_FRONT] += sure
+    counts[_ROWS_USED] += 1
 
 
 @kernel
 def _shares(counts: _Integers, aside: int, stride: int, found: _Rows) -> None:
-    used, rows = counts[0], counts[_PER_WINDOW]
+    used, rows = counts[_USED], counts[_ROWS_USED]
     found[0] = stride * used / (rows * (2 * aside + 1) - 1) if rows else 0.0
     for number in range(1, _PER_WINDOW):
         found[number] = counts[number] / max(used, 1)
@@ -185,7 +230,7 @@ def _is_beside(segments: NDArray[np.int32], row: int, other: int) -> bool:
 
 @kernel
 def _first_from(columns: NDArray[np.int32], position: int, end: int, wanted: int) -> int:
-    """The first place of a row, from one on, whose column isn't below the wanted."""
+    """The first point of a row, from one on, whose column isn't below the wanted."""
     if position + _A_FEW < end and columns[position + _A_FEW] < wanted:
         return position + int(np.searchsorted(columns[position:end], wanted))
     while position < end and columns[position] < wanted:

@@ -14,10 +14,36 @@ _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
 
 _X = 0x1249249249249249
-SUMS = 11  # points, sure points, x y z, xx xy xz yy yz zz
-AROUND = 9  # see around_kernel
-COLUMN = 6  # see column_kernel
+"""Every third binary digit: those of x in a cube's number; y and z have the next two."""
+
+SUMS = 11
+COUNT, SURE, SUM_X, SUM_Y, SUM_Z, SUM_XX, SUM_XY, SUM_XZ, SUM_YY, SUM_YZ, SUM_ZZ = range(SUMS)
+"""What is kept of a cell: points, sure points, and the sums of coordinates and their products."""
+
+AROUND = 9
+_POINTS, _SURE, _LINE, _PLANE, _THICKNESS, _NORMAL_X, _NORMAL_Y, _NORMAL_Z, _DISTANCE = range(
+    AROUND
+)
+"""Columns of :func:`around_kernel`."""
+
+COLUMN = 6
+"""Columns of :func:`column_kernel`."""
+
+_SIDES, _SIDES_BEFORE = 27, 13
+"""Cubes in a block of three by three by three, and those before its middle."""
+
 _COLUMN_CELLS = 16
+"""Cells straight above and below that are looked at; by trial, the trees learned with it."""
+
+_NO_VARIANCE = 1e-12
+"""m², keeps shares of a variance of nothing finite."""
+
+_ALL_EQUAL = 1e-18
+"""m⁴, below which the three variances are the same to rounding."""
+
+_HASH_FACTOR, _HASH_SHIFT = 0x1E3779B97F4A7C15, 29
+"""Spread codes over the slots: 2^64 over the golden ratio without its first bit, as in Fibonacci
+hashing (Knuth, The Art of Computer Programming 3, section 6.4)."""
 
 
 class CellLevel(NamedTuple):
@@ -59,17 +85,17 @@ def point_sums_kernel(
     for point in range(xyz.shape[0]):
         row = sums[group[point]]
         x, y, z = xyz[point, 0], xyz[point, 1], xyz[point, 2]
-        row[0] += 1
-        row[1] += is_sure[point]
-        row[2] += x
-        row[3] += y
-        row[4] += z
-        row[5] += x * x
-        row[6] += x * y
-        row[7] += x * z
-        row[8] += y * y
-        row[9] += y * z
-        row[10] += z * z
+        row[COUNT] += 1
+        row[SURE] += is_sure[point]
+        row[SUM_X] += x
+        row[SUM_Y] += y
+        row[SUM_Z] += z
+        row[SUM_XX] += x * x
+        row[SUM_XY] += x * y
+        row[SUM_XZ] += x * z
+        row[SUM_YY] += y * y
+        row[SUM_YZ] += y * z
+        row[SUM_ZZ] += z * z
 
 
 @kernel
@@ -92,18 +118,18 @@ def around_kernel(level: CellLevel, codes: _Integers, around: _Floats) -> None:
     for i in range(codes.size):
         total[:] = 0
         _add_around(level, codes[i], total)
-        count = max(total[0], 1.0)
-        around[i, 0] = total[0]
-        around[i, 1] = total[1]
-        mx, my, mz = total[2] / count, total[3] / count, total[4] / count
+        count = max(total[COUNT], 1.0)
+        around[i, _POINTS] = total[COUNT]
+        around[i, _SURE] = total[SURE]
+        mx, my, mz = total[SUM_X] / count, total[SUM_Y] / count, total[SUM_Z] / count
         _covariance(total, covariance)
         large, middle, small = _eigenvalues(covariance)
-        around[i, 2] = (large - middle) / max(large, 1e-12)
-        around[i, 3] = (middle - small) / max(large, 1e-12)
-        around[i, 4] = math.sqrt(max(small, 0.0)) / level.side
+        around[i, _LINE] = (large - middle) / max(large, _NO_VARIANCE)
+        around[i, _PLANE] = (middle - small) / max(large, _NO_VARIANCE)
+        around[i, _THICKNESS] = math.sqrt(max(small, 0.0)) / level.side
         nx, ny, nz = _eigenvector(covariance, small)
-        around[i, 5], around[i, 6], around[i, 7] = nx, ny, nz
-        around[i, 8] = nx * mx + ny * my + nz * mz
+        around[i, _NORMAL_X], around[i, _NORMAL_Y], around[i, _NORMAL_Z] = nx, ny, nz
+        around[i, _DISTANCE] = nx * mx + ny * my + nz * mz
 
 
 @kernel
@@ -116,11 +142,11 @@ def mean_around_kernel(
     """
     for i in range(codes.size):
         total, count = 0.0, 0.0
-        for side in range(27):
+        for side in range(_SIDES):
             cell = _beside(level, codes[i], side)
             if cell >= 0:
                 total += totals[cell]
-                count += level.sums[cell, 0]
+                count += level.sums[cell, COUNT]
         found[i] = total / max(count, 1.0)
 
 
@@ -143,11 +169,11 @@ def point_features_kernel(
     """
     for i in range(positions.size):
         mine, xyz = around[cells[i]], local_xyz[positions[i]]
-        nx, ny, nz = mine[5], mine[6], mine[7]
-        found[i, 0] = math.log2(1 + mine[0])
-        found[i, 1] = math.log2(1 + mine[1])
-        found[i, 2], found[i, 3], found[i, 4] = mine[2], mine[3], mine[4]
-        found[i, 5] = abs(nx * xyz[0] + ny * xyz[1] + nz * xyz[2] - mine[8]) / level.side
+        nx, ny, nz = mine[_NORMAL_X], mine[_NORMAL_Y], mine[_NORMAL_Z]
+        found[i, 0] = math.log2(1 + mine[_POINTS])
+        found[i, 1] = math.log2(1 + mine[_SURE])
+        found[i, 2], found[i, 3], found[i, 4] = mine[_LINE], mine[_PLANE], mine[_THICKNESS]
+        found[i, 5] = abs(nx * xyz[0] + ny * xyz[1] + nz * xyz[2] - mine[_DISTANCE]) / level.side
         found[i, 6] = abs(nz)
         if directions.shape[0]:
             found[i, 7] = abs(nx * directions[i, 0] + ny * directions[i, 1] + nz * directions[i, 2])
@@ -165,21 +191,22 @@ def column_kernel(level: CellLevel, codes: _Integers, found: NDArray[np.float32]
     zs = _X << 2
     for i in range(codes.size):
         rest, height = codes[i] & ~zs, codes[i] & zs
-        for way in range(2):
+        for downwards in range(2):
             value, run, gap, points = height, 0, 0, 0.0
             for step in range(1, _COLUMN_CELLS + 1):
-                value = _stepped(value, 1 - 2 * way, zs, 4)
+                value = _stepped(value, 1 - 2 * downwards, zs, 4)
                 if value < 0:
                     break
                 cell = _cell_of(level, rest | value)
                 if cell >= 0 and run == step - 1:
                     run = step
                 elif cell >= 0:
-                    gap, points = step, level.sums[cell, 0]
+                    gap, points = step, level.sums[cell, COUNT]
                     break
-            found[i, 3 * way] = run
-            found[i, 3 * way + 1] = gap
-            found[i, 3 * way + 2] = math.log2(1 + points)
+            first = COLUMN // 2 * downwards
+            found[i, first] = run
+            found[i, first + 1] = gap
+            found[i, first + 2] = math.log2(1 + points)
 
 
 @kernel
@@ -188,7 +215,7 @@ def join_kernel(level: CellLevel, joins: NDArray[np.bool_], parents: _Integers) 
     for cell in range(level.codes.size):
         if not joins[cell]:
             continue
-        for side in range(13):
+        for side in range(_SIDES_BEFORE):
             other = _beside(level, level.codes[cell], side)
             if other >= 0 and joins[other]:
                 a, b = _root(parents, cell), _root(parents, other)
@@ -209,7 +236,7 @@ def largest_kernel(
         found[cell] = totals[cell] if joins[cell] else 0.0
         if joins[cell]:
             continue
-        for side in range(27):
+        for side in range(_SIDES):
             other = _beside(level, level.codes[cell], side)
             if other >= 0 and joins[other]:
                 found[cell] = max(found[cell], totals[other])
@@ -248,8 +275,8 @@ def _beside(level: CellLevel, code: int, side: int) -> int:
 
 @kernel
 def _slot(code: int, mask: int) -> int:
-    mixed = code * 0x1E3779B97F4A7C15
-    return (mixed ^ (mixed >> 29)) & mask
+    mixed = code * _HASH_FACTOR
+    return (mixed ^ (mixed >> _HASH_SHIFT)) & mask
 
 
 @kernel
@@ -295,22 +322,23 @@ def _stepped(value: int, step: int, mask: int, one: int) -> int:
 @kernel
 def _covariance(sums: _Floats, covariance: _Floats) -> None:
     """The spread of points from their sums; the upper triangle only."""
-    count = max(sums[0], 1.0)
-    mx, my, mz = sums[2] / count, sums[3] / count, sums[4] / count
-    covariance[0, 0] = sums[5] / count - mx * mx
-    covariance[0, 1] = sums[6] / count - mx * my
-    covariance[0, 2] = sums[7] / count - mx * mz
-    covariance[1, 1] = sums[8] / count - my * my
-    covariance[1, 2] = sums[9] / count - my * mz
-    covariance[2, 2] = sums[10] / count - mz * mz
+    count = max(sums[COUNT], 1.0)
+    mx, my, mz = sums[SUM_X] / count, sums[SUM_Y] / count, sums[SUM_Z] / count
+    covariance[0, 0] = sums[SUM_XX] / count - mx * mx
+    covariance[0, 1] = sums[SUM_XY] / count - mx * my
+    covariance[0, 2] = sums[SUM_XZ] / count - mx * mz
+    covariance[1, 1] = sums[SUM_YY] / count - my * my
+    covariance[1, 2] = sums[SUM_YZ] / count - my * mz
+    covariance[2, 2] = sums[SUM_ZZ] / count - mz * mz
 
 
 @kernel
 def _eigenvalues(a: _Floats) -> tuple[float, float, float]:
+    """Those of a symmetric matrix, falling, by Cardano's formula in its trigonometric form."""
     p1 = a[0, 1] ** 2 + a[0, 2] ** 2 + a[1, 2] ** 2
     q = (a[0, 0] + a[1, 1] + a[2, 2]) / 3
     p2 = (a[0, 0] - q) ** 2 + (a[1, 1] - q) ** 2 + (a[2, 2] - q) ** 2 + 2 * p1
-    if p2 <= 1e-18:
+    if p2 <= _ALL_EQUAL:
         return q, q, q
     p = math.sqrt(p2 / 6)
     b00, b11, b22 = (a[0, 0] - q) / p, (a[1, 1] - q) / p, (a[2, 2] - q) / p

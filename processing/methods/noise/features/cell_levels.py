@@ -20,6 +20,12 @@ from processing.methods.noise.features.cell_kernels import (
 )
 from processing.methods.noise.neighbours.morton import NestedCells
 
+_SLOTS_PER_CELL, _LEAST_BITS = 2, 4
+"""Room of the table in which codes are found: at most half full, so that a search is short."""
+
+_CHILD_BITS = 3
+"""Binary digits of a code for each level: one along every axis."""
+
 _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
 
@@ -49,7 +55,7 @@ def cell_levels(
     levels, numbers = [_level_of(kept, sums, cells.cell_m)], [positions]
     for _ in range(1, count):
         below = levels[-1]
-        parents, positions = below.codes >> 3, np.empty(below.codes.size, np.int32)
+        parents, positions = below.codes >> _CHILD_BITS, np.empty(below.codes.size, np.int32)
         used = number_kernel(parents, positions)
         sums, kept = np.zeros((used, SUMS)), np.empty(used, np.int64)
         cell_sums_kernel(below.sums, positions, sums)
@@ -60,7 +66,7 @@ def cell_levels(
 
 
 def _level_of(codes: _Integers, sums: _Floats, side: float) -> CellLevel:
-    size = 1 << max(4, int(2 * max(codes.size, 1)).bit_length())
+    size = 1 << max(_LEAST_BITS, int(_SLOTS_PER_CELL * max(codes.size, 1)).bit_length())
     slots = np.full(size, -1, np.int32)
     slots_kernel(codes, slots)
     return CellLevel(codes, sums, side, slots)

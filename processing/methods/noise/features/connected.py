@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.methods.noise.features.cell_kernels import (
+    COUNT,
+    SURE,
     CellLevel,
     join_kernel,
     largest_kernel,
@@ -15,6 +17,12 @@ from processing.methods.noise.features.cell_kernels import (
 )
 
 PART_FEATURES = 5
+
+_LEAST_LENGTH_M = 1e-9
+"""Keeps shares of a part that is a single point finite."""
+
+_LEAST_CUBES = 0.1
+"""Keeps the logarithm of its length finite; the trees learned with it."""
 
 
 @dataclass(frozen=True)
@@ -47,10 +55,10 @@ def sure_counts(level: CellLevel) -> NDArray[np.float64]:
     -------
     (c,) float64
     """
-    joins = level.sums[:, 1] > 0
+    joins = level.sums[:, SURE] > 0
     parents = np.arange(level.codes.size)
     join_kernel(level, joins, parents)
-    totals = np.bincount(parents, weights=level.sums[:, 1], minlength=parents.size)
+    totals = np.bincount(parents, weights=level.sums[:, SURE], minlength=parents.size)
     found = np.empty(parents.size)
     largest_kernel(level, joins, totals[parents].astype(np.float64), found)
     return found
@@ -69,14 +77,14 @@ def parts_of(level: CellLevel, joins: NDArray[np.bool_] | None = None) -> Parts:
     )
     spreads = np.empty((roots.size, 3))
     spread_kernel(np.ascontiguousarray(sums), spreads)
-    length = np.maximum(spreads[:, 0], 1e-9)
+    length = np.maximum(spreads[:, 0], _LEAST_LENGTH_M)
     features = np.column_stack(
         [
-            np.log2(1 + sums[:, 0]),
-            np.log2(1 + sums[:, 1]),
-            np.log2(0.1 + spreads[:, 0] / level.side),
+            np.log2(1 + sums[:, COUNT]),
+            np.log2(1 + sums[:, SURE]),
+            np.log2(_LEAST_CUBES + spreads[:, 0] / level.side),
             (spreads[:, 0] - spreads[:, 1]) / length,
             (spreads[:, 1] - spreads[:, 2]) / length,
         ]
     )
-    return Parts(numbers, sums[:, 0].astype(np.float64), features.astype(np.float32))
+    return Parts(numbers, sums[:, COUNT].astype(np.float64), features.astype(np.float32))

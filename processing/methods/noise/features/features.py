@@ -2,6 +2,10 @@
 
 Sizes are taken relative to the spacing that the scanner should have there: the distance between
 neighbouring beams at the point's range, or, where no beams are known, between the points around.
+
+Sizes and limits here shape what the trees are told (see :mod:`processing.methods.noise.combined`):
+they learned with these values, so that a change asks for new training. They were set by trial, on
+simulated scenes; no measurement varied one alone.
 """
 
 from __future__ import annotations
@@ -35,14 +39,48 @@ _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
 
 _FINEST_M = 0.02
+"""Least spacing: closer points of several passes are as far apart as a scanner measures."""
+
 _ROWS_AT_ONCE = 64
 _POINTS_AT_ONCE = 4_096
+"""Rows and points of a share of a core's work: small enough to share evenly."""
+
+_CURVE_CELLS = 2**20
+"""Cells along an axis that the numbers of nested cells hold (20 binary digits)."""
+
 _GROUND_BAND_M = 0.3
+"""Height about the ground within which points of a plane are kept where no beams are known."""
+
 _FLAT_BAND_M = 0.1
+"""The same for surfaces square to the beam: narrower, since arcs of noise stand square, too."""
+
+_PLANE_SCALE = 1
+"""Points of a plane are looked for in 27 cells of two spacings, each wide 2 ** scale spacings."""
+
 _PLANE_POINTS = 24
+"""In these cells, of some 36 that a full plane holds there (six by six spacings)."""
+
 _PLANE_SHARE = 0.4
-_PLANE_THICKNESS = 0.12  # in cells of two spacings
+"""Planarity from which points lie in a plane, 0 to 1."""
+
+_PLANE_THICKNESS = 0.12
+"""Of such a plane, in its cells of two spacings; a point may be twice as far from it."""
+
+_OFF_PLANE_THICKNESSES = 2
+
+_POINTS, _PLANARITY, _THICKNESS, _OFF_PLANE = 0, 3, 4, 5
+"""Columns of ``CloudNeighbourhood.scale_features``."""
+
 _INTENSITY_SAMPLE = 20_000
+"""Points whose median intensity stands for a range, and ten times as many for all ranges: the
+median is then sure to a hundredth of their spread."""
+
+_RANGE_BINS, _BINS_PER_DOUBLING, _LEAST_RANGE_M = 31, 3, 0.5
+"""Bins of ranges for intensities: three for each doubling from 1 m up to 1 km; nearer ones share
+the first."""
+
+_LEAST_LENGTH_M = 1e-6
+"""Keeps the direction of a beam of no length finite."""
 
 
 @dataclass(frozen=True)
@@ -54,11 +92,11 @@ class Candidates:
     points : (k,) int64
         Indices into the cloud.
     features : (k, f) float32
-    around : Surroundings
+    around : CloudNeighbourhood
         Of the whole cloud.
     levels : list of int
         At which parts of the cloud are looked at.
-    beams, rows : Beams and (k,) int64, or None
+    beams, rows : PointBeams and (k,) int64, or None
         Where beams are known.
     """
 
@@ -84,9 +122,9 @@ class BeamSearch:
 
     Attributes
     ----------
-    beams : Beams
+    beams : PointBeams
     is_sure : (n,) bool
-    around : Surroundings
+    around : CloudNeighbourhood
     points, rows : (k,) int64
         Points that may be noise, and their rows.
     """
@@ -145,7 +183,7 @@ class BeamSearch:
 
     def _directions(self, points: _Integers) -> _Floats:
         away = self.beams.xyz[points] - self.beams.origins[points]
-        directions: _Floats = away / np.maximum(self.beams.ranges[points], 1e-6)[:, None]
+        directions: _Floats = away / np.maximum(self.beams.ranges[points], _LEAST_LENGTH_M)[:, None]
         return directions
 
 
@@ -174,7 +212,7 @@ def search_with_beams(beams: PointBeams, monitor: Monitor) -> BeamSearch:
 
 
 def candidates_in_space(xyz: _Floats, monitor: Monitor) -> Candidates:
-    """Candidates of a cloud of which only places are known.
+    """Candidates of a cloud of which only positions are known.
 
     How many points lie on surfaces is told to the trees, too: in woods seen from the air, or in a
     single tree, leaves look like noise to whoever knows streets only.
@@ -184,7 +222,7 @@ def candidates_in_space(xyz: _Floats, monitor: Monitor) -> Candidates:
     xyz : (n, 3) float64
         m, finite.
     """
-    fine = nested_cells(xyz, float(np.ptp(xyz, axis=0).max(initial=0.0)) / 2**20)
+    fine = nested_cells(xyz, float(np.ptp(xyz, axis=0).max(initial=0.0)) / _CURVE_CELLS)
     spacings = np.empty(xyz.shape[0])
     spacings[fine.order] = np.clip(local_spacings(fine), _FINEST_M, None)
     is_sure = _planar_points(xyz, spacings, monitor)
@@ -205,15 +243,15 @@ def candidates_in_space(xyz: _Floats, monitor: Monitor) -> Candidates:
 
 
 def _planar_points(xyz: _Floats, spacings: _Floats, monitor: Monitor) -> NDArray[np.bool_]:
-    """Points in the middle of a densely measured plane, eight spacings wide."""
+    """Points in the middle of a densely measured plane, six spacings wide."""
     count = xyz.shape[0]
     bare = CloudNeighbourhood.bare(xyz, spacings, np.zeros(count, np.bool_))
-    around = bare.scale_features(np.arange(count), None, monitor, (1,))
+    around = bare.scale_features(np.arange(count), None, monitor, (_PLANE_SCALE,))
     found: NDArray[np.bool_] = (
-        (around[:, 0] > np.log2(1 + _PLANE_POINTS))
-        & (around[:, 3] > _PLANE_SHARE)
-        & (around[:, 4] < _PLANE_THICKNESS)
-        & (around[:, 5] < 2 * _PLANE_THICKNESS)
+        (around[:, _POINTS] > np.log2(1 + _PLANE_POINTS))
+        & (around[:, _PLANARITY] > _PLANE_SHARE)
+        & (around[:, _THICKNESS] < _PLANE_THICKNESS)
+        & (around[:, _OFF_PLANE] < _OFF_PLANE_THICKNESSES * _PLANE_THICKNESS)
     )
     return found
 
@@ -228,18 +266,19 @@ def _light(
     sure = np.flatnonzero(is_sure)
     sure = sure[:: max(1, sure.size // (10 * _INTENSITY_SAMPLE))]
     bins, values = _range_bins(ranges[sure]), np.log2(intensity[sure].astype(np.float64) + 1)
-    medians = np.full(31, np.nan)
+    medians = np.full(_RANGE_BINS, np.nan)
     for number in np.unique(bins):
         medians[number] = np.median(values[bins == number][:_INTENSITY_SAMPLE])
     known = np.flatnonzero(~np.isnan(medians))
     if not known.size:
         return np.zeros(points.size, np.float32)
-    medians = np.interp(np.arange(31), known, medians[known])
+    medians = np.interp(np.arange(_RANGE_BINS), known, medians[known])
     mine = np.log2(intensity[points].astype(np.float64) + 1)
     light: NDArray[np.float32] = (mine - medians[_range_bins(ranges[points])]).astype(np.float32)
     return light
 
 
 def _range_bins(ranges: _Floats) -> _Integers:
-    bins: _Integers = np.clip(np.log2(np.maximum(ranges, 0.5)) * 3, 0, 30).astype(np.int64)
+    doublings = np.log2(np.maximum(ranges, _LEAST_RANGE_M))
+    bins: _Integers = np.clip(doublings * _BINS_PER_DOUBLING, 0, _RANGE_BINS - 1).astype(np.int64)
     return bins

@@ -1,4 +1,9 @@
-"""How high points lie above the ground around them, for a cloud that still holds noise."""
+"""How high points lie above the ground around them, for a cloud that still holds noise.
+
+Sizes and limits here shape what the trees are told (see :mod:`processing.methods.noise.combined`):
+they learned with these values, so that a change asks for new training. They were set by trial, on
+simulated scenes; no measurement varied one alone.
+"""
 
 from __future__ import annotations
 
@@ -11,16 +16,46 @@ from processing.core.monitor import SilentMonitor
 from processing.methods.noise.neighbours.key_order import order_by_key
 
 GROUND_FEATURES = 4
+"""Slope, roughness, height over the mean, share near the ground."""
+
 _LOW_SHARE = 0.1
+"""Of a cell's sure points that lie below its ground: few enough to be noise, enough to be met."""
+
 _FEWEST = 3
-_SAMPLE = 400_000
-_SAMPLE_OF_EXTENT = 40_000
+"""Points of a cell, and sure points of a cloud, that tell a height."""
+
+_SAMPLE, _SAMPLE_OF_EXTENT = 400_000, 40_000
+"""Points from which heights and the extent are taken; more change neither, only the time."""
+
 _PASSES = 3
+"""Of medians over 25 cells, each of which fills holes two cells farther."""
+
 _STEP_M, _STEPS = 0.001, 1 << 22
+"""Heights are put in order in whole millimetres, as far as 22 binary digits go: 4 km."""
+
 _ASIDE = 2
+"""Cells to either side whose median a cell takes."""
+
 _ROWS_AT_ONCE = 128
-_MOST_CELLS = 4_000  # along one side
-_NEAR_M, _SMOOTHEST_M, _MOST_RATIO = 0.5, 0.005, 50.0
+"""Rows of cells whose 25 neighbours are held in memory: 100 MB for the widest cloud."""
+
+_MOST_CELLS = 4_000
+"""Along one side; wider clouds get wider cells."""
+
+_ENDS_PERCENT, _BEYOND_CELLS = 0.5, 30
+"""The extent of a cloud: all but this share at either end, and so many cells more."""
+
+_LEAST_SIDE_M = 1e-9
+"""Keeps the cells of a cloud without extent from having no side."""
+
+_NEAR_M = 0.5
+"""Height about the ground within which points show how rough it is."""
+
+_SMOOTHEST_M = 0.005
+"""Added to every roughness: a scanner's noise, below which nothing is smooth."""
+
+_MOST_RATIO = 50.0
+"""Of a height over the mean, in roughnesses; farther ones all say the same."""
 
 
 @dataclass(frozen=True)
@@ -108,10 +143,10 @@ def ground_below(xyz: NDArray[np.float64], is_sure: NDArray[np.bool_], cell_m: f
         used = np.arange(xyz.shape[0])
     used = used[:: max(1, used.size // _SAMPLE)]
     some = xyz[used[:: max(1, used.size // _SAMPLE_OF_EXTENT)], :2]
-    lowest = np.percentile(some, 0.5, axis=0) - 30 * cell_m
-    highest = np.percentile(some, 99.5, axis=0) + 30 * cell_m
+    lowest = np.percentile(some, _ENDS_PERCENT, axis=0) - _BEYOND_CELLS * cell_m
+    highest = np.percentile(some, 100 - _ENDS_PERCENT, axis=0) + _BEYOND_CELLS * cell_m
     shape = np.minimum(np.ceil((highest - lowest) / cell_m).astype(np.int64) + 1, _MOST_CELLS)
-    side = np.maximum((highest - lowest) / (shape - 1), 1e-9)
+    side = np.maximum((highest - lowest) / (shape - 1), _LEAST_SIDE_M)
     squares = np.clip(((xyz[:, :2] - lowest) / side).astype(np.int64), 0, shape - 1)
     cells = (squares[:, 0] * shape[1] + squares[:, 1]).astype(np.int32)
     aside = (xyz[:, :2] - lowest) / side - squares - 0.5  # in cells, from the cell's middle

@@ -1,4 +1,9 @@
-"""How far apart the points of a cloud lie, from place to place, when nothing tells the beams."""
+"""How far apart the points of a cloud lie, region by region, when nothing tells the beams.
+
+Sizes and limits here shape what the trees are told (see :mod:`processing.methods.noise.combined`):
+they learned with these values, so that a change asks for new training. They were set by trial, on
+simulated scenes; no measurement varied one alone.
+"""
 
 from __future__ import annotations
 
@@ -7,11 +12,24 @@ from numpy.typing import NDArray
 
 from processing.methods.noise.neighbours.morton import NestedCells
 
-_REGION_LEVELS = 5  # a region is 32 spacings wide
+_REGION_LEVELS = 5
+"""A region is 2 ** 5 = 32 spacings wide: it follows how points thin out with range."""
+
 _WIDENINGS = 4
+"""Times that a region with too few points is doubled before the whole cloud's spacing serves."""
+
 _FEWEST = 40
+"""Points of a region that tell a spacing."""
+
 _PER_CELL = 2.0
+"""Points in an occupied cube as wide as the spacing, on average: on a surface a cube that holds one
+point holds its neighbour's share, too."""
+
 _TOP = 20
+"""Levels of nested cells that their numbers hold."""
+
+_LEAST_GROWTH = 1 + 1e-9
+"""Keeps the share between two levels finite where cubes hold no more than before."""
 
 
 def local_spacings(cells: NestedCells) -> NDArray[np.float64]:
@@ -55,7 +73,7 @@ def _level_of_two(
         cubes = np.bincount(numbers[is_first], minlength=regions)
         per_cube = sizes / np.maximum(cubes, 1)
         is_new = np.isnan(found) & (per_cube >= _PER_CELL)
-        growth = np.log2(np.maximum(per_cube / before, 1 + 1e-9))
+        growth = np.log2(np.maximum(per_cube / before, _LEAST_GROWTH))
         missing = np.log2(_PER_CELL) - np.log2(before)
         found[is_new] = level - 1 + np.clip(missing / growth, 0, 1)[is_new]
         if not np.isnan(found).any():

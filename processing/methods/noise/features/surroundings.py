@@ -1,12 +1,17 @@
 """What lies around the points of a cloud: nested cells, what hangs together, the ground's height.
 
-Sizes are taken relative to the spacing that the points should have at each place.
+Sizes are taken relative to the spacing that the points should have at each position.
+
+Sizes and limits here shape what the trees are told (see :mod:`processing.methods.noise.combined`):
+they learned with these values, so that a change asks for new training. They were set by trial, on
+simulated scenes; no measurement varied one alone.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,18 +37,56 @@ _Integers = NDArray[np.int64]
 _Rows = NDArray[np.float32]
 
 SCALES = 5
+"""Sizes of cells that are looked at around a point: 1, 2, 4, 8 and 16 spacings."""
+
 PER_SCALE = 8
-PLACE_FEATURES = 4  # spacing, connection at two sizes, height
+"""Features of each; see :func:`~.cell_kernels.point_features_kernel`."""
+
+PLACE_FEATURES = 4
+"""Spacing, connection at two sizes, height."""
+
 COLUMN_SCALES = (1, 3)
-PART_SIZES = (2.0, 4.0, 8.0, 32.0)  # in median spacings
+"""Sizes of cells, 2 ** scale spacings, of which those straight above and below are looked at."""
+
+PART_SIZES = (2.0, 4.0, 8.0, 32.0)
+"""Sizes of cells, in median spacings, whose connected parts are looked at where no beams are
+known."""
+
 _LEVELS = 12
-_FINEST_M = 0.02
+"""Sizes of cells that are kept, each twice the one before: from 2 cm up to 41 m."""
+
+_FINEST_M, _FINEST_PERCENT = 0.02, 2
+"""Smallest cells: this percentile of the spacings, but not below what scanners resolve."""
+
 _CELLS_AT_ONCE = 4_096
 _POINTS_AT_ONCE = 65_536
+"""Cells and points of a share of a core's work."""
+
 _MAIN_SHARE = 0.1
-_LINK_M = 0.4
-_LINK_SPACINGS = 3.0
-_WIDER = 2  # levels, for the second size of what hangs together
+"""Of all sure points, from which a connected part is one that noise does not make."""
+
+_LINK_M, _LINK_SPACINGS = 0.4, 3.0
+"""Size of cells that hang together when they touch, at least, and in median spacings."""
+
+_WIDER_LEVELS = 2
+"""By which the second size of what hangs together is wider: four times."""
+
+_GROUND_CELL_M, _GROUND_CELL_SPACINGS = 1.0, 4
+"""Cells of the ground, at least, and in median spacings."""
+
+_HEIGHT_UNIT_M = 0.05
+"""Height above the ground up to which the feature grows evenly, and above it as its logarithm."""
+
+_LEAST_SIZE_M = 1e-6
+"""Keeps the logarithm of a cloud's spacing finite where all points lie at one position."""
+
+
+class _PointsInCells(NamedTuple):
+    """Which cell each point is in, where it is along the curve, and its beam if that is known."""
+
+    cells: _Integers
+    positions: _Integers
+    directions: _Floats
 
 
 @dataclass(frozen=True)
@@ -62,7 +105,7 @@ class CloudNeighbourhood:
         Which cell holds what, as :func:`processing.methods.noise.features.cell_levels.cell_levels`.
     is_main : (n,) bool
         Hangs together with a good part of the cloud's sure points; empty if not looked for.
-    ground : Ground
+    ground : GroundGrid
         Empty if not looked for.
     connected : tuple of (c,) float64
         Sure points in the part of each cell of the levels ``link`` and ``link`` + 2.
@@ -88,7 +131,7 @@ class CloudNeighbourhood:
         cls, xyz: _Floats, spacings: _Floats, is_sure: NDArray[np.bool_]
     ) -> CloudNeighbourhood:
         """Without what hangs together and without heights."""
-        finest = max(_FINEST_M, float(np.percentile(spacings, 2)))
+        finest = max(_FINEST_M, float(np.percentile(spacings, _FINEST_PERCENT)))
         cells = nested_cells(xyz, finest)
         position = np.empty(cells.order.size, np.int64)
         position[cells.order] = np.arange(cells.order.size)
@@ -102,12 +145,13 @@ class CloudNeighbourhood:
         bare = cls.bare(xyz, spacings, is_sure)
         middle = float(np.median(spacings))
         link = bare.level_of(max(_LINK_M, _LINK_SPACINGS * middle))
-        wide = min(link + _WIDER, _LEVELS - 1)
+        wide = min(link + _WIDER_LEVELS, _LEVELS - 1)
         connected = (sure_counts(bare.levels[link]), sure_counts(bare.levels[wide]))
         is_main_cell = connected[0] >= _MAIN_SHARE * max(1, int(is_sure.sum()))
         is_main = np.empty(xyz.shape[0], np.bool_)
         is_main[bare.cells.order] = is_main_cell[bare.held_by(link, slice(None))]
-        ground = ground_below(xyz, is_sure, max(1.0, 4 * middle))
+        cell_m = max(_GROUND_CELL_M, _GROUND_CELL_SPACINGS * middle)
+        ground = ground_below(xyz, is_sure, cell_m)
         return replace(bare, is_main=is_main, ground=ground, connected=connected, link=link)
 
     @property
@@ -117,18 +161,18 @@ class CloudNeighbourhood:
 
     def level_of(self, size_m: float) -> int:
         """The level whose cells have about this size."""
-        level = round(float(np.log2(max(size_m, 1e-6) / self.cells.cell_m)))
+        level = round(float(np.log2(max(size_m, _LEAST_SIZE_M) / self.cells.cell_m)))
         return min(max(level, 0), _LEVELS - 1)
 
     def place_features(self, points: _Integers) -> _Rows:
         """(k, PLACE_FEATURES): log2 of the spacing, two of the connection, the height."""
         found = np.empty((points.size, PLACE_FEATURES), np.float32)
         found[:, 0] = np.log2(self.spacings[points])
-        wide = min(self.link + _WIDER, _LEVELS - 1)
+        wide = min(self.link + _WIDER_LEVELS, _LEVELS - 1)
         for column, level in enumerate((self.link, wide)):
             found[:, 1 + column] = np.log2(1 + self.connected[column])[self.cells_of(level, points)]
         height = np.nan_to_num(self.heights[points])  # 0 where no ground is known
-        found[:, 3] = np.sign(height) * np.log2(1 + np.abs(height) / 0.05)
+        found[:, 3] = np.sign(height) * np.log2(1 + np.abs(height) / _HEIGHT_UNIT_M)
         return found
 
     def part_features(self, points: _Integers, level: int) -> _Rows:
@@ -164,7 +208,8 @@ class CloudNeighbourhood:
             for number, (chosen, cells) in enumerate(zip(of_scale, slots, strict=True)):
                 block = np.empty((chosen.size, PER_SCALE), np.float32)
                 beams = np.empty((0, 3)) if directions is None else directions[chosen]
-                self._report(level, around, (cells, positions[chosen], beams), block, monitor)
+                of_points = _PointsInCells(cells, positions[chosen], beams)
+                self._fill_features(level, around, of_points, block, monitor)
                 found[chosen, number * PER_SCALE : (number + 1) * PER_SCALE] = block
         return found
 
@@ -192,7 +237,7 @@ class CloudNeighbourhood:
         return found
 
     def held_by(self, level: int, positions: _Integers | slice) -> NDArray[np.int32]:
-        """The cell of a level that holds each of some places along the curve."""
+        """The cell of a level that holds each of some positions along the curve."""
         cells = self.numbers[0][positions]
         for above in range(1, level + 1):
             cells = self.numbers[above][cells]
@@ -236,17 +281,17 @@ class CloudNeighbourhood:
         share_out(add_up, used.size, _CELLS_AT_ONCE, monitor)
         return around, positions
 
-    def _report(
+    def _fill_features(
         self,
         level: int,
         around: _Floats,
-        of_points: tuple[_Integers, _Integers, _Floats],
+        of_points: _PointsInCells,
         found: _Rows,
         monitor: Monitor,
     ) -> None:
         cells, positions, directions = of_points
 
-        def tell(start: int, stop: int) -> None:
+        def fill(start: int, stop: int) -> None:
             part = slice(start, stop)
             point_features_kernel(
                 self.levels[level],
@@ -258,4 +303,4 @@ class CloudNeighbourhood:
                 found[part],
             )
 
-        share_out(tell, cells.size, _POINTS_AT_ONCE, monitor)
+        share_out(fill, cells.size, _POINTS_AT_ONCE, monitor)

@@ -18,10 +18,19 @@ _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
 
 _X = 0x1249249249249249
+"""Every third binary digit: those of x in a cube's number; y and z have the next two."""
+
 _TOP = 20
+"""Levels of nested cubes that their numbers hold."""
+
 _LEAF = 24
+"""Points of a cube that are measured one by one; it changes the time only. By timing."""
+
 _STACK = 8 * (_TOP + 2)
-_AND_A_BIT = 1 + 1e-9  # for roundings
+"""Cubes that may wait: the eight parts of one on every level."""
+
+_AND_A_BIT, _LESS_A_BIT = 1 + 1e-9, 1 - 1e-9
+"""For roundings, which must not leave a neighbour out."""
 
 
 @kernel
@@ -109,7 +118,7 @@ def _push_parts(
             low = _packed((code >> axis) & _X) * side
             gap = max(low - position[axis], position[axis] - low - side, 0.0)
             square += gap * gap
-        square *= 1 - 1e-9
+        square *= _LESS_A_BIT
         at = depth
         while at > base and bounds[at - 1] < square:
             bounds[at] = bounds[at - 1]

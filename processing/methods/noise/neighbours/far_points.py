@@ -5,10 +5,15 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-_SHARE = 1.0  # percent of the points at either end that may be far
-_TIMES = 50.0
-_LEAST_M = 1_000.0
+_ENDS_PERCENT = 1.0
+"""Of the points at either end of an axis that may be far; by trial, spikes are fewer."""
+
+_EXTENTS, _LEAST_M = 50.0, 1_000.0
+"""How far they lie away from the rest, in its extents and at least: no scanner measures so far
+from its own cloud. By trial; spikes that were met lay thousands of kilometres away."""
+
 _SAMPLE = 100_000
+"""Points whose percentiles are taken: a thousand of them lie beyond each."""
 
 
 def is_far(xyz: NDArray[np.float64]) -> NDArray[np.bool_]:
@@ -26,8 +31,8 @@ def is_far(xyz: NDArray[np.float64]) -> NDArray[np.bool_]:
     if not xyz.shape[0]:
         return np.zeros(0, np.bool_)
     sample = xyz[:: max(1, xyz.shape[0] // _SAMPLE)]
-    low, high = np.percentile(sample, (_SHARE, 100.0 - _SHARE), axis=0)
-    reach = max(_LEAST_M, _TIMES * float((high - low).max()))
+    low, high = np.percentile(sample, (_ENDS_PERCENT, 100.0 - _ENDS_PERCENT), axis=0)
+    reach = max(_LEAST_M, _EXTENTS * float((high - low).max()))
     least, most = low - reach, high + reach
     far = np.zeros(xyz.shape[0], np.bool_)
     if (xyz.min(axis=0) >= least).all() and (xyz.max(axis=0) <= most).all():

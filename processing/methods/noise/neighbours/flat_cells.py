@@ -13,9 +13,17 @@ from processing.methods.noise.neighbours.key_order import order_by_key
 from processing.methods.noise.neighbours.sharing import share_out
 
 _CLIP = 2**19 - 4
-_APART = 2  # cells that a search looks to either side
-_AT_ONCE = 250_000
+"""Cells from the middle to the last one: three axes of 20 binary digits, with room for a search
+beyond, fit a 64-bit key."""
+
+_BESIDE = 2
+"""Cells that a search looks to either side: a radius is less than two of its cells."""
+
+_POINTS_AT_ONCE = 250_000
+"""Points of a share of a core's work."""
+
 _SAMPLE = 1_000
+"""Points whose median is the middle; it need not be sure."""
 
 
 class FlatCells(NamedTuple):
@@ -58,20 +66,20 @@ def flat_cells(xyz: NDArray[np.float64], side_m: float, monitor: Monitor) -> Fla
     """
     xyz = np.ascontiguousarray(xyz)
     middle = _middle(xyz)
-    ranges = np.tile([_CLIP, -_CLIP], (xyz.shape[0] // _AT_ONCE + 1, 3)).astype(np.int64)
+    ranges = np.tile([_CLIP, -_CLIP], (xyz.shape[0] // _POINTS_AT_ONCE + 1, 3)).astype(np.int64)
 
     def look(start: int, stop: int) -> None:
-        ranges_kernel(xyz, middle, side_m, start, stop, ranges[start // _AT_ONCE])
+        ranges_kernel(xyz, middle, side_m, start, stop, ranges[start // _POINTS_AT_ONCE])
 
-    share_out(look, xyz.shape[0], _AT_ONCE, monitor)
-    low, high = ranges[:, ::2].min(axis=0) - _APART, ranges[:, 1::2].max(axis=0) + _APART
+    share_out(look, xyz.shape[0], _POINTS_AT_ONCE, monitor)
+    low, high = ranges[:, ::2].min(axis=0) - _BESIDE, ranges[:, 1::2].max(axis=0) + _BESIDE
     sizes = np.maximum(high - low + 1, 1)
     keys = np.empty(xyz.shape[0], np.int64)
 
     def number(start: int, stop: int) -> None:
         keys_kernel(xyz, middle, side_m, low, sizes, start, stop, keys)
 
-    share_out(number, xyz.shape[0], _AT_ONCE, monitor)
+    share_out(number, xyz.shape[0], _POINTS_AT_ONCE, monitor)
     keys, order = order_by_key(keys, monitor)
     finite = int(np.searchsorted(keys, int(sizes.prod())))
     keys, order = keys[:finite], order[:finite]

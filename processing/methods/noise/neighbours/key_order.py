@@ -12,8 +12,12 @@ from processing.core.monitor import Monitor
 from processing.methods.noise.neighbours.sharing import share_out
 
 _BITS = 11
+"""Binary digits of a pass: 2,048 counts of 8 bytes fit a core's first cache of 32 kB."""
+
 _DIGITS = 1 << _BITS
+
 _POINTS_PER_SHARE = 100_000
+"""Points for which a core is asked: fewer cost less than to share them out."""
 
 _Integers = NDArray[np.int64]
 

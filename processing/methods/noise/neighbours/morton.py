@@ -13,9 +13,16 @@ from processing.methods.noise.neighbours.key_order import order_by_key
 from processing.methods.noise.neighbours.sharing import share_out
 
 _BITS = 20
+"""Binary digits along an axis: three of them fit a 64-bit number."""
+
 _SMALLEST_M = 1e-3
-_AT_ONCE = 250_000
-_NOWHERE = 1 << 60  # above the numbers of all cubes
+"""Side of the smallest cubes: what scanners resolve."""
+
+_POINTS_AT_ONCE = 250_000
+"""Points of a share of a core's work."""
+
+_NOWHERE = 1 << 60
+"""The number of points that aren't finite: above those of all cubes."""
 
 
 @dataclass(frozen=True)
@@ -28,7 +35,7 @@ class NestedCells:
     Attributes
     ----------
     order : (n,) int64
-        Index of the input point at each place of the curve.
+        Index of the input point at each position of the curve.
     codes : (n,) int64
         Cube number of level 0; not decreasing. ``codes >> 3 * level`` numbers larger cubes.
     local_xyz : (n, 3) float64
@@ -64,7 +71,7 @@ def nested_cells(xyz: NDArray[np.float64], cell_m: float) -> NestedCells:
     def number(start: int, stop: int) -> None:
         codes_kernel(xyz[start:stop], origin, side, codes[start:stop])
 
-    share_out(number, xyz.shape[0], _AT_ONCE, monitor)
+    share_out(number, xyz.shape[0], _POINTS_AT_ONCE, monitor)
     codes, order = order_by_key(codes, monitor)
     finite = int(np.searchsorted(codes, _NOWHERE))
     codes, order = codes[:finite], order[:finite]
@@ -73,7 +80,7 @@ def nested_cells(xyz: NDArray[np.float64], cell_m: float) -> NestedCells:
     def bring(start: int, stop: int) -> None:
         bring_kernel(xyz, origin, order[start:stop], local_xyz[start:stop])
 
-    share_out(bring, finite, _AT_ONCE, monitor)
+    share_out(bring, finite, _POINTS_AT_ONCE, monitor)
     return NestedCells(order, codes, local_xyz, origin, side)
 
 
@@ -81,14 +88,14 @@ def _origin_and_extent(
     xyz: NDArray[np.float64], monitor: Monitor
 ) -> tuple[NDArray[np.float64], float]:
     """The lowest corner of the finite points, and their extent along the longest axis, m."""
-    shares = xyz.shape[0] // _AT_ONCE + 1
+    shares = xyz.shape[0] // _POINTS_AT_ONCE + 1
     lows, highs = np.full((shares, 3), np.inf), np.full((shares, 3), -np.inf)
 
     def look(start: int, stop: int) -> None:
-        share = start // _AT_ONCE
+        share = start // _POINTS_AT_ONCE
         extent_kernel(xyz[start:stop], lows[share], highs[share])
 
-    share_out(look, xyz.shape[0], _AT_ONCE, monitor)
+    share_out(look, xyz.shape[0], _POINTS_AT_ONCE, monitor)
     low, high = lows.min(axis=0), highs.max(axis=0)
     return (low, float((high - low).max())) if (low <= high).all() else (np.zeros(3), 0.0)
 

@@ -27,14 +27,51 @@ _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
 
 _X = 0x1249249249249249
+"""Every third binary digit: those of x in a cube's number; y and z have the next two."""
+
 _TOP = 20
+"""Levels of nested cubes that their numbers hold."""
+
+# What follows changes the time only, not the result; it was set by timing clouds of streets.
+
 _MOST_GATHERED = 16_384
-_AND_A_BIT = 1 + 1e-9  # for roundings
-_PROBABLY = 1.1  # of the square of the radius of the point before, or its reciprocal
-_WIDER = 1.5  # of a square, where too few were within it
-_LEAST = 1 / 64  # of the square of the reach: after a point among duplicates
+"""Candidates held for a group: 400 kB, which a core's second cache holds."""
+
+_AND_A_BIT, _LESS_A_BIT = 1 + 1e-9, 1 - 1e-9
+"""For roundings, which must not leave a neighbour out."""
+
+_PROBABLY = 1.1
+"""Of the square of the radius of the point before, or its reciprocal."""
+
+_WIDER = 1.5
+"""Of a square, where too few were within it."""
+
+_LEAST = 1 / 64
+"""Of the square of the reach: after a point among duplicates."""
+
 _BLOCK = 16
+"""Candidates of a block, of which the least is kept."""
+
+_BLOCKS_AT_ONCE = 8
+"""Blocks whose least is found at a time: as many doubles as a processor's registers compare."""
+
 _GATHERINGS = 2
+"""Sizes of cubes that are gathered before what is left over goes down the tree."""
+
+
+class _Group(NamedTuple):
+    """Points ``first … end − 1``, and the level of the cubes gathered around them."""
+
+    first: int
+    end: int
+    level: int
+
+
+class _Reaches(NamedTuple):
+    """How far all points are gathered, and how far the k-th neighbour probably is, m."""
+
+    surely: float
+    probably: float
 
 
 class CellPoints(NamedTuple):
@@ -90,7 +127,7 @@ def nearest_kernel(
                 break
             count = _gather(points, position, level + wider, near)
             if count >= nearest:
-                group = (position, end, level + wider)
+                group = _Group(position, end, level + wider)
                 before = _sum_group(
                     points, is_wanted, nearest, group, before, near, count, room, found
                 )
@@ -111,7 +148,7 @@ def _sum_group(
     points: CellPoints,
     is_wanted: NDArray[np.bool_],
     nearest: int,
-    group: tuple[int, int, int],
+    group: _Group,
     before: int,
     near: _Floats,
     count: int,
@@ -119,15 +156,14 @@ def _sum_group(
     found: _Floats,
 ) -> int:
     """Measure those points of a group that aren't yet; gives the last point that was."""
-    position, end, level = group
-    for point in range(position, end):
+    for point in range(group.first, group.end):
         if not is_wanted[point] or found[point, 0] >= 0.0:
             continue
-        reach, probable = _margin(points, point, level), math.inf
+        reach, probable = _margin(points, point, group.level), math.inf
         if before >= 0:
             probable = found[before, 1]
             reach = min(reach, (probable + _apart(points, before, point)) * _AND_A_BIT)
-        reaches = (reach, probable)
+        reaches = _Reaches(reach, probable)
         _sum_within(points.xyz[point], near, count, reaches, room, nearest, found[point])
         if found[point, 0] >= 0.0:
             before = point
@@ -225,7 +261,7 @@ def _margin(points: CellPoints, point: int, level: int) -> float:
         position = points.xyz[point, axis]
         inside = position - math.floor(position / side) * side
         margin = min(margin, side + min(inside, side - inside))
-    return margin * (1 - 1e-9)
+    return margin * _LESS_A_BIT
 
 
 @kernel
@@ -233,18 +269,15 @@ def _sum_within(
     position: _Floats,
     near: _Floats,
     count: int,
-    reaches: tuple[float, float],
+    reaches: _Reaches,
     room: _Room,
     nearest: int,
     found: _Floats,
 ) -> None:
-    """Sum of the distances to the nearest, and the farthest; nothing when that is beyond reach.
-
-    ``reaches``: how far all points are in ``near``; how far the k-th probably is.
-    """
+    """Sum of the distances to the nearest, and the farthest; nothing when that is beyond reach."""
     width = _width(count)
-    limit = reaches[0] * reaches[0]
-    probable = reaches[1] * reaches[1]
+    limit = reaches.surely * reaches.surely
+    probable = reaches.probably * reaches.probably
     guess = min(limit, probable * _PROBABLY)
     surely = min(guess, probable / _PROBABLY)
     _measure(position, near, width, room)
@@ -266,7 +299,7 @@ def _sum_within(
 @kernel
 def _width(count: int) -> int:
     """How many blocks so many candidates take, in eights."""
-    return -(-count // (_BLOCK * 8)) * 8
+    return -(-count // (_BLOCK * _BLOCKS_AT_ONCE)) * _BLOCKS_AT_ONCE
 
 
 @kernel

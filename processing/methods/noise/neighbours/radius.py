@@ -20,14 +20,26 @@ from processing.core.monitor import Monitor, SilentMonitor
 from processing.methods.noise.neighbours.flat_cells import FlatCells, flat_cells
 from processing.methods.noise.neighbours.sharing import share_out
 
-RADIUS_M = 0.5
-NEIGHBOURS = 113
+RADIUS_M, NEIGHBOURS = 0.5, 113
+"""The road-surface study's own (Kogure et al., MMSにより計測した路面の点群データにおけるノイズ除去
+方法の比較, section 4, after Mizue et al.): they go with the density of that scan."""
 
 _CELLS_AT_ONCE = 4_096
-_REACH = 2  # cells
-_MOST_NEAR = 4_096
-_BLOCK = 128
-_ROUNDING = 4e-6  # of a square, for coordinates of 24 binary digits within 3 cells
+"""Cells of a share of a core's work."""
+
+_REACH = 2
+"""Cells to either side within which a radius ends: a cell's side is the radius over √3."""
+
+_LESS_A_BIT = 1 - 1e-9
+"""Keeps a cell's diagonal below the radius whatever is rounded."""
+
+_MOST_NEAR, _BLOCK = 4_096, 128
+"""Candidates whose rounded distances are taken, and how many at a time: 48 kB, which a core's cache
+holds. They change the time only."""
+
+_ROUNDING = 4e-6
+"""Of a square, for coordinates of 24 binary digits within 3 cells."""
+
 _KEPT, _OUTLIER, _OPEN = 0, 1, 2
 
 
@@ -59,7 +71,7 @@ def radius_outliers(
     """
     monitor = monitor or SilentMonitor()
     outliers = np.ones(xyz.shape[0], np.bool_)
-    cells = flat_cells(xyz, radius_m / np.sqrt(3.0) * (1 - 1e-9), monitor)
+    cells = flat_cells(xyz, radius_m / np.sqrt(3.0) * _LESS_A_BIT, monitor)
     columns = _columns_by_distance(cells)
     limit = neighbours if counts_itself else neighbours + 1
 

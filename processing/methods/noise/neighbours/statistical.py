@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,11 +21,22 @@ from processing.methods.noise.neighbours.morton import nested_cells
 from processing.methods.noise.neighbours.nearest_kernels import CellPoints, nearest_kernel
 from processing.methods.noise.neighbours.sharing import share_out
 
-NEIGHBOURS = 113
-DEVIATIONS = 1.5
+NEIGHBOURS, DEVIATIONS = 113, 1.5
+"""The road-surface study's own (Kogure et al., MMSにより計測した路面の点群データにおけるノイズ除去
+方法の比較, section 4); its 1.5 is taken for a multiple of the standard deviation."""
 
 _POINTS_AT_ONCE = 8_192
-_COARSE_M = 0.01  # of the smallest cubes: an extent of some 10 km
+"""Points of a share of a core's work."""
+
+_COARSE_M = 0.01
+"""Side of the smallest cubes from which far points are looked for: an extent of some 10 km."""
+
+
+class _Counting(NamedTuple):
+    """How many neighbours are asked for, and whether a point is one of its own."""
+
+    neighbours: int
+    counts_itself: bool
 
 
 @dataclass(frozen=True)
@@ -109,7 +121,7 @@ def distances_of(
         finite = np.sort(cells.order)
         far = finite[is_far(xyz[finite])]
         if far.size:
-            options = (neighbours, counts_itself)
+            options = _Counting(neighbours, counts_itself)
             return _distances_beside_far(xyz, wanted, far, options, monitor or SilentMonitor())
     points = CellPoints(cells.codes, cells.local_xyz, cells.cell_m)
     asked = neighbours if counts_itself else neighbours + 1
@@ -135,7 +147,7 @@ def _distances_beside_far(
     xyz: NDArray[np.float64],
     wanted: NDArray[np.int64],
     far: NDArray[np.int64],
-    options: tuple[int, bool],
+    options: _Counting,
     monitor: Monitor,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """As :func:`distances_of`, where far points would make the cells too coarse for the others.
