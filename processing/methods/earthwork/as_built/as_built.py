@@ -23,9 +23,11 @@ from processing.methods.earthwork.surfaces.sides import EpochGround
 from processing.methods.ground.filters.cells import MOST_CELLS, CellGrid
 
 NARROW_PERCENT, WIDE_PERCENT = 50.0, 80.0
-"""Shares of the limit that a form counts the values within."""
+"""Shares of the limit, per cent, that form 31-2 (様式-31-2) counts the values within."""
 
 _LARGEST_CELL_M = 1.0
+"""A value for each square metre at least (3次元計測技術を用いた出来形管理要領)."""
+
 _MET = 1.0 + 1e-9
 """A count that meets its limit does so whatever rounding made of the limit."""
 

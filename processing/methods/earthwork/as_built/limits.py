@@ -12,8 +12,11 @@ from numpy.typing import NDArray
 from processing.core.errors import name_with_type
 from processing.core.text import Text
 
-# A limit of 50 mm is met by 50 mm: sums of many values end a little beside it.
 _TOLERANCE_M = 1e-7
+"""A limit of 50 mm is met by 50 mm: sums of many values end a little beside it."""
+
+_WHOLE_PERCENT = 100.0
+_MM = 1000
 
 
 class FaceKind(Enum):
@@ -47,7 +50,9 @@ class AllowedRange:
 
     def part(self, percent: float) -> AllowedRange:
         """A limit that is so many percent of this one."""
-        return AllowedRange(self.low_m * percent / 100.0, self.high_m * percent / 100.0)
+        return AllowedRange(
+            self.low_m * percent / _WHOLE_PERCENT, self.high_m * percent / _WHOLE_PERCENT
+        )
 
     @property
     def is_one_sided(self) -> bool:
@@ -61,17 +66,17 @@ class AllowedRange:
         """
         low = self.low_m if math.isfinite(self.low_m) else -self.high_m
         high = self.high_m if math.isfinite(self.high_m) else -self.low_m
-        share: NDArray[np.float64] = 100.0 * np.where(
+        share: NDArray[np.float64] = _WHOLE_PERCENT * np.where(
             values_m < 0.0, values_m / -low, values_m / high
         )
         # As :meth:`holds` has it: what is allowed is not shown as beyond.
-        is_met = (np.abs(share) > 100.0) & ~self.beyond(values_m)
+        is_met = (np.abs(share) > _WHOLE_PERCENT) & ~self.beyond(values_m)
         is_limited = np.isfinite(np.where(values_m < 0.0, self.low_m, self.high_m))
-        return np.where(is_met & is_limited, np.sign(share) * 100.0, share)
+        return np.where(is_met & is_limited, np.sign(share) * _WHOLE_PERCENT, share)
 
     def words(self) -> Text:
         """As a form has it: ±50 mm."""
-        low, high = round(1000 * abs(self.low_m), 3), round(1000 * self.high_m, 3)
+        low, high = round(_MM * abs(self.low_m), 3), round(_MM * self.high_m, 3)
         if math.isinf(high):
             return Text(f"−{low:g} mm or more", f"−{low:g} mm 以上")
         if math.isinf(low):

@@ -23,9 +23,10 @@ from processing.methods.earthwork.as_built.limits import (
 from resources import path_of
 
 BUNDLED = "catalogue/as_built_limits.toml"
-_LARGEST_MM = 100_000.0
-_LARGEST_MARGIN_MM = 10_000.0
-_LARGEST_DENSITY = 1_000_000.0
+_LARGEST_MM, _LARGEST_MARGIN_MM, _LARGEST_DENSITY = 100_000.0, 10_000.0, 1_000_000.0
+"""What a table may say (mm, mm, values a square metre): more is a slip of the unit."""
+
+_MM, _PERCENT = 1000.0, 100.0
 _ID = re.compile(r"[a-z][a-z0-9_]*")
 _CORRECT = Text(
     "Correct this line of the table and open it again; nothing was written.",
@@ -125,7 +126,7 @@ class _Entry:
         sizes = [size for size in (-low, high) if math.isfinite(size)]
         if not is_one_finite or not all(0.0 < size <= _LARGEST_MM for size in sizes) or low > high:
             raise self.not_allowed(key, meant)
-        return AllowedRange(low / 1000.0, high / 1000.0)
+        return AllowedRange(low / _MM, high / _MM)
 
     def tables(self, key: str, header: str) -> list[_Entry]:
         """The tables of an array below this entry, each with the line of its header."""
@@ -171,8 +172,8 @@ def _limits(whole: _Entry) -> AsBuiltLimits:
     return AsBuiltLimits(
         standard=standard.name("name"),
         edition=standard.name("edition"),
-        rejected_share=standard.number("rejected_percent", 100.0, above_zero=False) / 100.0,
-        margin_m=standard.number("margin_mm", _LARGEST_MARGIN_MM, above_zero=False) / 1000.0,
+        rejected_share=standard.number("rejected_percent", _PERCENT, above_zero=False) / _PERCENT,
+        margin_m=standard.number("margin_mm", _LARGEST_MARGIN_MM, above_zero=False) / _MM,
         density_per_m2=standard.number("density_per_m2", _LARGEST_DENSITY, above_zero=False),
         work_types=_work_types(entries),
     )

@@ -18,7 +18,11 @@ Extent = tuple[float, float, float, float]
 """Least easting and northing, greatest easting and northing, m."""
 
 _SAME_POSITION_M = 1e-6
+"""Corners nearer than this are one: finer than any file's digits."""
+
 _LEAST_AREA_M2 = 1e-6
+"""A boundary with less is a line."""
+
 _WHOLE = 1e-9
 """A share of a cell that differs by less from none or all of it does so by rounding."""
 

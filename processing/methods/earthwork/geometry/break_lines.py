@@ -20,7 +20,11 @@ Floats = NDArray[np.float64]
 Numbers = NDArray[np.int64]
 
 _SAME_POSITION_M = 1e-3
-"""Vertices, and a vertex and a line, that are nearer in plan are at one place."""
+"""Vertices, and a vertex and a line, that are nearer in plan are at one position: files have whole
+millimetres."""
+
+_PARALLEL_SINE = 1e-9
+"""Sine of the angle below which two segments run the same way, and cross nowhere."""
 
 
 @dataclass(frozen=True)
@@ -30,7 +34,7 @@ class BreakNet:
     Attributes
     ----------
     xyz : (v, 3) float64
-        Vertices, each at another place in plan, in the frame of the lines, m.
+        Vertices, each at another position in plan, in the frame of the lines, m.
     segments : (s, 2) int64
         Rows of ``xyz``.
     """
@@ -52,7 +56,7 @@ def break_net(lines: Sequence[Floats], agree_within_m: float) -> BreakNet:
     Raises
     ------
     Unsuitable
-        A line without two places apart in plan, or with a place that is no number; lines whose
+        A line without two positions apart in plan, or with a vertex that is no number; lines whose
         heights disagree where they meet.
     """
     _check_lines(lines)
@@ -170,12 +174,12 @@ def _touched(
 def _crossed(
     plan: Floats, segments: Numbers, one: Numbers, other: Numbers
 ) -> tuple[Numbers, Floats, Floats]:
-    """Segments that others cross between the ends of both: which, where along, the place."""
+    """Segments that others cross between the ends of both: which, where along, at what position."""
     start, along = plan[segments[one, 0]], plan[segments[one, 1]] - plan[segments[one, 0]]
     their, across = plan[segments[other, 0]], plan[segments[other, 1]] - plan[segments[other, 0]]
     between = their - start
     turn = along[:, 0] * across[:, 1] - along[:, 1] * across[:, 0]
-    is_turned = np.abs(turn) > 1e-9 * np.hypot(*along.T) * np.hypot(*across.T)
+    is_turned = np.abs(turn) > _PARALLEL_SINE * np.hypot(*along.T) * np.hypot(*across.T)
     safe = np.where(is_turned, turn, 1.0)
     share = (between[:, 0] * across[:, 1] - between[:, 1] * across[:, 0]) / safe
     their_share = (between[:, 0] * along[:, 1] - between[:, 1] * along[:, 0]) / safe

@@ -15,11 +15,14 @@ Floats = NDArray[np.float64]
 Numbers = NDArray[np.int64]
 
 _CORNERS = 12
+"""Room for a figure while it is cut: a triangle cut by a triangle has six corners at most, and each
+cut may add one twice by rounding."""
+
 _MEETS_M = 1e-3
 """Triangles that lie over each other by less only meet badly: files have whole millimetres."""
 
-
 _NO_AREA_M2 = 1e-14
+"""Less is what rounding leaves of triangles that touch: a strip of a metre and 10⁻¹⁴ m."""
 
 
 @kernel

@@ -15,9 +15,16 @@ from processing.methods.ground.filters.cells import CellGrid
 
 Floats = NDArray[np.float64]
 
-_FEWEST_CELLS_ALONG, _MOST_CELLS_ALONG = 16, 700
 _CELLS_EACH = 2.0
+_FEWEST_CELLS_ALONG, _MOST_CELLS_ALONG = 16, 700
+"""Cells that tell which triangles a boundary can meet: two for each triangle, within limits. By
+timing; they change the time only."""
+
 _CUT_AT_ONCE = 10_000
+"""Triangles cut between two questions whether to go on."""
+
+_SAME_SHARE = 1e-8
+"""Cells by which sums of shares may be off by rounding."""
 
 
 def clip_triangles(triangles: Floats, boundary: shapely.Geometry, monitor: Monitor) -> Floats:
@@ -65,7 +72,7 @@ def _sorted_out(
 
 def _is_near(found: Floats, wanted: Floats | float) -> NDArray[np.bool_]:
     """Sums over many cells, whose rounding is far below what a boundary takes of one of them."""
-    is_near: NDArray[np.bool_] = np.abs(found - wanted) < 1e-8
+    is_near: NDArray[np.bool_] = np.abs(found - wanted) < _SAME_SHARE
     return is_near
 
 

@@ -27,12 +27,19 @@ Floats = NDArray[np.float64]
 Numbers = NDArray[np.int64]
 
 _SAME_POSITION_M = 1e-6
+"""Corners nearer than this are one: finer than any file's digits."""
+
 _BORNE_SHARE = 1e-4
 """Part of the area that may be covered twice: it changes no volume that is told."""
 
 _BORNE_M2 = 0.01
+"""The same for small surfaces: a square of 10 cm."""
+
 _LEAST_HOLE_M2 = 0.01
+"""Smaller holes are where triangles meet badly; by judgement, they change no stated volume."""
+
 _LEAST_PART_M2 = 1e-6
+"""Smaller parts of an outline are what rounding leaves."""
 
 _READ_AGAIN = Text(
     "Write the surface again in the program that it comes from.",

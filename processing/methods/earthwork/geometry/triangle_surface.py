@@ -15,12 +15,14 @@ from processing.methods.earthwork.geometry.plan_buckets import PlanBuckets, sort
 
 Floats = NDArray[np.float64]
 
-_BLOCK = 65_536
+_POSITIONS_AT_ONCE = 65_536
+"""Positions of a share of a core's work."""
+
 _NO_WIDTH_M = 1e-6
 """A triangle that is nowhere wider seen from above is vertical, or no triangle at all."""
 
 _ON_EDGE_M = 1e-9
-"""So far outside a place still counts as on the outline: what rounding makes of a corner."""
+"""A position so far outside still counts as on the outline: what rounding makes of a corner."""
 
 
 @dataclass(frozen=True)
@@ -45,9 +47,9 @@ class TriangleSurface:
     notes: tuple[Text, ...] = ()
 
     def heights_at(self, xy: Floats) -> Floats:
-        """Height on the triangle above or below each place: (n,) float64, m; NaN outside.
+        """Height on the triangle above or below each position: (n,) float64, m; NaN outside.
 
-        A place on an edge or a corner belongs to the first of the triangles there, so that none
+        A position on an edge or a corner belongs to the first of the triangles there, so that none
         between triangles is left out.
 
         Parameters
@@ -63,12 +65,12 @@ class TriangleSurface:
         frame = (buckets.west, buckets.south, buckets.size_m, buckets.rows, buckets.columns)
 
         def fill(start: int) -> None:
-            part = slice(start, start + _BLOCK)
+            part = slice(start, start + _POSITIONS_AT_ONCE)
             local = positions[part] - origin[:2]
             held = (buckets.starts, buckets.triangles)
             _heights_kernel(local, self._triangles, frame, held, heights[part])
 
-        starts = range(0, len(positions), _BLOCK)
+        starts = range(0, len(positions), _POSITIONS_AT_ONCE)
         if len(starts) == 1:  # a place under the mouse is worth no threads
             fill(0)
         else:

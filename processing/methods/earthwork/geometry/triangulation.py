@@ -35,20 +35,33 @@ Floats = NDArray[np.float64]
 Numbers = NDArray[np.int64]
 
 AGREE_WITHIN_M = 0.05
-"""Break lines that meet at heights no farther apart are joined at the mean of both."""
+"""Break lines that meet at heights no farther apart are joined at the mean of both; by judgement,
+about what two lines drawn on points differ by. Farther ones cross over each other."""
 
 _SAME_POSITION_M = 1e-4
+"""Points nearer than this in plan are one: below a millimetre, above rounding."""
+
 _ROUNDING_M = 1e-6
+"""Corners of pieces that differ by less do so by rounding."""
+
 _SPACING_NEIGHBOURS = 4
 """On a square grid so many neighbours are one spacing away."""
 
-_NEAR_LINE = 0.5
+_NEAR_LINE_SPACINGS = 0.5
+"""Points nearer to a line than this share of their spacing say what the line says, and give way to
+it."""
+
 _MOST_REACH_M = 0.5
-"""Single places that somebody measured farther from a line are meant, however few there are."""
+"""Single points that somebody measured farther from a line are meant, however few there are."""
 
 _ON_CIRCLE = 1e-9
+"""Share of a radius within which a point is on a circle: what rounding makes of it."""
+
 _SHORTEST_M = 1e-3
+"""Radius of the circle over a segment that is cut no further: pieces of a millimetre or two."""
+
 _MOST_ROUNDS = 60
+"""Of cutting; each halves, so that any segment would be shorter than an atom by then."""
 
 
 def triangulate_ground(
@@ -162,7 +175,7 @@ def _away_from_lines(points: Floats, net: BreakNet) -> Floats:
         return points
     tree = cKDTree(points[:, :2])
     spacing, _ = tree.query(points[:, :2], [_SPACING_NEIGHBOURS + 1], workers=-1)  # 1: itself
-    reach = np.minimum(_NEAR_LINE * np.ravel(spacing), _MOST_REACH_M)
+    reach = np.minimum(_NEAR_LINE_SPACINGS * np.ravel(spacing), _MOST_REACH_M)
     lines = shapely.linestrings(net.xyz[net.segments, :2])
     (asked, _), apart = shapely.STRtree(lines).query_nearest(
         shapely.points(points[:, :2]),

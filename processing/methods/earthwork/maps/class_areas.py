@@ -16,6 +16,7 @@ MOST_CELLS = 160_000
 """More are joined to larger cells first: on paper nobody tells them apart."""
 
 _NOTHING = 255
+"""Number of no class."""
 
 
 @dataclass(frozen=True)

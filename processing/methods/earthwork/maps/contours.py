@@ -20,10 +20,28 @@ from processing.methods.ground.filters.cells import CellGrid
 Floats = NDArray[np.float64]
 
 _INDEX_EACH = 5
+"""Each fifth contour is an index contour (計曲線), as on topographic maps."""
+
 _STEPS = (1.0, 2.0, 5.0, 10.0)
+"""Of intervals within a decade; ten for what rounds up into the next."""
+
 _SMALLEST_M = 0.01
+"""Least interval that is chosen: below, lines show the noise of points."""
+
 _MOST_LEVELS = 2000
+"""More are refused: a drawing of them can't be read, and takes minutes. By judgement."""
+
 _WANTED_LEVELS = 40
+"""Most levels of an interval that is chosen; by judgement, what can be told apart on a sheet."""
+
+_ROUNDING = 1e-9
+"""Share by which logarithms and quotients end beside a whole number."""
+
+_STEP_DECIMALS, _LEVEL_DECIMALS = 6, 9
+"""To which intervals and levels are rounded, so that 0.1 + 0.2 is 0.3."""
+
+_RING_CORNERS = 4
+"""Of the smallest closed line: three, and the first once more."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +64,7 @@ class LevelLine:
 
     @property
     def is_closed(self) -> bool:
-        """Whether the line leads back to its first place."""
+        """Whether the line leads back to its first point."""
         return bool(np.array_equal(self.xyz[0], self.xyz[-1]))
 
 
@@ -59,7 +77,7 @@ class ContourOptions:
     interval_m : float
         From one level to the next; levels are whole multiples of it.
     simplify_m : float
-        Places that lie no farther from the line without them are left out.
+        Points that lie no farther from the line without them are left out.
     shortest_m : float
         Shorter lines are left out: stones and noise.
     """
@@ -72,9 +90,9 @@ class ContourOptions:
 def choose_interval(low_m: float, high_m: float, most_levels: int = _WANTED_LEVELS) -> float:
     """The smallest of 1, 2, 5, 10, 20, 50 … cm that gives no more levels between two heights."""
     least = max((high_m - low_m) / most_levels, _SMALLEST_M)
-    decade = 10.0 ** math.floor(math.log10(least) + 1e-9)
-    step = next(step for step in _STEPS if step * decade >= least * (1.0 - 1e-9))
-    return round(step * decade, 6)
+    decade = 10.0 ** math.floor(math.log10(least) + _ROUNDING)
+    step = next(step for step in _STEPS if step * decade >= least * (1.0 - _ROUNDING))
+    return round(step * decade, _STEP_DECIMALS)
 
 
 def contour_lines(
@@ -167,7 +185,7 @@ def _lines(
     found = []
     for number in numbers:
         monitor.check()
-        level = round(number * options.interval_m, 9)
+        level = round(number * options.interval_m, _LEVEL_DECIMALS)
         for plan in generator.lines(level):
             local = _drawn(np.asarray(plan, np.float64), options)
             if local is not None:
@@ -187,4 +205,4 @@ def _drawn(plan: Floats, options: ContourOptions) -> Floats | None:
         shapely.simplify(line, options.simplify_m, preserve_topology=False)
     )
     # A closed line that becomes a stroke there and back is smaller than what is left out.
-    return None if len(simple) < 4 and np.array_equal(simple[0], simple[-1]) else simple
+    return None if len(simple) < _RING_CORNERS and np.array_equal(simple[0], simple[-1]) else simple

@@ -14,21 +14,33 @@ from numpy.typing import NDArray
 
 from processing.core.text import Text
 
+# Limits of the classes of change, in shares of the largest that is shown: the middle one, a
+# twentieth to either side, is what didn't change. Colours are told apart by lightness, too.
 _CHANGE_STEPS = (-1.0, -0.5, -0.2, -0.05, 0.05, 0.2, 0.5, 1.0)
 _CHANGE_COLOURS = ("#08306b", "#2b6bb0", "#5f9fd3", "#a9cfe9", "#f6f6f6",
                    "#fde3bd", "#f3a64f", "#d2620f", "#8a1c08")  # fmt: skip
+# Limits of the classes of deviations, in per cent of their limit: ±50 and ±80 % as on form 31-2.
 _SHARE_STEPS = (-100.0, -80.0, -50.0, 0.0, 50.0, 80.0, 100.0)
 _SHARE_COLOURS = ("#1c1160", "#2f70b3", "#7fadd9", "#c9dff2",
                   "#fdf0dc", "#f8b765", "#d9701f", "#8a0f2e")  # fmt: skip
 CUT_RGB, FILL_RGB = (95, 159, 211), (243, 166, 79)
 """Of what was taken away and what was put there, where only the two are told apart."""
 
-_LIMIT_SHARE = 98.0
+_LIMIT_PERCENT = 98.0
+"""Of all changes that a range chosen for them holds: single strays don't stretch it. By
+judgement."""
+
 _SMALLEST_LIMIT_M = 0.02
-_HATCH_PX = 8
-_HATCH_WIDTH_PX = 2
-_HATCH_RGB = (120, 120, 120)
+"""Least range that is chosen: below, colours show the noise of points."""
+
+_LIMIT_STEPS, _ROUNDING = (1, 2, 5, 10, 20), 1e-9
+"""Ranges within a decade; the last is for 9.99…, which a logarithm may round up."""
+
+_HATCH_PX, _HATCH_WIDTH_PX, _HATCH_RGB = 8, 2, (120, 120, 120)
+"""Distance and width of hatching, pixels, and its grey, which no class has."""
+
 _NOTHING = 255
+"""Number of no class."""
 
 
 @dataclass(frozen=True)
@@ -88,11 +100,11 @@ def change_limit(change_m: NDArray[np.float32]) -> float:
         m; NaN is passed over.
     """
     sizes = np.abs(change_m[np.isfinite(change_m)])
-    largest = float(np.percentile(sizes, _LIMIT_SHARE)) if len(sizes) else 0.0
+    largest = float(np.percentile(sizes, _LIMIT_PERCENT)) if len(sizes) else 0.0
     largest = max(largest, _SMALLEST_LIMIT_M)
     power = 10.0 ** math.floor(math.log10(largest))
-    # The last is for 9.99…, which a logarithm may round up.
-    return next(step * power for step in (1, 2, 5, 10, 20) if step * power >= largest * (1 - 1e-9))
+    least = largest * (1 - _ROUNDING)
+    return next(step * power for step in _LIMIT_STEPS if step * power >= least)
 
 
 def change_colours(change_m: NDArray[np.float32], limit_m: float) -> NDArray[np.uint8]:

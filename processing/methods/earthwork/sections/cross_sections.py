@@ -18,8 +18,16 @@ from processing.section.stations import Stations
 Floats = NDArray[np.float64]
 
 _POSITIONS_AT_ONCE = 50_000
+"""Of profiles whose heights are asked between two questions whether to go on."""
+
 _MOST_POSITIONS = 50_000_000
+"""Of all profiles together; more take minutes and are a slip of the distances."""
+
 _SAME_OFFSET_M = 1e-9
+"""Offsets that differ by less do so by rounding."""
+
+_ON_STATION = 1e-9
+"""Intervals by which the end of a line may lie beside a section by rounding."""
 
 
 @dataclass(frozen=True)
@@ -33,9 +41,10 @@ class SectionLayout:
     half_width_m : float
         Of a section, to either side.
     interval_m : float
-        From one section to the next, along the line; the last one is at its end.
+        From one section to the next, along the line; the last one is at its end. 20 m as stations
+        of roads and rivers are set (測点).
     step_m : float
-        From one place of a profile to the next.
+        From one position of a profile to the next: half the usual mesh.
     """
 
     xy: Floats
@@ -142,7 +151,7 @@ def stations_of(line: SectionLayout) -> Floats:
     """
     _check_line(line)
     length = _measured(line).length_m
-    count = int(np.ceil(length / line.interval_m - 1e-9))
+    count = int(np.ceil(length / line.interval_m - _ON_STATION))
     if count * 2 * line.half_width_m / line.step_m > _MOST_POSITIONS:
         raise OutOfRange(
             Text("The sections have too many places.", "横断の点数が多すぎます。"),

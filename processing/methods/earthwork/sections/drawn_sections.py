@@ -9,7 +9,10 @@ from processing.methods.earthwork.sections.drawing_parts import DrawnSection, Se
 from processing.methods.earthwork.sections.end_areas import EndAreaVolume
 
 _STAKES_M = 20.0
+"""Between stations (測点 No.), as road offices set them."""
+
 _SAME_M = 0.005
+"""A section nearer to a station is at it: names of stations have centimetres."""
 
 
 def drawn_line(volume: EndAreaVolume, line: SectionLayout, name: str) -> SectionedLine:

@@ -38,6 +38,8 @@ Floats = NDArray[np.float64]
 END_AREA, PRISMOIDAL = "end-area", "prismoidal"
 
 _NOTHING = Moments(0.0, 0.0, 0.0, 0.0)
+_SIMPSON_WEIGHTS = (1 / 6, 4 / 6, 1 / 6)
+"""Of both ends and the middle in the prismoidal formula: exact for areas of the second degree."""
 
 
 @dataclass(frozen=True)
@@ -121,7 +123,7 @@ def prismoidal_volume(
     sections = cross_sections(line, every, grounds, monitor, boundary)
     ends = list(zip(sections[:-2:2], sections[2::2], strict=True))
     parts = [
-        _swept((first, middle, last), (1 / 6, 4 / 6, 1 / 6), _bend(first, last))
+        _swept((first, middle, last), _SIMPSON_WEIGHTS, _bend(first, last))
         for (first, last), middle in zip(ends, sections[1::2], strict=True)
     ]
     return _volume(PRISMOIDAL, sections, parts, ends)

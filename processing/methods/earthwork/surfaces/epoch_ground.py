@@ -17,7 +17,8 @@ from processing.methods.noise.beams.scanner_positions import scanner_position_of
 from processing.recording.drive import Drive
 from processing.recording.measured_day import measured_day
 
-_AT_ONCE = 1 << 17
+_POINTS_AT_ONCE = 1 << 17
+"""Points read at a time: 3 MiB of coordinates."""
 
 
 def ground_of_drives(drives: tuple[Drive, ...], monitor: Monitor, *, name: str = "") -> EpochGround:
@@ -34,7 +35,7 @@ def ground_of_drives(drives: tuple[Drive, ...], monitor: Monitor, *, name: str =
         No point is ground: it was not looked for yet.
     Cancelled
     """
-    points = DrivePoints(drives, _AT_ONCE, monitor)
+    points = DrivePoints(drives, _POINTS_AT_ONCE, monitor)
     name = name or ", ".join(dict.fromkeys(drive.info.name for drive in drives))
     if not _has_ground(points):
         raise MissingInput(
@@ -76,7 +77,7 @@ def ground_of_drives(drives: tuple[Drive, ...], monitor: Monitor, *, name: str =
 
 def has_ground(drives: tuple[Drive, ...]) -> bool:
     """Whether ground was looked for: any point of class 2 by the class that counts."""
-    return _has_ground(DrivePoints(drives, _AT_ONCE, SilentMonitor()))
+    return _has_ground(DrivePoints(drives, _POINTS_AT_ONCE, SilentMonitor()))
 
 
 def _has_ground(points: DrivePoints) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,20 +12,59 @@ from processing.core.errors import OutOfRange
 from processing.core.kernels import kernel
 from processing.core.monitor import Monitor
 from processing.core.text import Text
-from processing.methods.earthwork.surfaces.low_growth import lift_of_growth
+from processing.methods.earthwork.surfaces.low_growth import CellPlanes, lift_of_growth
 from processing.methods.earthwork.surfaces.sides import EpochGround
 from processing.methods.ground.filters.cells import MOST_CELLS, CellGrid
 
 Floats = NDArray[np.float64]
 
 _X, _Y, _Z = range(3)
-_AMONG_M = 3.0
-_FEW_OF_MANY = 0.05
+"""Sums of a cell's points: from its middle to the east and north, and above the grid's origin."""
+
+# Of strays, which are all there is in some shadows. The values were set by trial; no measurement
+# varied one alone.
+
+_AMONG_M, _FEW_SHARE = 3.0, 0.05
+"""A cell is thin that holds less than this share of the fullest within this distance."""
+
 _NEAR_M = 0.6
+"""Distance within which thin cells are held against each other."""
+
 _SCATTER_M = 0.08
+"""From their plane, on average, above which they are strays at any height."""
+
 _FEWEST = 6
+"""Thin cells below which there is no plane."""
+
 _HELD_SHARE = 0.3
-_LINE = 0.1
+"""Of the cells about, empty and thin, of which a true surface holds this share at least."""
+
+_ACROSS_CELLS2 = 0.1
+"""Variance of positions, in cells squared, added along both axes: cells in one line say nothing of
+the slope across it, which is then nearly none."""
+
+_ON_CORNER = 1e-9
+"""Cells by which rounding may move a rectangle's side off a corner of the mesh."""
+
+_SUMS = 9
+_N, _SX, _SY, _SZ, _SXX, _SXY, _SYY, _SXZ, _SYZ = range(_SUMS)
+"""What is summed for a plane."""
+
+
+class _StrayLimits(NamedTuple):
+    """``_FEWEST`` and ``_SCATTER_M``, as the kernel takes them."""
+
+    fewest: int
+    scatter_m: float
+
+
+class _Window(NamedTuple):
+    """Rows and columns of a window, the ends left out."""
+
+    first_row: int
+    end_row: int
+    first_column: int
+    end_column: int
 
 
 @dataclass(frozen=True)
@@ -57,7 +97,7 @@ def grid_over(
 ) -> CellGrid:
     """Cells over a rectangle, their corners on whole multiples of the mesh.
 
-    So the same place falls into the same cell, whatever else was measured.
+    So the same position falls into the same cell, whatever else was measured.
 
     Parameters
     ----------
@@ -71,8 +111,8 @@ def grid_over(
     OutOfRange
         More cells than memory holds.
     """
-    first = np.floor(np.asarray(low) / size_m + 1e-9).astype(np.int64)
-    last = np.ceil(np.asarray(high) / size_m - 1e-9).astype(np.int64)
+    first = np.floor(np.asarray(low) / size_m + _ON_CORNER).astype(np.int64)
+    last = np.ceil(np.asarray(high) / size_m - _ON_CORNER).astype(np.int64)
     columns, rows = (int(count) for count in np.maximum(last - first, 1))
     if rows * columns > MOST_CELLS:
         raise OutOfRange(
@@ -112,7 +152,7 @@ def ground_cells(
     _drop_strays(counts, sums, grid.size_m)
     planes = _planes(counts, sums, grid.size_m)
     shifted = replace(grid, origin=origin)
-    heights: Floats = planes[0] - lift_of_growth(epoch, shifted, planes, monitor)
+    heights: Floats = planes.heights - lift_of_growth(epoch, shifted, planes, monitor)
     return GroundCells(grid, counts, heights)
 
 
@@ -127,13 +167,13 @@ def _drop_strays(counts: NDArray[np.int32], sums: Floats, size_m: float) -> None
 
     reach = max(1, round(_AMONG_M / size_m))
     most = maximum_filter(counts, 2 * reach + 1)
-    thin = (counts > 0) & (counts < _FEW_OF_MANY * most)
+    thin = (counts > 0) & (counts < _FEW_SHARE * most)
     if not thin.any():
         return
     heights = np.where(thin, sums[..., _Z] / np.maximum(counts, 1), np.nan)
     near = max(1, round(_NEAR_M / size_m))
     strays = np.zeros(counts.shape, np.bool_)
-    _stray_kernel(heights, near, (_FEWEST, _SCATTER_M), strays)
+    _stray_kernel(heights, near, _StrayLimits(_FEWEST, _SCATTER_M), strays)
     empty = uniform_filter((counts == 0).astype(np.float32), 2 * near + 1)
     held = uniform_filter(thin.astype(np.float32), 2 * near + 1)
     strays |= thin & (held < _HELD_SHARE * (held + empty))
@@ -141,9 +181,7 @@ def _drop_strays(counts: NDArray[np.int32], sums: Floats, size_m: float) -> None
     sums[strays] = 0.0
 
 
-def _planes(
-    counts: NDArray[np.int32], sums: Floats, size_m: float
-) -> tuple[Floats, Floats, Floats]:
+def _planes(counts: NDArray[np.int32], sums: Floats, size_m: float) -> CellPlanes:
     """Heights at the middles of cells and slopes to the east and north.
 
     Where points lie to one side of a cell, their mean says the height of that side.
@@ -153,7 +191,7 @@ def _planes(
     heights = means[..., _Z]
     slope_x, slope_y = (_slope(heights, size_m, axis) for axis in (1, 0))
     carried: Floats = heights - slope_x * means[..., _X] - slope_y * means[..., _Y]
-    return carried, slope_x, slope_y
+    return CellPlanes(carried, slope_x, slope_y)
 
 
 def _slope(heights: Floats, size_m: float, axis: int) -> Floats:
@@ -178,64 +216,62 @@ def _sum_kernel(
             continue
         column, row = min(int(x / size_m), columns - 1), min(int(y / size_m), rows - 1)
         counts[row, column] += 1
-        sums[row, column, 0] += x - (column + 0.5) * size_m
-        sums[row, column, 1] += y - (row + 0.5) * size_m
-        sums[row, column, 2] += xyz[point, 2] - origin[2]
+        sums[row, column, _X] += x - (column + 0.5) * size_m
+        sums[row, column, _Y] += y - (row + 0.5) * size_m
+        sums[row, column, _Z] += xyz[point, 2] - origin[2]
 
 
 @kernel
 def _stray_kernel(
-    heights: Floats, near: int, limits: tuple[int, float], strays: NDArray[np.bool_]
+    heights: Floats, near: int, limits: _StrayLimits, strays: NDArray[np.bool_]
 ) -> None:
     """Cells (NaN: passed over) with few others about them, or on no plane with those."""
-    fewest, scatter_m = limits
     rows, columns = heights.shape
     for row in range(rows):
         for column in range(columns):
             if not np.isnan(heights[row, column]):
-                window = (
+                window = _Window(
                     max(0, row - near),
                     min(rows, row + near + 1),
                     max(0, column - near),
                     min(columns, column + near + 1),
                 )
                 count, apart = _apart_kernel(heights, window, heights[row, column])
-                strays[row, column] = count < fewest or apart > scatter_m
+                strays[row, column] = count < limits.fewest or apart > limits.scatter_m
 
 
 @kernel
-def _apart_kernel(
-    heights: Floats, window: tuple[int, int, int, int], base: float
-) -> tuple[int, float]:
+def _apart_kernel(heights: Floats, window: _Window, base: float) -> tuple[int, float]:
     """How many cells of a window are known, and how far they lie from their plane on average."""
-    sums = np.zeros(9)
-    for row in range(window[0], window[1]):
-        for column in range(window[2], window[3]):
+    sums = np.zeros(_SUMS)
+    for row in range(window.first_row, window.end_row):
+        for column in range(window.first_column, window.end_column):
             z = heights[row, column] - base
             if not np.isnan(z):
-                x, y = float(column - window[2]), float(row - window[0])
-                sums[0] += 1.0
-                sums[1] += x
-                sums[2] += y
-                sums[3] += z
-                sums[4] += x * x
-                sums[5] += x * y
-                sums[6] += y * y
-                sums[7] += x * z
-                sums[8] += y * z
-    count = sums[0]
-    x, y, z = sums[1] / count, sums[2] / count, sums[3] / count
-    xx, xy, yy = sums[4] / count - x * x, sums[5] / count - x * y, sums[6] / count - y * y
-    xz, yz = sums[7] / count - x * z, sums[8] / count - y * z
-    # What lies in one line of cells says nothing of the slope across it.
-    xx, yy = xx + _LINE, yy + _LINE
+                x, y = float(column - window.first_column), float(row - window.first_row)
+                sums[_N] += 1.0
+                sums[_SX] += x
+                sums[_SY] += y
+                sums[_SZ] += z
+                sums[_SXX] += x * x
+                sums[_SXY] += x * y
+                sums[_SYY] += y * y
+                sums[_SXZ] += x * z
+                sums[_SYZ] += y * z
+    count = sums[_N]
+    x, y, z = sums[_SX] / count, sums[_SY] / count, sums[_SZ] / count
+    xx, xy = sums[_SXX] / count - x * x, sums[_SXY] / count - x * y
+    yy = sums[_SYY] / count - y * y
+    xz, yz = sums[_SXZ] / count - x * z, sums[_SYZ] / count - y * z
+    xx, yy = xx + _ACROSS_CELLS2, yy + _ACROSS_CELLS2
     spread = xx * yy - xy * xy
     slope_x, slope_y = (yy * xz - xy * yz) / spread, (xx * yz - xy * xz) / spread
     apart = 0.0
-    for row in range(window[0], window[1]):
-        for column in range(window[2], window[3]):
+    for row in range(window.first_row, window.end_row):
+        for column in range(window.first_column, window.end_column):
+            away_x, away_y = column - window.first_column - x, row - window.first_row - y
             miss = heights[row, column] - base - z
-            miss -= slope_x * (column - window[2] - x) + slope_y * (row - window[0] - y)
+            miss -= slope_x * away_x + slope_y * away_y
             if not np.isnan(miss):
                 apart += abs(miss)
     return int(count), apart / count
@@ -245,4 +281,4 @@ def warm_up() -> None:
     """Compile the kernels of this file."""
     counts, sums = np.zeros((1, 1), np.int32), np.zeros((1, 1, 3))
     _sum_kernel(np.zeros((1, 3)), np.zeros(3), 1.0, counts, sums)
-    _stray_kernel(np.zeros((2, 2)), 1, (1, 1.0), np.zeros((2, 2), np.bool_))
+    _stray_kernel(np.zeros((2, 2)), 1, _StrayLimits(1, 1.0), np.zeros((2, 2), np.bool_))

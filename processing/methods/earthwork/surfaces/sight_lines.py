@@ -1,4 +1,4 @@
-"""SightLines: over which places a standing scanner's beams went on, and how low.
+"""SightLines: over what a standing scanner's beams went on, and how low.
 
 Whatever a beam hit, there was nothing between it and the scanner. So ground that was not measured
 lies below the lowest beam that passed over it.
@@ -7,6 +7,7 @@ lies below the lowest beam that passed over it.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,9 +17,20 @@ from processing.core.kernels import kernel
 Floats = NDArray[np.float64]
 
 _SECTORS = 1440
-_RING_M = 0.25
-_RINGS = 400
+"""A quarter of a degree each: 26 cm at 60 m, half a cell of a hole."""
+
+_RING_M, _RINGS = 0.25, 400
+"""Half a cell of a hole, up to 100 m from the scanner; beyond, beams are not asked."""
+
 _NEAREST_M = 0.5
+"""Points nearer than this are on the tripod."""
+
+
+class _Ground(NamedTuple):
+    """A floor as the kernel takes it: heights, and the side of its cells, m."""
+
+    heights: Floats
+    size_m: float
 
 
 @dataclass(frozen=True)
@@ -28,7 +40,7 @@ class Floor:
     Attributes
     ----------
     heights : (rows, columns) float64
-        m, in the frame of the places; -inf where anything may be.
+        m, in the frame of the scanners; -inf where anything may be.
     size_m : float
     """
 
@@ -38,12 +50,12 @@ class Floor:
 
 @dataclass(frozen=True)
 class SightLines:
-    """The lowest beams of each place where a scanner stood.
+    """The lowest beams of each position where a scanner stood.
 
     Attributes
     ----------
     stands : (k, 3) float64
-        m, in one frame with the places asked for.
+        m, in one frame with the positions asked for.
     rises : (k, 1440, 400) float32
         Lowest rise, m per m, of the beams that went on beyond a ring of 0.25 m in a sector of a
         quarter of a degree; inf where none did.
@@ -54,25 +66,25 @@ class SightLines:
 
     @staticmethod
     def without_beams(stands: Floats) -> SightLines:
-        """Places where a scanner stood, before anything was measured."""
+        """Positions where a scanner stood, before anything was measured."""
         rises = np.full((len(stands), _SECTORS, _RINGS), np.inf, np.float32)
         return SightLines(stands, rises)
 
     def add(self, stand: int, xyz: Floats, origin: Floats, floor: Floor | None = None) -> None:
-        """Take in points that were measured from a place.
+        """Take in points that were measured from one position.
 
         Parameters
         ----------
         xyz : (n, 3) float64
             m; NaN is passed over.
         origin : (3,) float64
-            Of the frame in which the places are, m.
+            Of the frame in which the scanners' positions are, m.
         floor : Floor or None
             No beam went to what lies below it.
         """
         floor = floor or Floor(np.empty((0, 0)), 1.0)
         frame = (float(origin[0]), float(origin[1]), float(origin[2]))
-        held = (floor.heights, floor.size_m)
+        held = _Ground(floor.heights, floor.size_m)
         _rise_kernel(np.ascontiguousarray(xyz), frame, held, self.stands[stand], self.rises[stand])
 
     def finished(self) -> SightLines:
@@ -102,11 +114,11 @@ class SightLines:
 def _rise_kernel(
     xyz: Floats,
     origin: tuple[float, float, float],
-    ground: tuple[Floats, float],
+    ground: _Ground,
     stand: Floats,
     rises: NDArray[np.float32],
 ) -> None:
-    floor, size_m = ground
+    floor, size_m = ground.heights, ground.size_m
     sectors, rings = rises.shape
     for point in range(xyz.shape[0]):
         east, north = xyz[point, 0] - origin[0], xyz[point, 1] - origin[1]

@@ -23,8 +23,18 @@ HOLE_M = 0.5
 """Side of the cells on which holes are filled: what hides ground is larger."""
 
 _BELOW_M = 0.1
+"""Points this far below the ground came by way of a mirror: no beam went there. By trial."""
+
 _BRIDGED_M = 0.2
+"""Half width of gaps between cells with points that count as measured: by trial, two or three cells
+of the usual mesh, over which graded ground keeps its height."""
+
 _FEW_IN_CELL = 3.0
+"""Points a cell, in the fullest block of ``HOLE_M`` about, below which an empty cell says nothing:
+of points scattered at random with that mean, one cell in twenty is empty."""
+
+_NO_WEIGHT = 1e-12
+"""Keeps the mean of no heights finite; it is not used."""
 
 
 def cells_of_hole(size_m: float) -> int:
@@ -191,5 +201,5 @@ def _fine(coarse: Floats, times: int, shape: tuple[int, int]) -> Floats:
         known = np.isfinite(values)
         sums += np.where(known, values, 0.0) * weight
         weights += known * weight
-    fine: Floats = np.where(weights > 0, sums / np.maximum(weights, 1e-12), np.nan)
+    fine: Floats = np.where(weights > 0, sums / np.maximum(weights, _NO_WEIGHT), np.nan)
     return fine

@@ -34,8 +34,17 @@ from processing.methods.ground.filters.cells import CellGrid
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
 
-_MARGIN_M = 20.0  # ground from which beams and slopes come in
+_MARGIN_M = 20.0
+"""Ground around a boundary from which beams and slopes come in; by trial."""
+
 _CLOSED_M = 1.0
+"""Half width of gaps between points that don't divide an area without a boundary; by trial."""
+
+_SHARES_OF_WORK = (0.4, 0.4, 0.2)
+"""Of the progress bar: counting points, filling holes, summing."""
+
+_ON_CORNER = 1e-9
+"""Cells by which rounding may move a side off a corner of the mesh."""
 _COUNTING = Text("Counting ground points", "地面の点を集計しています")
 _FILLING = Text("Filling what nobody saw", "見えなかった地面を補っています")
 _SUMMING = Text("Summing", "土量を計算しています")
@@ -61,7 +70,7 @@ def compare(
     """
     checks.check_systems(before, after)
     grid = _grid_of((before, after), parameters.grid_m, within.boundary)
-    counting, filling, summing = parts_of(monitor, (0.4, 0.4, 0.2))
+    counting, filling, summing = parts_of(monitor, _SHARES_OF_WORK)
     counting.report(0.0, _COUNTING)
     cells = [_cells_of(side, grid, counting) for side in (before, after)]
     registration = _registration(cells)
@@ -86,7 +95,7 @@ def compare(
     summing.report(0.0, _SUMMING)
     epochs = sum(one is not None for one in cells)
     tie = _Tie((before, after), registration, epochs)
-    return _told(change, surfaces, tie, (parameters, within), summing)
+    return _result_of(change, surfaces, tie, (parameters, within), summing)
 
 
 @dataclass(frozen=True)
@@ -101,11 +110,11 @@ class _Tie:
 def _grid_of(
     sides: tuple[Side, Side], size_m: float, boundary: shapely.Geometry | None
 ) -> CellGrid:
-    """Cells over what both sides have, and some way round a boundary."""
+    """Cells over what both sides have, and some metres round a boundary."""
     low, high, height = checks.common_box(sides, boundary, _MARGIN_M)
     # Coarse cells must not lie across the edge of the work by chance of its corner.
     step = size_m * cells_of_hole(size_m)
-    first = np.floor(low / step + 1e-9) * step
+    first = np.floor(low / step + _ON_CORNER) * step
     return grid_over((first[0], first[1]), (high[0], high[1]), size_m, height)
 
 
@@ -177,7 +186,7 @@ def _change(grid: CellGrid, surfaces: list[SideHeights], inside: NDArray[np.floa
     )
 
 
-def _told(
+def _result_of(
     change: ChangeGrid,
     surfaces: list[SideHeights],
     tie: _Tie,

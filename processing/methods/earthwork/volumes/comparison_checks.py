@@ -17,8 +17,17 @@ from processing.methods.earthwork.volumes.volume_result import Registration
 Floats = NDArray[np.float64]
 
 _FEWEST_CELLS = 25
-_APART_M = 2.0
-_EVEN_SHARE = 0.1
+"""With points, from which anything is said of an epoch; by trial, a square metre of the usual
+mesh."""
+
+_APART_M, _EVEN_SHARE = 2.0, 0.1
+"""Epochs lie on two height datums where they are farther apart than this everywhere, and differ
+by less than this share of it over most of the site. By judgement: geoid heights in Japan are 20 to
+45 m, and no site is lowered evenly by metres."""
+
+_LOW_PERCENT, _HIGH_PERCENT = 10, 90
+"""What most of a site is."""
+
 _MM = 1000
 
 
@@ -179,7 +188,7 @@ def check_heights(before: GroundCells, after: GroundCells) -> None:
     known = change[np.isfinite(change)]
     if known.size < _FEWEST_CELLS:
         return
-    low, middle, high = np.percentile(known, [10, 50, 90])
+    low, middle, high = np.percentile(known, [_LOW_PERCENT, 50, _HIGH_PERCENT])
     if abs(middle) > _APART_M and high - low < _EVEN_SHARE * abs(middle):
         raise Unsuitable(
             Text(

@@ -27,7 +27,11 @@ Floats = NDArray[np.float64]
 
 _LINE = "L1"
 _ON_EDGE_M = 1e-3
+"""Points so far outside a boundary are on it: files have whole millimetres."""
+
 _ON_GROUND_M, _STEP_M = 0.3, 0.5
+"""A break line lies on a ground when it is no farther from it in the median, asked at steps as wide
+as the cells of holes. By trial: a line drawn on one date lies in the air on the other."""
 _OFF_GROUND = Text(
     "Break line {number} lies on neither ground and was not used.",
     "ブレークライン{number}はどちらの地盤面にも載っていないため、使用していません。",

@@ -34,7 +34,11 @@ Numbers = NDArray[np.int64]
 
 _PAIRS_IN_BLOCK = 200_000
 _TRIANGLES_IN_BLOCK = 100_000
+"""Worked on between two questions whether to go on, and shared among cores; they change the
+time only."""
+
 _ROUNDING = 1e-9
+"""Share of an area that is left over by rounding and no area."""
 
 
 @dataclass(frozen=True)

@@ -23,8 +23,17 @@ COVERAGE = 2.0
 """Standard deviations that are stated: the truth lies within them in 95 of 100 cases."""
 
 _UNTIED_M = 0.005
+"""How far off the tie of epochs is thought to be where stable ground doesn't tell it; by judgement,
+what targets of a tripod scanner are set up to."""
+
 _SURFACE_M = 0.002
-_TO_SIGMA = 1.4826
+"""Of what lies over all of an epoch, as simulated sites of known ground show."""
+
+_SIGMA_PER_MEDIAN = 1.4826
+"""Standard deviation of a normal distribution over its median absolute deviation."""
+
+_BEND_VARIANCE = 1.5
+"""Of a value less the mean of its two neighbours, in variances of one: 1 + 2 · (1/2)²."""
 
 
 @dataclass(frozen=True)
@@ -84,8 +93,7 @@ def _of_noise(change: ChangeGrid) -> float:
     known = np.concatenate([bend[np.isfinite(bend)] for bend in bends]) if bends else np.empty(0)
     if known.size == 0:
         return 0.0
-    # The bend of three independent values has 3/2 of the variance of one.
-    sigma_m = _TO_SIGMA * float(np.median(np.abs(known))) / math.sqrt(1.5)
+    sigma_m = _SIGMA_PER_MEDIAN * float(np.median(np.abs(known))) / math.sqrt(_BEND_VARIANCE)
     cells = float(change.inside[change.is_measured].sum())
     return sigma_m * change.grid.size_m**2 * math.sqrt(cells)
 

@@ -44,7 +44,7 @@ _MOST_SPREAD_M = 0.3
 scanner that moved spreads them farther. By trial."""
 
 _ROUNDS = 30
-"""Of reweighted least squares; by trial, after fewer nothing moves any more."""
+"""Of reweighted least squares; by trial."""
 
 _WORST_CONDITION = 1e6
 """Of the normal equations: above, all lines run the same way and do not cross."""
