@@ -2,11 +2,15 @@
 
 A pose says how the template's axes lie in the slab: offset and height of the anchor (m), tilt about
 it (rad, anticlockwise), turn (offset per metre along), grade (height per metre along).
+
+Where a constant says “by trial”, it was set on the left head of a simulated town street; no
+measurement varied it alone. Scores of all values together are in docs/accuracy.md.
 """
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,30 +20,117 @@ from processing.core.kernels import kernel
 _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
 
-OFFSET, HEIGHT, TILT, TURN, GRADE = range(5)
 POSE = 5
+OFFSET, HEIGHT, TILT, TURN, GRADE = range(POSE)
 """Values of a pose."""
 
-START_U, START_V, ALONG_U, ALONG_V, LENGTH, FIRST_BIN, BINS, HAS_BEFORE, HAS_AFTER = range(9)
 SEGMENT = 9
+START_U, START_V, ALONG_U, ALONG_V, LENGTH, FIRST_BIN, BINS, HAS_BEFORE, HAS_AFTER = range(SEGMENT)
 """Values of a straight piece of the shape; the last two say whether another one joins it there."""
 
-_SCALES = (3.0, 1.5, 0.75)  # in tolerances
-_TURNS_PER_SCALE = 4
-_NOISE_M = 0.005  # how far points of a scanner lie off a surface
-_MOST_PER_BIN = 4.0  # of more points in one bin each counts for less: a dense road isn't all
+FRAME = 5
+EAST, NORTH, UP, ALONG_EAST, ALONG_NORTH = range(FRAME)
+"""Values of a slab's frame: its middle, m, and the direction along in plan."""
+
+BOX = 5
+LEFT, RIGHT, LOWEST, HIGHEST, HALF_WIDTH = range(BOX)
+"""Values of a slab's box about its middle, m."""
+
+_SCALES = (3.0, 1.5, 0.75)
+"""Of the Gaussian by which points count, in tolerances, from coarse to fine; by trial."""
+
+_ROUNDS_PER_SCALE = 4
+"""Steps of Gauss-Newton with each; by trial."""
+
+_SCALES_FAR = 3.0
+"""Scales beyond which a point does not count: its weight would be 1 %."""
+
+_NOISE_M = 0.005
+"""How far points of a scanner lie off a surface; sets points against what is expected of a pose."""
+
+_MOST_PER_BIN = 4.0
+"""Of more points in one bin of the shape each counts for less: a dense road isn't all. By trial."""
+
 _STEEPEST_TILT = math.radians(5.0)
-_ZONE_WEIGHT = 4.0  # a quarter as many points in the empty zones as on the shape is no fit at all
-_LEAST_SEEN = 0.5  # of the shape's length
+"""By trial: a template is drawn upright, and what is built along a road leans little."""
+
+_ZONE_WEIGHT = 4.0
+"""A quarter as many points in the empty zones as on the shape is no fit at all; by trial."""
+
+_LEAST_SEEN = 0.5
+"""Share of the shape's length that must be seen for a full score; by trial."""
+
 _SHARPNESS = 1.5
-_SPARSE_M = 0.05  # as far on either side of a point the shape is seen by it
+"""Tolerance in standard deviations of the soft edge: a point there counts a third."""
+
+_SPARSE_M = 0.05
+"""As far on either side of a point the shape is seen by it; by trial, the distance of points on the
+far side of a street."""
+
+_SEEN, _ON, _SOFTLY, _BIN_SUMS = 0, 1, 2, 3
+"""Sums of a bin: points beside it, those on it, and those on it by the soft edge."""
+
+_WEIGHT, _OFF, _U, _V, _POINT_FACTS = 0, 1, 2, 3, 4
+"""Of a point: weight, distance from the shape, and where it lies about the anchor."""
+
+
+class EmptyZones(NamedTuple):
+    """(z, 2) corners of the rings in which nothing should be, and where each ring begins."""
+
+    corners: _Floats
+    starts: _Integers
+
+
+class ScoreLimits(NamedTuple):
+    """What a score is given by.
+
+    ``tolerance_m``; ``reach_m``: how far off the shape points still count against it;
+    ``thinning``: each so many-th point is looked at.
+    """
+
+    tolerance_m: float
+    reach_m: float
+    thinning: float
+
+
+class PoseScore(NamedTuple):
+    """How well a pose fits.
+
+    ``score``, 0 to 1: share of the seen length that lies on points, less what is in the zones;
+    ``softly``: the same with a soft edge, for comparing poses; ``seen``: share of the length.
+    """
+
+    score: float
+    softly: float
+    seen: float
+
+
+class ExpectedPose(NamedTuple):
+    """(POSE,) each: the pose expected, and how far from it one may be (standard deviations)."""
+
+    pose: _Floats
+    spread: _Floats
+
+
+class _MissLimits(NamedTuple):
+    """How far off a point counts against a piece, m, and the factor of the soft edge, 1/m²."""
+
+    reach_m: float
+    softness: float
+
+
+class _WeightLimits(NamedTuple):
+    """Tolerance, and scale of the Gaussian, m."""
+
+    tolerance_m: float
+    scale_m: float
 
 
 @kernel
 def _nearest(x: float, y: float, segments: _Floats, margin: float) -> tuple[int, float, float]:
-    """Segment nearest to a place, where along it, and the distance, left of it positive.
+    """Segment nearest to a position, where along it, and the distance, left of it positive.
 
-    −1 where the place lies beyond the ends of all of them.
+    −1 where the position lies beyond the ends of all of them.
     """
     best, best_along, best_off, least = -1, 0.0, 0.0, math.inf
     for k in range(segments.shape[0]):
@@ -86,10 +177,10 @@ def score_kernel(
     slab: _Floats,
     pose: _Floats,
     segments: _Floats,
-    zones: tuple[_Floats, _Integers],
-    limits: tuple[float, float, float],
-) -> tuple[float, float, float]:
-    """How well a template lies.
+    zones: EmptyZones,
+    limits: ScoreLimits,
+) -> PoseScore:
+    """How well a template fits.
 
     Parameters
     ----------
@@ -97,20 +188,12 @@ def score_kernel(
         Offset, height, distance along, m.
     pose : (POSE,)
     segments : (k, SEGMENT)
-    zones : (z, 2) and (rings + 1,)
-        Places of the rings in which nothing should be, and where each ring begins.
-    limits : tuple of float
-        Tolerance, reach (how far off the shape points still count against it), thinning (each so
-        many-th point is looked at), m.
-
-    Returns
-    -------
-    tuple of float
-        Score, 0 to 1: share of the seen length that lies on points, less what is in the zones;
-        the same with a soft edge, for comparing poses; seen share of the length.
+    zones : EmptyZones
+    limits : ScoreLimits
     """
     tolerance, reach, step = limits
-    sums = np.zeros((int(segments[-1, FIRST_BIN] + segments[-1, BINS]), 3))
+    corners, starts = zones
+    sums = np.zeros((int(segments[-1, FIRST_BIN] + segments[-1, BINS]), _BIN_SUMS))
     cos, sin = math.cos(pose[TILT]), math.sin(pose[TILT])
     on_shape, in_zones = 0, 0
     softness = (_SHARPNESS / tolerance) ** 2 / 2
@@ -118,22 +201,22 @@ def score_kernel(
         u = slab[i, 0] - pose[OFFSET] - pose[TURN] * slab[i, 2]
         v = slab[i, 1] - pose[HEIGHT] - pose[GRADE] * slab[i, 2]
         x, y = u * cos + v * sin, v * cos - u * sin
-        for z in range(zones[1].size - 1):
-            if _is_inside(x, y, zones[0][zones[1][z] : zones[1][z + 1]]):
+        for z in range(starts.size - 1):
+            if _is_inside(x, y, corners[starts[z] : starts[z + 1]]):
                 in_zones += 1
                 break
         k, along, off = _nearest(x, y, segments, 0.0)
         if k >= 0 and abs(off) <= tolerance:
             position = _bin_of(segments[k], along)
-            sums[position, 0] += 1.0
-            sums[position, 1] += 1.0
-            sums[position, 2] += math.exp(-off * off * softness)
+            sums[position, _SEEN] += 1.0
+            sums[position, _ON] += 1.0
+            sums[position, _SOFTLY] += math.exp(-off * off * softness)
             on_shape += 1
         else:
-            _add_misses(x, y, segments, (reach, softness), sums)
+            _add_misses(x, y, segments, _MissLimits(reach, softness), sums)
     lies, softly, seen = _shares(sums, segments)
     penalty = min(1.0, _ZONE_WEIGHT * in_zones / (on_shape + 1.0))
-    return max(0.0, lies - penalty), softly - penalty, seen
+    return PoseScore(max(0.0, lies - penalty), softly - penalty, seen)
 
 
 @kernel
@@ -149,7 +232,7 @@ def _shares(sums: _Floats, segments: _Floats) -> tuple[float, float, float]:
         first, end = int(segments[k, FIRST_BIN]), int(segments[k, FIRST_BIN] + segments[k, BINS])
         before = -1
         for position in range(first, end + 1):
-            if position < end and sums[position, 0] == 0.0:
+            if position < end and sums[position, _SEEN] == 0.0:
                 continue
             # What stands between the bin seen before and this one: shared, if they are near.
             start = before + 1 if before >= 0 else first
@@ -160,37 +243,35 @@ def _shares(sums: _Floats, segments: _Floats) -> tuple[float, float, float]:
                     other = before if side == 0 else position
                     if first <= other < end and (side == 1 or before >= 0):
                         seen += missing / sides
-                        lies += missing / sides * sums[other, 1] / sums[other, 0]
-                        softly += missing / sides * sums[other, 2] / sums[other, 0]
+                        lies += missing / sides * sums[other, _ON] / sums[other, _SEEN]
+                        softly += missing / sides * sums[other, _SOFTLY] / sums[other, _SEEN]
             if position < end:
                 seen += size
-                lies += size * sums[position, 1] / sums[position, 0]
-                softly += size * sums[position, 2] / sums[position, 0]
+                lies += size * sums[position, _ON] / sums[position, _SEEN]
+                softly += size * sums[position, _SOFTLY] / sums[position, _SEEN]
                 before = position
     needed = max(seen, _LEAST_SEEN * whole)
     return lies / needed, softly / needed, seen / whole
 
 
 @kernel
-def _add_misses(
-    x: float, y: float, segments: _Floats, limits: tuple[float, float], sums: _Floats
-) -> None:
+def _add_misses(x: float, y: float, segments: _Floats, limits: _MissLimits, sums: _Floats) -> None:
     """A point off the shape tells against each piece that it lies beside: nothing hid that one."""
     for k in range(segments.shape[0]):
         du, dv = x - segments[k, START_U], y - segments[k, START_V]
         along = du * segments[k, ALONG_U] + dv * segments[k, ALONG_V]
         off = dv * segments[k, ALONG_U] - du * segments[k, ALONG_V]
-        if 0.0 <= along <= segments[k, LENGTH] and abs(off) <= limits[0]:
+        if 0.0 <= along <= segments[k, LENGTH] and abs(off) <= limits.reach_m:
             position = _bin_of(segments[k], along)
-            sums[position, 0] += 1.0
-            sums[position, 2] += math.exp(-off * off * limits[1])
+            sums[position, _SEEN] += 1.0
+            sums[position, _SOFTLY] += math.exp(-off * off * limits.softness)
 
 
 @kernel
 def refine_kernel(
     slab: _Floats,
     pose: _Floats,
-    prior: tuple[_Floats, _Floats],
+    prior: ExpectedPose,
     segments: _Floats,
     tolerance: float,
 ) -> None:
@@ -203,19 +284,19 @@ def refine_kernel(
     ----------
     pose : (POSE,)
         Where to begin; made better.
-    prior : (POSE,) and (POSE,)
-        The pose expected, and how far from it one may be (standard deviations).
+    prior : ExpectedPose
     """
+    expected, spread = prior
     normal = np.empty((slab.shape[0], 2))
-    seen = np.empty((slab.shape[0], 4))
+    seen = np.empty((slab.shape[0], _POINT_FACTS))
     matrix, right = np.empty((POSE, POSE)), np.empty(POSE)
-    for turn in range(len(_SCALES) * _TURNS_PER_SCALE):
-        scale = _SCALES[turn // _TURNS_PER_SCALE] * tolerance
-        _weigh(slab, pose, segments, (tolerance, scale), seen, normal)
+    for number in range(len(_SCALES) * _ROUNDS_PER_SCALE):
+        scale = _SCALES[number // _ROUNDS_PER_SCALE] * tolerance
+        _weigh(slab, pose, segments, _WeightLimits(tolerance, scale), seen, normal)
         matrix[:, :] = 0.0
         for j in range(POSE):
-            matrix[j, j] = 1.0 / prior[1][j] ** 2
-            right[j] = (prior[0][j] - pose[j]) * matrix[j, j]
+            matrix[j, j] = 1.0 / spread[j] ** 2
+            right[j] = (expected[j] - pose[j]) * matrix[j, j]
         _add_equations(slab, seen, normal, matrix, right)
         step = np.linalg.solve(matrix, right)
         for j in range(POSE):
@@ -228,12 +309,12 @@ def _weigh(
     slab: _Floats,
     pose: _Floats,
     segments: _Floats,
-    limits: tuple[float, float],
+    limits: _WeightLimits,
     seen: _Floats,
     normal: _Floats,
 ) -> None:
-    """Weight, distance and place (about the anchor) of points; the shape's normal next to them."""
-    tolerance, scale = limits
+    """Weight, distance and position (about the anchor) of points; the shape's normal there."""
+    tolerance, scale = limits.tolerance_m, limits.scale_m
     counts = np.zeros(int(segments[-1, FIRST_BIN] + segments[-1, BINS]))
     positions = np.empty(slab.shape[0], np.int64)
     cos, sin = math.cos(pose[TILT]), math.sin(pose[TILT])
@@ -242,18 +323,19 @@ def _weigh(
         v = slab[i, 1] - pose[HEIGHT] - pose[GRADE] * slab[i, 2]
         k, along, off = _nearest(u * cos + v * sin, v * cos - u * sin, segments, tolerance)
         positions[i] = -1
-        seen[i, 0] = 0.0
-        if k < 0 or abs(off) > 3.0 * scale:
+        seen[i, _WEIGHT] = 0.0
+        if k < 0 or abs(off) > _SCALES_FAR * scale:
             continue
         positions[i] = _bin_of(segments[k], along)
-        seen[i, 0], seen[i, 1] = math.exp(-off * off / (2.0 * scale * scale)), off
-        seen[i, 2], seen[i, 3] = u, v
-        counts[positions[i]] += seen[i, 0]
+        seen[i, _WEIGHT], seen[i, _OFF] = math.exp(-off * off / (2.0 * scale * scale)), off
+        seen[i, _U], seen[i, _V] = u, v
+        counts[positions[i]] += seen[i, _WEIGHT]
         normal[i, 0] = -segments[k, ALONG_V] * cos - segments[k, ALONG_U] * sin
         normal[i, 1] = segments[k, ALONG_U] * cos - segments[k, ALONG_V] * sin
     for i in range(slab.shape[0]):
         if positions[i] >= 0:
-            seen[i, 0] *= min(1.0, _MOST_PER_BIN / counts[positions[i]]) / (_NOISE_M * _NOISE_M)
+            share = min(1.0, _MOST_PER_BIN / counts[positions[i]])
+            seen[i, _WEIGHT] *= share / (_NOISE_M * _NOISE_M)
 
 
 @kernel
@@ -262,14 +344,14 @@ def _add_equations(
 ) -> None:
     gradient = np.empty(POSE)
     for i in range(slab.shape[0]):
-        weight = seen[i, 0]
+        weight = seen[i, _WEIGHT]
         if weight == 0.0:
             continue
         gradient[OFFSET], gradient[HEIGHT] = normal[i, 0], normal[i, 1]
-        gradient[TILT] = normal[i, 1] * seen[i, 2] - normal[i, 0] * seen[i, 3]
+        gradient[TILT] = normal[i, 1] * seen[i, _U] - normal[i, 0] * seen[i, _V]
         gradient[TURN], gradient[GRADE] = normal[i, 0] * slab[i, 2], normal[i, 1] * slab[i, 2]
         for j in range(POSE):
-            right[j] += weight * seen[i, 1] * gradient[j]
+            right[j] += weight * seen[i, _OFF] * gradient[j]
             for m in range(POSE):
                 matrix[j, m] += weight * gradient[j] * gradient[m]
 
@@ -279,8 +361,8 @@ def search_kernel(
     slab: _Floats,
     poses: _Floats,
     segments: _Floats,
-    zones: tuple[_Floats, _Integers],
-    limits: tuple[float, float, float],
+    zones: EmptyZones,
+    limits: ScoreLimits,
     scores: _Floats,
 ) -> None:
     """Soft scores of many poses.
@@ -292,7 +374,7 @@ def search_kernel(
         Filled; see `score_kernel`.
     """
     for i in range(poses.shape[0]):
-        _, scores[i], _ = score_kernel(slab, poses[i], segments, zones, limits)
+        scores[i] = score_kernel(slab, poses[i], segments, zones, limits).softly
 
 
 @kernel
@@ -305,9 +387,9 @@ def slab_kernel(
     ----------
     local : (n, 3)
         m, about some origin.
-    frame : (5,)
+    frame : (FRAME,)
         The slab's middle about that origin; direction along in plan.
-    box : (5,)
+    box : (BOX,)
         Least and largest offset and height about the middle; half the thickness, m.
     slab : (n, 3)
         Offset to the right, height, distance along.
@@ -316,12 +398,13 @@ def slab_kernel(
     """
     count = 0
     for i in range(local.shape[0]):
-        east, north = local[i, 0] - frame[0], local[i, 1] - frame[1]
-        along = east * frame[3] + north * frame[4]
-        if abs(along) > box[4]:
+        east, north = local[i, 0] - frame[EAST], local[i, 1] - frame[NORTH]
+        along = east * frame[ALONG_EAST] + north * frame[ALONG_NORTH]
+        if abs(along) > box[HALF_WIDTH]:
             continue
-        right, up = east * frame[4] - north * frame[3], local[i, 2] - frame[2]
-        if box[0] <= right <= box[1] and box[2] <= up <= box[3]:
+        right = east * frame[ALONG_NORTH] - north * frame[ALONG_EAST]
+        up = local[i, 2] - frame[UP]
+        if box[LEFT] <= right <= box[RIGHT] and box[LOWEST] <= up <= box[HIGHEST]:
             slab[count, 0], slab[count, 1], slab[count, 2] = right, up, along
             chosen[count] = i
             count += 1
@@ -331,10 +414,11 @@ def slab_kernel(
 def warm_up() -> None:
     """Compile the kernels."""
     segments = np.array([[0.0, 0.0, 1.0, 0.0, 1.0, 0.0, 5.0, 0.0, 0.0]])
-    zones = np.zeros((0, 2)), np.zeros(1, np.int64)
+    zones = EmptyZones(np.zeros((0, 2)), np.zeros(1, np.int64))
     slab, chosen = np.zeros((2, 3)), np.zeros(2, np.int64)
     slab_kernel(slab.copy(), np.array([0.0, 0, 0, 0, 1]), np.ones(5), slab, chosen)
-    limits = (0.02, 0.1, 1.0)
+    limits = ScoreLimits(0.02, 0.1, 1.0)
     score_kernel(slab, np.zeros(POSE), segments, zones, limits)
     search_kernel(slab, np.zeros((1, POSE)), segments, zones, limits, np.zeros(1))
-    refine_kernel(slab, np.zeros(POSE), (np.zeros(POSE), np.ones(POSE)), segments, 0.02)
+    expected = ExpectedPose(np.zeros(POSE), np.ones(POSE))
+    refine_kernel(slab, np.zeros(POSE), expected, segments, 0.02)

@@ -19,8 +19,16 @@ _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
 
 _SIMPLER_M = 0.005
+"""Vertices that lie no farther from a line without them are left out: a scanner's noise."""
+
 _RESTS_WITHIN_M = 0.05
+"""A measured point so near to a vertex is one that it rests on; by judgement."""
+
 _FEWEST_POSITIONS = 3
+"""Of a line that is kept: two sections may show by chance what looks like the shape."""
+
+_SAMPLES_PER_METRE = 4
+"""Scores asked for the mean of each metre."""
 
 
 @dataclass(frozen=True)
@@ -111,8 +119,9 @@ def _positions(walk: TemplatePath, made: MadeLine) -> _Floats:
 
 
 def _per_metre(along: _Floats, scores: _Floats) -> _Floats:
-    """Mean score of the places in each metre; between places as at the nearest ones."""
-    middles = np.arange(0.0, max(along[-1], 1.0), 0.25) + 0.125
+    """Mean score of the positions in each metre, linear between them."""
+    step_m = 1.0 / _SAMPLES_PER_METRE
+    middles = np.arange(0.0, max(along[-1], 1.0), step_m) + step_m / 2
     between = np.interp(middles, along, scores)
     metre = middles.astype(np.int64)
     means: _Floats = np.bincount(metre, between) / np.bincount(metre)
@@ -120,7 +129,7 @@ def _per_metre(along: _Floats, scores: _Floats) -> _Floats:
 
 
 def _along(positions: _Floats) -> _Floats:
-    """(n,) plan distance from the first place along the line."""
+    """(n,) plan distance from the first position along the line."""
     steps = np.linalg.norm(np.diff(positions[:, :2], axis=0), axis=1)
     return np.concatenate([[0.0], np.cumsum(steps)])
 

@@ -11,12 +11,18 @@ from processing.core.monitor import Monitor
 from processing.core.text import Text
 from processing.methods.templates.fit import FitSettings, fit_at
 from processing.methods.templates.profile_template import ProfileTemplate
-from processing.methods.templates.slab import SectionFrame, SlabReader
+from processing.methods.templates.slab import SectionFrame, SlabBox, SlabReader
 from processing.recording.drive import Drive
 
 _ASIDE_M = 0.3
+"""To either side of the start within which points tell levels; by trial, a curb's surroundings."""
+
 _APART_M = 0.25
+"""Points whose heights differ by less are of one level: more than a curb's step, less than a
+storey. By trial."""
+
 _FEWEST = 5
+"""Points of a level, so that strays are none; by trial."""
 
 
 def levels_near(
@@ -34,7 +40,7 @@ def levels_near(
         No point is near the start.
     """
     level = SectionFrame(np.array([frame.position[0], frame.position[1], 0.0]), frame.heading_rad)
-    reader = SlabReader(drive, settings.width_m, (-_ASIDE_M, _ASIDE_M, -math.inf, math.inf))
+    reader = SlabReader(drive, settings.width_m, SlabBox(-_ASIDE_M, _ASIDE_M, -math.inf, math.inf))
     heights = np.sort(reader.slab(level).local[:, 1])
     best, most = None, -1.0
     lowest = -math.inf

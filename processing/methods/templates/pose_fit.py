@@ -1,4 +1,8 @@
-"""A template laid on the points of one slab."""
+"""A template laid on the points of one slab.
+
+Where a constant says “by trial”, it was set on the left head of a simulated town street; no
+measurement varied it alone. Scores of all values together are in docs/accuracy.md.
+"""
 
 from __future__ import annotations
 
@@ -14,6 +18,8 @@ from processing.methods.templates.fit_kernels import (
     OFFSET,
     POSE,
     TILT,
+    ExpectedPose,
+    ScoreLimits,
     refine_kernel,
     score_kernel,
     search_kernel,
@@ -24,17 +30,39 @@ from processing.methods.templates.slab import SlabPoints
 _Floats = NDArray[np.float64]
 
 _FEWEST = 12
+"""Points of a slab that can show a shape; by trial."""
+
 _SEARCHED_POINTS = 400
+"""Points by which the poses of a search are compared; by trial, it only finds where to begin."""
+
 _SEARCH_STEP_M = 0.02
-_SEARCHED_AT_ONCE = 250  # poses between two checks: some 10 ms
+"""From one pose of a search to the next: the usual tolerance, so that none is passed over."""
+
+_SEARCH_TOLERANCES = 1.5
+"""Tolerance of a search, in the template's: the best pose may lie between two that are tried."""
+
+_SEARCHED_AT_ONCE = 250
+"""Poses between two checks: some 10 ms."""
+
 TILTS_RAD = (0.0, math.radians(-3.0), math.radians(3.0))
 """Searched where nothing is known of the tilt."""
-_BEST_KEPT = 3
+
+_LOOKED_THROUGH, _BEST_KEPT, _APART_STEPS = 200, 3, 2
+"""Of a search's poses, how many of the best are looked through, how many are refined, and by how
+many steps these lie apart; by trial."""
+
 _UNDETERMINED = 0.5
-"""A shape that fits as well beside its place (a level piece of road) scores no more than this."""
-_ASIDE = 3.0  # in tolerances
+"""A shape that fits as well beside its position, as a level piece of road, scores no more."""
+
+_ASIDE_TOLERANCES = 3.0
+"""How far aside it is tried for that: out of what the tolerance covers."""
+
 _CONTRAST_WEIGHT = 5.0
-_AWAY_COSTS = 0.10  # of the score, at the end of what is searched
+"""By which a score may be higher than ``_UNDETERMINED`` for what it is higher than aside: a tenth
+more is a full score. By trial."""
+
+_AWAY_COSTS = 0.10
+"""Of the score, at the end of what is searched: of two alike the nearer is meant. By trial."""
 
 
 @dataclass(frozen=True)
@@ -72,7 +100,7 @@ class PosePrior:
 
 def refine_pose(shape: FittableTemplate, slab: SlabPoints, expected: PosePrior) -> PoseFit:
     """The pose nearest to the one expected."""
-    return _refined_from(shape, slab, expected, expected.pose)
+    return _refine_from(shape, slab, expected, expected.pose)
 
 
 def search_pose(
@@ -100,7 +128,7 @@ def search_pose(
     poses = _grid(expected.pose, reach, tilts)
     scores = np.empty(len(poses))
     step = float(max(1, slab.points.size // _SEARCHED_POINTS))
-    limits = (1.5 * shape.tolerance_m, shape.reach_m, step)
+    limits = ScoreLimits(_SEARCH_TOLERANCES * shape.tolerance_m, shape.reach_m, step)
     for first in range(0, len(poses), _SEARCHED_AT_ONCE):
         monitor.check()
         some = slice(first, first + _SEARCHED_AT_ONCE)
@@ -111,26 +139,25 @@ def search_pose(
     for start in _far_apart(poses, scores):
         monitor.check()
         moved = PosePrior(poses[start], expected.spread)
-        found = _refined_from(shape, slab, moved, poses[start])
+        found = _refine_from(shape, slab, moved, poses[start])
         if found.score > best.score:
             best = found
     return best
 
 
-def _refined_from(
+def _refine_from(
     shape: FittableTemplate, slab: SlabPoints, expected: PosePrior, start: _Floats
 ) -> PoseFit:
     if slab.points.size < _FEWEST:
         return _nothing(expected)
     pose = start.copy()
-    refine_kernel(
-        slab.local, pose, (expected.pose, expected.spread), shape.segments, shape.tolerance_m
-    )
+    prior = ExpectedPose(expected.pose, expected.spread)
+    refine_kernel(slab.local, pose, prior, shape.segments, shape.tolerance_m)
     score, seen = _score(shape, slab, pose)
     if score > _UNDETERMINED:
         cos, sin = math.cos(pose[TILT]), math.sin(pose[TILT])
         across, up = shape.weak_direction
-        aside = _ASIDE * shape.tolerance_m
+        aside = _ASIDE_TOLERANCES * shape.tolerance_m
         shift = np.zeros(POSE)
         shift[OFFSET] = aside * (across * cos - up * sin)
         shift[HEIGHT] = aside * (across * sin + up * cos)
@@ -140,9 +167,9 @@ def _refined_from(
 
 
 def _score(shape: FittableTemplate, slab: SlabPoints, pose: _Floats) -> tuple[float, float]:
-    limits = (shape.tolerance_m, shape.reach_m, 1.0)
-    score, _, seen = score_kernel(slab.local, pose, shape.segments, shape.zones, limits)
-    return float(score), float(seen)
+    limits = ScoreLimits(shape.tolerance_m, shape.reach_m, 1.0)
+    found = score_kernel(slab.local, pose, shape.segments, shape.zones, limits)
+    return float(found.score), float(found.seen)
 
 
 def _nothing(expected: PosePrior) -> PoseFit:
@@ -166,9 +193,9 @@ def _grid(middle: _Floats, reach: tuple[float, float], tilts: tuple[float, ...])
 def _far_apart(poses: _Floats, scores: _Floats) -> list[int]:
     """The best few poses that aren't neighbours."""
     chosen: list[int] = []
-    for number in np.argsort(-scores)[:200].tolist():
+    for number in np.argsort(-scores)[:_LOOKED_THROUGH].tolist():
         steps = [np.abs(poses[number] - poses[one])[[OFFSET, HEIGHT]].max() for one in chosen]
-        if not steps or min(steps) > 2 * _SEARCH_STEP_M:
+        if not steps or min(steps) > _APART_STEPS * _SEARCH_STEP_M:
             chosen.append(number)
         if len(chosen) == _BEST_KEPT:
             break

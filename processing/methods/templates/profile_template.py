@@ -15,12 +15,19 @@ ProfilePoint = tuple[float, float]
 TemplateProfile = tuple[ProfilePoint, ...]
 
 USUAL_TOLERANCE_M = 0.02
+"""How far points may lie off the shape: a scanner's noise, a worn edge and a line drawn by hand."""
+
 LEAST_TOLERANCE_M, MOST_TOLERANCE_M = 0.003, 0.20
-_LARGEST_M = 10.0
-_SMALLEST_M = 0.02
+"""From a scanner's noise to what still tells a curb from none."""
+
+_LARGEST_M, _SMALLEST_M = 10.0, 0.02
+"""Sides of a template: a carriageway's, and what a tolerance leaves of a step."""
+
 _SAME_M = 1e-6
-_MOST_POSITIONS = 200
-_LONGEST_NAME = 80
+"""Vertices nearer than this are one."""
+
+_MOST_POSITIONS, _LONGEST_NAME = 200, 80
+"""Vertices and letters; more are a slip, or a damaged file."""
 
 
 @dataclass(frozen=True)

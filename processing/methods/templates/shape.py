@@ -10,14 +10,27 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.methods.templates.fit_kernels import ALONG_U, ALONG_V, LENGTH, SEGMENT
+from processing.methods.templates.fit_kernels import (
+    ALONG_U,
+    ALONG_V,
+    LENGTH,
+    SEGMENT,
+    EmptyZones,
+)
 from processing.methods.templates.profile_template import ProfilePoint, ProfileTemplate
+from processing.methods.templates.slab import SlabBox
 
 _Floats = NDArray[np.float64]
 
 _BIN_M = 0.02
-_LEAST_REACH_M, _MOST_REACH_M = 0.10, 0.30
+"""Length of the shape in which points are counted together: the usual tolerance."""
+
+_LEAST_REACH_M, _MOST_REACH_M, _REACH_TOLERANCES = 0.10, 0.30, 3
+"""How far off the shape points count against it, at least and at most, and in tolerances at least:
+about a low curb's height, and what is beside any curb. By trial."""
+
 _SHORTEST_M = 1e-4
+"""Pieces no longer than this have no direction; templates are written to the tenth of a mm."""
 
 
 @dataclass(frozen=True)
@@ -29,7 +42,7 @@ class FittableTemplate:
     template : ProfileTemplate
     segments : (k, SEGMENT) float64
         Straight pieces; see `fit_kernels`.
-    zones : tuple of (z, 2) float64 and (rings + 1,) int64
+    zones : EmptyZones
     tolerance_m : float
     reach_m : float
         Points within it that don't lie on the shape count against it: as far as the shape is high,
@@ -38,7 +51,7 @@ class FittableTemplate:
 
     template: ProfileTemplate
     segments: _Floats
-    zones: tuple[_Floats, NDArray[np.int64]]
+    zones: EmptyZones
     tolerance_m: float
     reach_m: float
 
@@ -48,12 +61,13 @@ class FittableTemplate:
         tolerance = tolerance_m or template.tolerance_m
         heights = [position[1] for position in template.vertices]
         reach = max(heights) - min(heights) + 2 * tolerance
+        least = _REACH_TOLERANCES * tolerance
         return FittableTemplate(
             template,
             _segments(template),
             _zones(template),
             tolerance,
-            min(max(reach, _LEAST_REACH_M, 3 * tolerance), max(_MOST_REACH_M, 3 * tolerance)),
+            min(max(reach, _LEAST_REACH_M, least), max(_MOST_REACH_M, least)),
         )
 
     @cached_property
@@ -64,11 +78,11 @@ class FittableTemplate:
         across, up = np.linalg.eigh(scatter)[1][:, 1]
         return float(across), float(up)
 
-    def box(self, more_m: float) -> tuple[float, float, float, float]:
-        """Least and largest offset and height of what a fit looks at, and some more around."""
+    def box(self, more_m: float) -> SlabBox:
+        """What a fit looks at, and some more around."""
         left, right, low, high = self.template.box
         aside = self.reach_m + more_m
-        return left - aside, right + aside, low - aside, high + aside
+        return SlabBox(left - aside, right + aside, low - aside, high + aside)
 
 
 def _segments(template: ProfileTemplate) -> _Floats:
@@ -91,11 +105,12 @@ def _segments(template: ProfileTemplate) -> _Floats:
 
 
 def _touching(pieces: list[tuple[ProfilePoint, ProfilePoint]], position: ProfilePoint) -> int:
-    """How many pieces end at a place."""
+    """How many pieces end at a position."""
     return sum(math.dist(position, end) <= _SHORTEST_M for piece in pieces for end in piece)
 
 
-def _zones(template: ProfileTemplate) -> tuple[_Floats, NDArray[np.int64]]:
+def _zones(template: ProfileTemplate) -> EmptyZones:
     positions = [position for ring in template.empty for position in ring]
     starts = np.cumsum([0, *(len(ring) for ring in template.empty)])
-    return np.array(positions, dtype=np.float64).reshape(-1, 2), starts.astype(np.int64)
+    corners = np.array(positions, dtype=np.float64).reshape(-1, 2)
+    return EmptyZones(corners, starts.astype(np.int64))

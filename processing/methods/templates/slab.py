@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,10 +18,22 @@ _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
 
 STRETCH_M = 8.0
-"""Length of street that is read at a time."""
+"""Length of street that is read at a time: sixteen steps. It changes the time only."""
 
 _MOST_PER_SLAB = 2500
-"""More points than this make a fit slower, not better."""
+"""More points than this make a fit slower, not better; by trial."""
+
+_READ_BESIDE_M = 0.5
+"""Beyond a slab's ends, so that the next ones along a bend are read with it."""
+
+
+class SlabBox(NamedTuple):
+    """Least and largest offset and height about a frame that a slab holds, m."""
+
+    left: float
+    right: float
+    low: float
+    high: float
 
 
 @dataclass(frozen=True)
@@ -49,7 +62,7 @@ class SectionFrame:
         return np.array([math.sin(self.heading_rad), -math.cos(self.heading_rad), 0.0])
 
     def in_space(self, offset: float, height: float) -> _Floats:
-        """(3,) a place of the section, m, project CRS."""
+        """(3,) a position in the section, m, project CRS."""
         found: _Floats = self.position + offset * self.right + np.array([0.0, 0.0, height])
         return found
 
@@ -61,7 +74,7 @@ class SlabPoints:
     Attributes
     ----------
     local : (n, 3) float64
-        Offset to the right, height, distance along, about the frame's place, m.
+        Offset to the right, height, distance along, about the frame's position, m.
     points : (n,) int64
         Their indices in the drive.
     """
@@ -78,8 +91,7 @@ class SlabReader:
     drive : Drive
     width_m : float
         Thickness of a slab.
-    box : tuple of float
-        Least and largest offset and height about a frame that a slab holds, m.
+    box : SlabBox
     stretch_m : float
         Length of street that is read at a time.
     """
@@ -88,7 +100,7 @@ class SlabReader:
         self,
         drive: Drive,
         width_m: float,
-        box: tuple[float, float, float, float],
+        box: SlabBox,
         stretch_m: float = STRETCH_M,
     ) -> None:
         self._drive = drive
@@ -129,7 +141,7 @@ class SlabReader:
         return np.array(
             [
                 frame.position + offset * frame.right + along * frame.along
-                for offset in self._box[:2]
+                for offset in (self._box.left, self._box.right)
                 for along in (-half, half)
             ]
         )
@@ -140,7 +152,7 @@ class SlabReader:
         )
 
     def _read(self, frame: SectionFrame, direction: int) -> None:
-        half = max(-self._box[0], self._box[1]) + 0.5
+        half = max(-self._box.left, self._box.right) + _READ_BESIDE_M
         length = self._stretch_m + self._width_m
         middle = frame.position + direction * (self._stretch_m / 2 - self._width_m) * frame.along
         cut = Cut(

@@ -19,14 +19,21 @@ from processing.methods.templates.profile_template import (
 
 FORMAT = "zuka-template"
 VERSION = 1
+
 _LARGEST_BYTES = 1 << 20
+"""A template has some kilobytes; larger files are something else."""
+
 _DIGITS = 4
+"""After the point: tenths of a millimetre."""
+
+_QUOTED_LETTERS = 40
+"""Of a wrong value, in a message."""
 
 JsonValue = str | int | float | bool | None | list["JsonValue"] | dict[str, "JsonValue"]
 
 
 def template_text(template: ProfileTemplate) -> str:
-    """A template as one JSON object, its places to the tenth of a millimetre."""
+    """A template as one JSON object, its vertices to the tenth of a millimetre."""
     return json.dumps(values_of(template), ensure_ascii=False, indent=1, allow_nan=False)
 
 
@@ -134,28 +141,28 @@ def _list(values: Mapping[str, Any], key: str) -> list[Any]:  # what JSON can ho
 
 def _profile(value: JsonValue) -> TemplateProfile:
     if not isinstance(value, list):
-        message = f"{str(value)[:40]} is no list of places"
+        message = f"{str(value)[:_QUOTED_LETTERS]} is no list of places"
         raise TypeError(message)
     return tuple(_position(one) for one in value)
 
 
 def _position(value: JsonValue) -> ProfilePoint:
     if not isinstance(value, list) or len(value) != 2:
-        message = f"{str(value)[:40]} is no place [offset, height]"
+        message = f"{str(value)[:_QUOTED_LETTERS]} is no place [offset, height]"
         raise TypeError(message)
     return _number(value[0]), _number(value[1])
 
 
 def _line(value: JsonValue) -> MadeLine:
     if not isinstance(value, dict):
-        message = f"{str(value)[:40]} is no line"
+        message = f"{str(value)[:_QUOTED_LETTERS]} is no line"
         raise TypeError(message)
     return MadeLine(_text(value, "kind"), _position(value.get("at", [0.0, 0.0])))
 
 
 def _number(value: JsonValue) -> float:
     if isinstance(value, bool) or not isinstance(value, int | float):
-        message = f"{str(value)[:40]} is no number"
+        message = f"{str(value)[:_QUOTED_LETTERS]} is no number"
         raise TypeError(message)
     return float(value)
 
