@@ -14,6 +14,7 @@ from processing.core.text import Text
 Floats = NDArray[np.float64]
 
 _UNIT_TOLERANCE = 1e-6
+"""By which a unit vector's length may be off: a micrometre on a metre, more than rounding."""
 
 
 @dataclass(frozen=True)
@@ -23,7 +24,7 @@ class Cut:
     Attributes
     ----------
     middle : tuple of float
-        Easting, northing and height of the place that the slab goes through, m, project CRS.
+        Easting, northing and height of a point that the slab goes through, m, project CRS.
     direction : tuple of float
         Unit vector in plan (east, north) of the section's horizontal axis, which points to the
         right of the picture. One looks at right angles to it, to its left in plan: at a section

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +22,21 @@ _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
 
 MOST_POINTS = 300_000
-"""More points than this make a section no clearer."""
+"""More points than this make a section no clearer: most then lie behind others on a screen."""
+
+_MIDDLE_HALF_M = 1.0
+"""To either side of a cut's middle within which the ground there is looked for."""
+
+
+class _CutPlan(NamedTuple):
+    """A cut about a drive's offset: its middle, direction (a unit vector) and half sides, m."""
+
+    east: float
+    north: float
+    along_east: float
+    along_north: float
+    half_length_m: float
+    half_width_m: float
 
 
 @dataclass(frozen=True)
@@ -95,7 +109,7 @@ def ground_near(drive: Drive, cut: Cut) -> int:
     Looked for within a metre to either side, below the middle: as a trajectory runs above the
     road. The ground is the median height there, and no noise.
     """
-    near = section_points(drive, replace(cut, half_length_m=1.0), hides_noise=True)
+    near = section_points(drive, replace(cut, half_length_m=_MIDDLE_HALF_M), hides_noise=True)
     below = near.section[:, 1] <= cut.middle[2]
     if not below.any():
         return -1
@@ -127,11 +141,19 @@ def _tiles_touched(drive: Drive, cut: Cut) -> _Integers:
     return windows
 
 
-def _plan_of(drive: Drive, cut: Cut) -> _Floats:
-    """The cut about the drive's offset: east, north, direction, half length, half width."""
+def _plan_of(drive: Drive, cut: Cut) -> _CutPlan:
+    """The cut about the drive's offset."""
     offset = drive.coordinates.quantisation.offset
     east, north = cut.middle[0] - offset[0], cut.middle[1] - offset[1]
-    return np.array([east, north, *cut.direction, cut.half_length_m, cut.width_m / 2])
+    along_east, along_north = cut.direction
+    return _CutPlan(
+        float(east),
+        float(north),
+        float(along_east),
+        float(along_north),
+        float(cut.half_length_m),
+        cut.width_m / 2,
+    )
 
 
 @kernel
@@ -139,18 +161,19 @@ def _inside_kernel(
     integers: NDArray[np.int32],
     scale: _Floats,
     stretches: _Integers,
-    plan: _Floats,
+    plan: _CutPlan,
     found: _Integers,
 ) -> int:
     """Points of stretches within a cut; gives their number."""
     count = 0
     for k in range(stretches.shape[0]):
         for i in range(stretches[k, 0], stretches[k, 1]):
-            east = integers[i, 0] * scale[0] - plan[0]
-            north = integers[i, 1] * scale[1] - plan[1]
-            if abs(north * plan[2] - east * plan[3]) > plan[5]:
+            east = integers[i, 0] * scale[0] - plan.east
+            north = integers[i, 1] * scale[1] - plan.north
+            aside = north * plan.along_east - east * plan.along_north
+            if abs(aside) > plan.half_width_m:
                 continue
-            if abs(east * plan[2] + north * plan[3]) <= plan[4]:
+            if abs(east * plan.along_east + north * plan.along_north) <= plan.half_length_m:
                 found[count] = i
                 count += 1
     return count
@@ -160,5 +183,5 @@ def warm_up() -> None:
     """Compile the kernel for mapped columns, which are read-only."""
     xyz = np.zeros((1, 3), np.int32)
     xyz.flags.writeable = False
-    plan = np.array([0.0, 0.0, 1.0, 0.0, 1.0, 1.0])
+    plan = _CutPlan(0.0, 0.0, 1.0, 0.0, 1.0, 1.0)
     _inside_kernel(xyz, np.ones(2), np.array([[0, 1]]), plan, np.empty(1, np.int64))

@@ -19,22 +19,24 @@ if TYPE_CHECKING:  # processing.recording.drive makes images, so importing it he
 Floats = NDArray[np.float64]
 
 BIN_M = 0.05
-"""The ground line has a place for each so many metres."""
+"""The ground line has a vertex for each so many metres: fine enough for a curb's face."""
 
 _LAYER_M = 0.05
-"""Points so far above the lowest of their bin are the same surface."""
+"""Points up to this above the lowest of their bin are the same surface: a scanner's noise, and the
+fall of a road within a bin. By trial."""
 
 _LOWEST_SHARE = 0.05
-"""Of the points of a bin so many may be stray ones below the ground."""
+"""Share of the points of a bin that may be strays below the ground; by trial."""
 
-_AROUND = 5
-_SPIKE_M = 0.3
-"""A bin so far above the median of five on either side is no ground."""
+_BINS_BESIDE, _SPIKE_M = 5, 0.3
+"""A bin so far above the median of so many on either side is no ground, but a wheel or a post: more
+than a curb is high. By trial."""
 
 _GAP_M = 0.5
-"""Over wider gaps the ground line is interrupted."""
+"""Over wider gaps the ground line is interrupted: what lies in them isn't known. By judgement."""
 
 _MOST_POINTS = 20_000
+"""Of a drawing: more make a file that drawing programs open slowly, and no clearer picture."""
 
 
 @dataclass(frozen=True)
@@ -50,7 +52,7 @@ class DrawnLine:
     aci : int
         AutoCAD colour index.
     xyz : (n, 3) float64
-        Its places, m, project CRS; one place for a point.
+        Its vertices, m, project CRS; one for a point.
     is_closed : bool
         Whether it leads back to the first.
     """
@@ -185,7 +187,7 @@ def ground_line(offsets_m: ArrayLike, heights_m: ArrayLike) -> tuple[Floats, ...
 
 
 def _without_spikes(line: Floats) -> Floats:
-    around = min(_AROUND, (len(line) - 1) // 2)
+    around = min(_BINS_BESIDE, (len(line) - 1) // 2)
     if around < 1:
         return line
     heights = np.pad(line[:, 1], around, mode="reflect")

@@ -16,29 +16,35 @@ from processing.section.cut import Cut
 Floats = NDArray[np.float64]
 
 _CHORD_M = 0.5
-"""The direction at a station is that of the chord from so far before to so far behind it."""
+"""The direction at a station is that of the chord from so far before to so far behind it: a trace's
+own jitter of some centimetres turns it by a few degrees at most."""
 
 _SEARCHED_M = 1.0
+"""To either side of the nearest station, within which that square to the line is looked for: twice
+the chord's half."""
+
 _EXACT_M = 1e-5
+"""To which a station is found: far finer than a millimetre."""
 
 _TURN_M = 1e-3
-"""A line whose chord is shorter turns back there."""
+"""A line whose chord is shorter turns back there: both ends are at one position to a millimetre."""
 
 _DRAWN_STEP_M, _DRIVEN_STEP_M = 1e-3, 0.05
-"""Places nearer than this in plan count as one: on drawn lines, on noisy trajectories."""
+"""Vertices nearer than this in plan count as one: on drawn lines, written in millimetres, and on
+trajectories, which are noisy by some centimetres where a vehicle stands."""
 
 
 class Stations:
-    """A line measured in plan from its first place; straight on beyond its ends.
+    """A line measured in plan from its first vertex; straight on beyond its ends.
 
     Parameters
     ----------
     xyz : (m, 3) float64
-        Its places, m, project CRS.
+        Its vertices, m, project CRS.
     is_closed : bool
         Whether it leads back to the first.
     times : (m,) float64 or None
-        When each place was passed, where the line is a trajectory.
+        When each vertex was passed, where the line is a trajectory.
 
     Attributes
     ----------

@@ -93,7 +93,7 @@ def test_the_ground_below_the_vehicle_is_a_point_of_the_road(street: Drive) -> N
 
 def test_the_kernels_do_the_same_uncompiled() -> None:
     integers = np.array([[0, 0, 0], [900, 400, 5], [2_000, 0, 0], [0, 600, 0]], np.int32)
-    plan = np.array([0.0, 0.0, 1.0, 0.0, 1.0, 0.5])
+    plan = module._CutPlan(0.0, 0.0, 1.0, 0.0, 1.0, 0.5)
     for run in (module._inside_kernel, module._inside_kernel.py_func):  # type: ignore[attr-defined]
         found = np.empty(4, np.int64)
         count = run(integers, np.array([0.001, 0.001]), np.array([[0, 4]]), plan, found)
