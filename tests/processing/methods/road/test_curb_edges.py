@@ -14,13 +14,14 @@ from processing.methods.road.curbs.edges.curb_edge_kernels import (
     MEASURES,
     UPPER_ABOVE,
     UPPER_ACROSS,
+    Window,
     edges_kernel,
     nearest_kernel,
 )
 
 Floats = NDArray[np.float64]
 
-WINDOW = np.array([0.25, 0.5, 80.0, 0.005])
+WINDOW = Window(0.25, 0.5, 80.0, 0.005)
 
 
 def curb_points(

@@ -15,7 +15,7 @@ from processing.methods.road.curbs.steps.curb_filters import (
 )
 from processing.methods.road.curbs.steps.curb_ridges import ridges_of
 from processing.methods.road.curbs.steps.curb_runs import StepRun
-from processing.methods.road.curbs.steps.ridge_kernels import ridges_kernel
+from processing.methods.road.curbs.steps.ridge_kernels import RidgeLimits, ridges_kernel
 from processing.methods.road.curbs.steps.step_columns import (
     LOWER_HEIGHT,
     SIGN,
@@ -120,7 +120,7 @@ def test_walls_wide_tops_and_tops_without_a_front_are_no_ridges(surface: Surface
 
 def test_the_kernel_and_its_plain_form_agree() -> None:
     made = scanlines(strip(), length_m=0.3)
-    limits = np.array([0.03, 0.18, 0.36, 1.0, 3.5])
+    limits = RidgeLimits(0.03, 0.18, 0.36, 1.0, 3.5)
     lines = (made.across_m, made.height_m, made.starts)
     compiled = (np.zeros((9, STEP_COLUMNS)), np.zeros(9))
     plain = (np.zeros((9, STEP_COLUMNS)), np.zeros(9))

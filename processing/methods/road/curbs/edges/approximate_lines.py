@@ -22,16 +22,47 @@ from processing.methods.road.curbs.steps.curb_runs import StepRun
 _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
 
+# "By trial": chosen while the tool was made; no measurement of the single value is recorded.
+
 _SAME_M, _SAME_HEIGHT_M = 0.25, 0.25
+"""Pieces that run so near beside each other are one curb: runs of several passes differ by up to
+the offset of their trajectories (15 cm, `curb_join_kernels`) and their own 3 cm. By trial."""
+
 _SAME_DIRECTION = math.cos(math.radians(30.0))
+"""Cosine: what turns away by more is another curb. By trial."""
+
 _LEAST_STATIONS = 3
+"""A piece has at least three places, 0.75 m: fewer give no direction."""
+
 _ROUGH = Smoothness(stiffness=60.0, kink=0.05)
+"""Of rough lines, m: stiff, since places of runs scatter by some 3 cm; they need only lie within
+the reach of the exact edges. By trial."""
+
+_BRIDGED_WEIGHT, _GAP_WEIGHT = 0.05, 0.001
+"""Weights, of 1, of places that a run bridged, and of those between two pieces, which are straight
+guesses and hold the line only where nothing else does. By trial."""
+
 _ASIDE_M, _ASIDE_PER_M = 0.12, 0.06
-_UP_PER_M = 0.03
+"""How far a piece may begin beside the line of another's end: at once, m, and per metre of the gap
+(3.4°). The one of both that fits worse may be off by twice as much. By trial."""
+
+_UP_M, _UP_PER_M = 0.1, 0.03
+"""The same of the height against that which both rise to: at once, m, and per metre. By trial."""
+
 _TURN = math.cos(math.radians(35.0))
+"""Cosine of the most that a curb turns between two pieces, corners aside. By trial."""
+
 _CORNER_M, _CORNER_TURN = 1.0, math.cos(math.radians(100.0))
 _CORNER_UP_M = 0.05
-"""Ends so near to each other are one corner of small radius, whatever they turn."""
+"""Ends so near to each other, m, and so little apart in height are one corner of small radius,
+whatever they turn up to 100°: right angles, as they were measured."""
+
+_ASIDE_COST = 5.0
+"""A metre aside costs as much as so many metres of gap: of two ways to go on the straighter one is
+taken unless it is far longer. By trial."""
+
+_DIRECTION_M = 2.0
+"""Length of an end that gives its direction. By trial."""
 
 
 @dataclass(frozen=True)
@@ -113,10 +144,10 @@ def approximate_lines_of(runs: Sequence[StepRun], bridge_m: float) -> tuple[Appr
 
     Returns
     -------
-    tuple of Guide
+    tuple of ApproximateLine
         In no order.
     """
-    return _joined(
+    return _join(
         [piece for number, run in enumerate(runs) if (piece := _piece_of(run, number))], bridge_m
     )
 
@@ -124,7 +155,7 @@ def approximate_lines_of(runs: Sequence[StepRun], bridge_m: float) -> tuple[Appr
 def rejoin_lines(
     approximate_lines: Sequence[ApproximateLine], bridge_m: float
 ) -> tuple[ApproximateLine, ...]:
-    """Guides that were prolonged, each place once and those that meet as one."""
+    """Lines that were extended, each place once and those that meet as one."""
     pieces = []
     for approximate_line in approximate_lines:
         of = approximate_line.runs[approximate_line.runs >= 0]
@@ -142,10 +173,10 @@ def rejoin_lines(
                 approximate_line.is_alone,
             )
         )
-    return _joined(pieces, bridge_m)
+    return _join(pieces, bridge_m)
 
 
-def _joined(pieces: Sequence[_Piece], bridge_m: float) -> tuple[ApproximateLine, ...]:
+def _join(pieces: Sequence[_Piece], bridge_m: float) -> tuple[ApproximateLine, ...]:
     kept = _without_doubles(sorted(pieces, key=lambda one: (-one.xyz.shape[0], one.run)))
     return tuple(
         _approximate_line_of([kept[i] for i in chain]) for chain in _chains(kept, bridge_m)
@@ -171,7 +202,7 @@ def _piece_of(run: StepRun, number: int) -> _Piece | None:
     at = np.linspace(0.0, along[-1], count + 1)
     rough = _at(at, along, lower)
     seen = np.interp(at, along, run.is_seen[order].astype(float)) > 0.5
-    weights = np.where(seen, 1.0, 0.05)
+    weights = np.where(seen, 1.0, _BRIDGED_WEIGHT)
     smooth = np.column_stack([smooth_values(rough[:, k], weights, _ROUGH) for k in range(3)])
     step = np.interp(at, along, upper[:, 2] - lower[:, 2])
     left = outwards_of(smooth)
@@ -268,14 +299,14 @@ def _cost(one: _Piece, other: _Piece) -> float:
     if max(aside) > 2 * (_ASIDE_M + _ASIDE_PER_M * long_m):
         return math.inf
     expected = 0.5 * (extension[2] + head[2]) * long_m
-    if abs(gap[2] - expected) > 0.1 + _UP_PER_M * long_m:
+    if abs(gap[2] - expected) > _UP_M + _UP_PER_M * long_m:
         return math.inf
-    return long_m + 5.0 * max(aside)
+    return long_m + _ASIDE_COST * max(aside)
 
 
 def _direction(xyz: _Floats) -> _Floats:
-    """(3,) from the first place on, level length 1, by the first two metres."""
-    end = min(xyz.shape[0] - 1, int(2.0 / STATION_M))
+    """(3,) from the first place on, level length 1, by its beginning."""
+    end = min(xyz.shape[0] - 1, int(_DIRECTION_M / STATION_M))
     ahead = xyz[end] - xyz[0]
     direction: _Floats = ahead / max(float(np.hypot(ahead[0], ahead[1])), 1e-9)
     return direction
@@ -300,7 +331,7 @@ def _approximate_line_of(pieces: Sequence[_Piece]) -> ApproximateLine:
     is_near = (along[after] - along[after - 1]) <= 1.5 * STATION_M
     nearest = np.where(at - along[after - 1] < along[after] - at, after - 1, after)
     is_seen = is_near & seen[nearest]
-    weights = np.where(is_seen, 1.0, 0.001)
+    weights = np.where(is_seen, 1.0, _GAP_WEIGHT)
     rough = _at(at, along, xyz)
     smooth = np.column_stack([smooth_values(rough[:, k], weights, _ROUGH) for k in range(3)])
     first = min(pieces, key=lambda one: (one.drive, -one.xyz.shape[0]))

@@ -1,13 +1,14 @@
-"""Loops that lay carriageway, face and top through the points about one station of a curb.
+"""Loops that fit carriageway, face and top to the points about one station of a curb.
 
-Thesis 6.3 d–f: planes of points within 5 mm, intersected. In the curved frame of the curb (along,
-across, above) each plane has three numbers; they are found by robust least squares with weak
-knowledge of what curbs are (``_PRIOR``), which takes over where points are few.
+Takahashi 2022, section 6.3 d–f: planes of points within 5 mm, intersected. In the curved frame of
+the curb (along, across, above) each plane has three numbers; they are found by robust least squares
+with weak knowledge of what curbs are, which takes over where points are few.
 """
 
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,30 +27,205 @@ of place and of the two heights, m; how many points each surface has; how wide n
 between them, m; how far points of face, carriageway and top lie off them, m RMS. NaN where not
 measured."""
 
+WIDTH, IS_HIDDEN, STEP, IS_EDGING = range(4)
+"""What is known roughly of a station: width of the face, m; 1 where it is hidden; height of the
+step, m; 1 where it is of an edging stone."""
+
+# "By trial": chosen while the tool was made; no measurement of the single value is recorded.
+
 STEP_M = 0.25
-"""Between stations."""
+"""Between stations: half of what Table 6-1 looks at to either side, so that neighbours share points
+and ramps of 70 cm have three."""
 
 _LOW, _HIGH, _FACE = 0, 1, 2
-_REACH_M, _DEEP_M = 0.35, 0.08  # how far and deep carriageway is looked at
-_TOP_M = 0.12  # a stone is at least about as wide
+_HEIGHT, _SLOPE, _SLOPE_ALONG, _TOP_HEIGHT, _TOP_SLOPE, _TOP_SLOPE_ALONG = range(6)
+"""Of the two planes of ground: height at the line, m, slopes across and along; of low and high."""
+
+_LOWER, _UPPER, _BESIDE, _BEFORE, _BELOW = range(5)
+"""Of edges as known by now, m: both across; how far beside them a point of the face may lie; how
+far before the upper edge, and how far below its plane, a point of the top."""
+
+_REACH_M, _DEEP_M = 0.35, 0.08
+"""How far before the edge and how deep below the rough line carriageway is looked at: within the
+0.4 m of Table 6-1; what is deeper is an open gutter. By trial."""
+
+_TOP_M, _TOP_MORE_M = 0.12, 0.03
+"""A stone is at least about as wide; a little more is looked at, as the edge isn't exact yet."""
+
 _CHAMFER_M = 0.03
-_ROUND = 0.32  # of the step, at the top, where an arris may be chamfered or rounded
-_TURNS = 5
-_LEAST_POINTS = 4
-_MOST_POINTS = 400  # more make an edge slower, not better
+"""Width of a chamfer or rounding at the top's edge."""
+
+_ROUND = 0.32
+"""Share of the step, at the top, where an arris may be chamfered or rounded: no point there says
+where the face is. By trial."""
+
+_CLEAR_SHARE, _LEAST_CLEAR_M, _MOST_CLEAR_M = 0.25, 0.006, 0.02
+"""Points of the face lie so far above the carriageway: a share of the step, between the two. By
+trial."""
+
+_EDGE_M = 0.01
+"""Points so near to an edge are of neither surface of ground. By trial."""
+
+_HALF_STEP, _LEAST_HALF_M = 0.5, 0.02
+"""Ground lies within half the step of its plane, on low steps within the latter. By trial."""
+
+_ON_ARRIS_M = 0.006
+"""Beside the upper edge, where the arris may be rounded, the top lies within so much."""
+
+_ON_GROUND_M, _END_M = 0.015, 0.25
+"""Points so near to a plane tell where it ends, at most so far from the rough line. By trial."""
+
+_CLOSE_BELOW_M = 0.02
+"""Behind the narrow top of an edging stone its other face lies close below: a hidden top has no
+lower points at first. By trial."""
+
+_FIRST_BESIDE_M, _LATER_BESIDE_M = 0.12, 0.03
+"""How far beside the edges points of the face are looked for: at first, and once a face was found.
+By trial."""
+
+_ROUNDS = 5
+"""Of surfaces and edges in turn, and of each robust fit: they have settled by then. By trial."""
+
+_WIDE_ROUNDS = (4.0, 2.0, 1.0)
+"""What the tolerance is multiplied with in the first rounds of a fit, and in the rest."""
+
+_LIMIT = 3.0
+"""Points farther off than so many tolerances weigh nothing (biweight)."""
+
+_ABOVE_WEIGHT = 0.5
+"""Of ground above its plane by more than the tolerance: grass and litter lie above, nothing
+below."""
+
+_NOISE_M = 0.005
+"""Noise by which priors are weighed against points: the inlier tolerance of Table 6-1."""
+
+_LEAST_PIVOT, _LEAST_WEIGHT = 1e-12, 1e-6
+"""Guards: of elimination, and of a plane without points, which keeps its first height."""
+
+_FREE_SLOPE, _FREE_ALONG = 0.05, 0.1
+"""Standard deviations of the slopes of ground across about level, and along about the rough line, m
+per m. By trial."""
+
+_FREE_LEAN, _FREE_LEAN_ALONG = 0.15, 0.05
+"""The same of a face's lean about the typical one, and along. By trial."""
+
+_FACE_MIDDLE = 0.4
+"""Share of the step about which a face's height is counted, so that place and lean are independent:
+the middle of what is neither carriageway nor arris."""
+
+_LEAST_POINTS, _LEAST_FACE_POINTS = 4, 3
+"""With fewer points nothing is fitted: one more than a plane's unknowns; a face's are held."""
+
+_MOST_POINTS = 400
+"""More make an edge slower, not better."""
+
 _LEAST_TOP = 3.0
-_UNSEEN, _ROUGH_M = 0.05, 0.005  # a rough line's height is worth so many points
+"""Weight of the points that a top must have, as a plane has three unknowns."""
+
+_UNSEEN, _ROUGH_M = 0.05, 0.005
+"""A rough line's height, where the carriageway is hidden, is worth so many points of so much
+noise."""
+
 _NOISY, _NOISIEST_M = 1.5, 0.02
+"""Where ground is rough the tolerance is so many times the RMS of the quieter surface, up to the
+latter. By trial."""
+
 _TOP_SPACING_M, _ASIDE_M = 0.03, 0.08
-_RAISED = 0.7  # of the rough step: what lies higher is no soil and little of a face
+"""Before the first point of a hidden top its edge lies at most so far; so far before the rough edge
+a hidden top may begin. By trial."""
+
+_RAISED = 0.7
+"""Of the rough step: what lies higher is no soil and little of a face. By trial."""
+
 _LEAST_FACE, _TYPICAL_LEAN = 2.5, 0.08
+"""Weight of points from which a face is placed by them; lean of upright kerb stones, m across per m
+of height. By trial."""
+
+_MOST_ASIDE_M = 0.15
+"""Where no points lie on the face the edge is within so much of the rough line."""
+
+_LEAST_ERROR_M, _UNPLACED_M, _OF_GAP = 0.002, 0.01, 0.29
+"""No edge is known better; one without points on its face lies somewhere in a gap, whose standard
+deviation is the latter share of its width (1 / √12), and is known no better than 1 cm."""
+
+_LOW_STEP, _LEAST_STEP_M = 5.0, 0.002
+"""From steps as low as so many tolerances on, the error across grows by the fourth power. By
+trial."""
+
+_BEFORE_M, _BEFORE_MORE_M = (-0.25, -0.05), (-0.4, -0.02)
+_BEHIND_M, _BEHIND_MORE_M, _BEHIND_HIDDEN_M = (0.04, 0.16), (0.02, 0.3), (-0.06, 0.16)
+"""Where rough heights are taken, across: before the lower edge, and wider where that holds too few;
+behind the upper edge, wider, and about one that is hidden. By trial."""
+
+_LOW_SHARE, _GUTTER_SHARE, _HIGH_SHARE, _HIDDEN_SHARE = 0.4, 0.8, 0.5, 0.6
+"""Quantiles of rough heights: the carriageway a little below the median, as things lie on it; that
+beside an open gutter high, that of tops in the middle, that of hidden ones higher since soil lies
+among them. By trial."""
+
+
+class Window(NamedTuple):
+    """Points that are looked at about a station.
+
+    Attributes
+    ----------
+    half_m, most_m : float
+        Half the window, and half the longest one, which is used where the other holds too few.
+    enough : float
+        Points that are enough in one.
+    tolerance_m : float
+        How far a point may lie off a surface.
+    """
+
+    half_m: float
+    most_m: float
+    enough: float
+    tolerance_m: float
+
+
+class _Prior(NamedTuple):
+    """What is known of a plane before its points.
+
+    Attributes
+    ----------
+    tolerance_m : float
+    value_m : float
+        Height of ground, or place of a face across.
+    slope : float
+    free, free_along : float
+        Standard deviations of the slopes.
+    """
+
+    tolerance_m: float
+    value_m: float
+    slope: float
+    free: float
+    free_along: float
+
+
+class _Plane(NamedTuple):
+    """A plane: value at the line, m; slope, slope along; weight of its points, their RMS, m."""
+
+    value_m: float
+    slope: float
+    slope_along: float
+    weight: float
+    off_m: float
+
+
+class _Face(NamedTuple):
+    """A face: place across at height 0, m; its lean; weight of its points, their RMS, m."""
+
+    across_m: float
+    lean: float
+    weight: float
+    off_m: float
 
 
 @kernel
 def _solve(m: _Floats, out: _Floats) -> bool:
     """Solve three equations (3, 4) by elimination; all pivots are positive by the priors."""
     for i in range(3):
-        if m[i, i] <= 1e-12:
+        if m[i, i] <= _LEAST_PIVOT:
             return False
         for j in range(i + 1, 3):
             factor = m[j, i] / m[i, i]
@@ -65,20 +241,18 @@ def _solve(m: _Floats, out: _Floats) -> bool:
 
 @kernel
 def _plane(
-    which: int, span: tuple[int, int], values: _Floats, kinds: _Integers, scales: _Floats
-) -> tuple[float, float, float, float, float]:
-    """A plane through the points of one kind: value, its slope, its slope along; weight, RMS.
+    which: int, span: tuple[int, int], values: _Floats, kinds: _Integers, prior: _Prior
+) -> _Plane:
+    """A plane through the points of one kind.
 
     Of ground the height by the distance across; of a face the distance across by the height.
-    ``scales``: tolerance, first value, typical slope, and the freedom of the slopes.
     """
-    tolerance, start, slope, free, free_along = scales
+    tolerance, start, slope, free, free_along = prior
     m, out = np.empty((3, 4)), np.array([start, slope, 0.0])
-    noise = 0.005
     total, square = 0.0, 0.0
-    for turn in range(_TURNS):
+    for number in range(_ROUNDS):
         m[:] = 0.0
-        limit = tolerance * (4.0 if turn == 0 else (2.0 if turn == 1 else 1.0)) * 3.0
+        limit = tolerance * _WIDE_ROUNDS[min(number, 2)] * _LIMIT
         total, square = 0.0, 0.0
         for i in range(span[0], span[1]):
             if kinds[i - span[0]] != which:
@@ -91,7 +265,7 @@ def _plane(
                 continue
             weight = (1.0 - (off / limit) ** 2) ** 2
             if off > tolerance and which != _FACE:
-                weight *= 0.5  # grass and litter lie above, nothing below
+                weight *= _ABOVE_WEIGHT
             total += weight
             square += weight * off * off
             row = (1.0, x, t)
@@ -99,14 +273,14 @@ def _plane(
                 for b in range(3):
                     m[a, b] += weight * row[a] * row[b]
                 m[a, 3] += weight * row[a] * y
-        m[0, 0] += 1e-6
-        m[0, 3] += 1e-6 * start
-        m[1, 1] += (noise / free) ** 2
-        m[1, 3] += (noise / free) ** 2 * slope
-        m[2, 2] += (noise / free_along) ** 2
+        m[0, 0] += _LEAST_WEIGHT
+        m[0, 3] += _LEAST_WEIGHT * start
+        m[1, 1] += (_NOISE_M / free) ** 2
+        m[1, 3] += (_NOISE_M / free) ** 2 * slope
+        m[2, 2] += (_NOISE_M / free_along) ** 2
         if total <= 0.0 or not _solve(m, out):
-            return start, slope, 0.0, 0.0, math.nan
-    return out[0], out[1], out[2], total, math.sqrt(square / total)
+            return _Plane(start, slope, 0.0, 0.0, math.nan)
+    return _Plane(out[0], out[1], out[2], total, math.sqrt(square / total))
 
 
 @kernel
@@ -131,22 +305,25 @@ def _sort_into(
     span: tuple[int, int], values: _Floats, edge: _Floats, planes: _Floats, kinds: _Integers
 ) -> None:
     """Which surface each point can be of, by the edges and planes as known by now."""
-    lower, upper = edge[0], edge[1]
+    lower, upper = edge[_LOWER], edge[_UPPER]
     for i in range(span[0], span[1]):
         t, d, h = values[i, 0], values[i, 1], values[i, 2]
-        low = planes[0] + planes[1] * d + planes[2] * t
-        high = planes[3] + planes[4] * d + planes[5] * t
+        low = planes[_HEIGHT] + planes[_SLOPE] * d + planes[_SLOPE_ALONG] * t
+        high = planes[_TOP_HEIGHT] + planes[_TOP_SLOPE] * d + planes[_TOP_SLOPE_ALONG] * t
         step = max(high - low, 0.0)
         kind = -1
-        clear, clear_m = min(max(0.25 * step, 0.006), 0.02), upper + _CHAMFER_M
-        if d < lower - 0.01 and h < low + max(0.5 * step, 0.02):
+        half = max(_HALF_STEP * step, _LEAST_HALF_M)
+        clear = min(max(_CLEAR_SHARE * step, _LEAST_CLEAR_M), _MOST_CLEAR_M)
+        if d < lower - _EDGE_M and h < low + half:
             kind = _LOW
-        elif d > upper + 0.01 - edge[3]:
-            below = max(0.5 * step, 0.02) if d > clear_m else 0.006
-            kind = _HIGH if h > high - min(below, edge[4]) else -1
-        if lower - edge[2] <= d <= upper + edge[2] and low + clear < h < high - _ROUND * step:
+        elif d > upper + _EDGE_M - edge[_BEFORE]:
+            below = half if d > upper + _CHAMFER_M else _ON_ARRIS_M
+            kind = _HIGH if h > high - min(below, edge[_BELOW]) else -1
+        is_beside = lower - edge[_BESIDE] <= d <= upper + edge[_BESIDE]
+        if is_beside and low + clear < h < high - _ROUND * step:
             kind = _FACE
-        kinds[i - span[0]] = kind if d > lower - _REACH_M and d < upper + _TOP_M + 0.03 else -1
+        is_near = d > lower - _REACH_M and d < upper + _TOP_M + _TOP_MORE_M
+        kinds[i - span[0]] = kind if is_near else -1
 
 
 @kernel
@@ -157,14 +334,14 @@ def _ends(
     last, first = -math.inf, math.inf
     for i in range(span[0], span[1]):
         t, d, h = values[i, 0], values[i, 1], values[i, 2]
-        low = planes[0] + planes[1] * d + planes[2] * t
-        high = planes[3] + planes[4] * d + planes[5] * t
+        low = planes[_HEIGHT] + planes[_SLOPE] * d + planes[_SLOPE_ALONG] * t
+        high = planes[_TOP_HEIGHT] + planes[_TOP_SLOPE] * d + planes[_TOP_SLOPE_ALONG] * t
         middle = 0.5 * (low + high)
         if kinds[i - span[0]] == _FACE:
             continue
-        if abs(h - low) < 0.015 and h < middle and d > last and d < 0.25:
+        if abs(h - low) < _ON_GROUND_M and h < middle and d > last and d < _END_M:
             last = d
-        if abs(h - high) < 0.015 and h >= middle and d < first and d > -0.25:
+        if abs(h - high) < _ON_GROUND_M and h >= middle and d < first and d > -_END_M:
             first = d
     return last, first
 
@@ -172,29 +349,34 @@ def _ends(
 @kernel
 def _levels(values: _Floats, span: tuple[int, int], start: _Floats) -> tuple[float, float]:
     """Rough heights of carriageway and top; NaN where there are too few points."""
-    width, is_hidden, step = start[0], start[1] > 0.5, start[2]
-    low = _middle(values, span, (-0.25, -0.05), -math.inf, 0.4)
+    width, is_hidden, step = start[WIDTH], start[IS_HIDDEN] > 0, start[STEP]
+    low = _middle(values, span, _BEFORE_M, -math.inf, _LOW_SHARE)
     if math.isnan(low):
-        low = _middle(values, span, (-0.4, -0.02), -math.inf, 0.4)
+        low = _middle(values, span, _BEFORE_MORE_M, -math.inf, _LOW_SHARE)
     if low < -_DEEP_M:  # between an open gutter and the curb there is some ground
-        low = _middle(values, span, (-0.4, -0.02), -_DEEP_M, 0.8)
+        low = _middle(values, span, _BEFORE_MORE_M, -_DEEP_M, _GUTTER_SHARE)
     high = math.nan
     if is_hidden:
         # Behind a narrow stone the ground may lie as low as before it; the top is no carriageway.
-        low = low if low <= 0.5 * step else math.nan
+        low = low if low <= _HALF_STEP * step else math.nan
         floor = (0.0 if math.isnan(low) else low) + _RAISED * step
-        high = _middle(values, span, (width - 0.06, width + 0.16), floor, 0.6)
+        near, far = width + _BEHIND_HIDDEN_M[0], width + _BEHIND_HIDDEN_M[1]
+        high = _middle(values, span, (near, far), floor, _HIDDEN_SHARE)
     if math.isnan(high):
-        high = _middle(values, span, (width + 0.04, width + 0.16), -math.inf, 0.5)
+        near, far = width + _BEHIND_M[0], width + _BEHIND_M[1]
+        high = _middle(values, span, (near, far), -math.inf, _HIGH_SHARE)
     if math.isnan(high):
-        high = _middle(values, span, (width + 0.02, width + 0.3), -math.inf, 0.5)
+        near, far = width + _BEHIND_MORE_M[0], width + _BEHIND_MORE_M[1]
+        high = _middle(values, span, (near, far), -math.inf, _HIGH_SHARE)
     return low, high
 
 
 @kernel
-def _station(span: tuple[int, int], values: _Floats, start: _Floats, out: _Floats) -> None:
-    """Edges at a station; ``start``: a row as in :func:`edges_kernel`, and the tolerance."""
-    width, is_hidden, tolerance = start[0], start[1] > 0.5, start[4]
+def _station(
+    span: tuple[int, int], values: _Floats, start: _Floats, least_tolerance: float, out: _Floats
+) -> None:
+    """Edges at a station; ``start`` is a row of what is known roughly."""
+    is_hidden, tolerance = start[IS_HIDDEN] > 0, least_tolerance
     low, high = _levels(values, span, start)
     if math.isnan(high) or (math.isnan(low) and not is_hidden):
         return
@@ -202,39 +384,56 @@ def _station(span: tuple[int, int], values: _Floats, start: _Floats, out: _Float
     kinds = np.empty(span[1] - span[0], np.int64)
     planes = np.array([0.0 if is_shaded else low, 0.0, 0.0, high, 0.0, 0.0])
     # At first a hidden top may begin elsewhere; close below a narrow one its other face may be.
-    aside_m = _ASIDE_M if is_hidden else 0.0
-    below_m = 0.02 if is_hidden and start[3] > 0.5 else math.inf
-    edge = np.array([0.0, width, 0.12, aside_m, below_m])
+    before_m = _ASIDE_M if is_hidden else 0.0
+    below_m = _CLOSE_BELOW_M if is_hidden and start[IS_EDGING] > 0 else math.inf
+    edge = np.array([0.0, start[WIDTH], _FIRST_BESIDE_M, before_m, below_m])
     weights, spread = np.zeros(3), math.nan
-    for turn in range(_TURNS):
+    for number in range(_ROUNDS):
         _sort_into(span, values, edge, planes, kinds)
-        edge[3] = 0.0
-        a = _plane(_LOW, span, values, kinds, np.array([tolerance, planes[0], 0.0, 0.05, 0.1]))
-        b = _plane(_HIGH, span, values, kinds, np.array([tolerance, planes[3], 0.0, 0.05, 0.1]))
-        if b[3] < _LEAST_TOP or (a[3] < _LEAST_POINTS and not is_hidden):
+        edge[_BEFORE] = 0.0
+        a = _ground(_LOW, span, values, kinds, (tolerance, planes[_HEIGHT]))
+        b = _ground(_HIGH, span, values, kinds, (tolerance, planes[_TOP_HEIGHT]))
+        if b.weight < _LEAST_TOP or (a.weight < _LEAST_POINTS and not is_hidden):
             return
-        if a[3] < _LEAST_POINTS:
-            a = (planes[0], 0.0, 0.0, _UNSEEN, _ROUGH_M)
-        planes[:3], planes[3:] = a[:3], b[:3]
-        tolerance = max(start[4], min(_NOISY * min(a[4], b[4]), _NOISIEST_M))
-        weights[0], weights[1] = a[3], b[3]
-        out[LOW_OFF], out[HIGH_OFF] = a[4], b[4]
+        if a.weight < _LEAST_POINTS:
+            a = _Plane(planes[_HEIGHT], 0.0, 0.0, _UNSEEN, _ROUGH_M)
+        planes[:3] = a.value_m, a.slope, a.slope_along
+        planes[3:] = b.value_m, b.slope, b.slope_along
+        tolerance = max(least_tolerance, min(_NOISY * min(a.off_m, b.off_m), _NOISIEST_M))
+        weights[_LOW], weights[_HIGH] = a.weight, b.weight
+        out[LOW_OFF], out[HIGH_OFF] = a.off_m, b.off_m
         _sort_into(span, values, edge, planes, kinds)
-        at = 0.5 * (edge[0] + edge[1])
-        step = b[0] - a[0] + (b[1] - a[1]) * at
-        face = _face(span, values, kinds, np.array([tolerance, a[0] + a[1] * at + 0.4 * step]))
-        weights[2], spread = 0.0 if is_hidden else face[2], face[3]
-        if weights[2] >= _LEAST_FACE:
-            edge[0] = (face[0] + face[1] * a[0]) / (1.0 - face[1] * a[1])
-            edge[1] = (face[0] + face[1] * b[0]) / (1.0 - face[1] * b[1])
-            edge[2] = 0.12 if turn == 0 else 0.03
-            out[LEAN] = face[1]
+        at = 0.5 * (edge[_LOWER] + edge[_UPPER])
+        step = b.value_m - a.value_m + (b.slope - a.slope) * at
+        middle = a.value_m + a.slope * at + _FACE_MIDDLE * step
+        face = _face(span, values, kinds, tolerance, middle)
+        weights[_FACE], spread = 0.0 if is_hidden else face.weight, face.off_m
+        if weights[_FACE] >= _LEAST_FACE:
+            foot, top = face.lean * a.value_m, face.lean * b.value_m
+            edge[_LOWER] = (face.across_m + foot) / (1.0 - face.lean * a.slope)
+            edge[_UPPER] = (face.across_m + top) / (1.0 - face.lean * b.slope)
+            edge[_BESIDE] = _FIRST_BESIDE_M if number == 0 else _LATER_BESIDE_M
+            out[LEAN] = face.lean
         else:
             out[LEAN] = math.nan
             if not _without_face(span, values, (kinds, planes, is_hidden), (edge, out)):
                 return
     _measure(planes, edge, weights, (tolerance, spread), out)
-    out[HIGH_POINTS], out[LOW_POINTS] = weights[1], weights[0]
+    out[HIGH_POINTS], out[LOW_POINTS] = weights[_HIGH], weights[_LOW]
+
+
+@kernel
+def _ground(
+    which: int,
+    span: tuple[int, int],
+    values: _Floats,
+    kinds: _Integers,
+    known: tuple[float, float],
+) -> _Plane:
+    """The carriageway or the top; known are the tolerance and a first height, m."""
+    tolerance, height = known
+    prior = _Prior(tolerance, height, 0.0, _FREE_SLOPE, _FREE_ALONG)
+    return _plane(which, span, values, kinds, prior)
 
 
 @kernel
@@ -250,7 +449,7 @@ def _without_face(
     last, first = _ends(span, values, kinds, planes)
     if math.isinf(first) or (math.isinf(last) and not is_hidden):
         return False
-    lean = _TYPICAL_LEAN * max(planes[3] - planes[0], 0.0)
+    lean = _TYPICAL_LEAN * max(planes[_TOP_HEIGHT] - planes[_HEIGHT], 0.0)
     if is_hidden:
         # The edge lies before the first of the top's points by as much as they lie apart.
         count = 0
@@ -258,21 +457,21 @@ def _without_face(
             if kinds[i - span[0]] == _HIGH and values[i, 1] < first + _TOP_M:
                 count += 1
         out[GAP] = min(_TOP_M / max(count, 1), _TOP_SPACING_M)
-        edge[1] = first - out[GAP]
-        edge[0] = edge[1] - lean
+        edge[_UPPER] = first - out[GAP]
+        edge[_LOWER] = edge[_UPPER] - lean
     else:
-        edge[0] = min(max(0.5 * (last + first - lean), -0.15), 0.15)
-        edge[1] = edge[0] + lean
+        middle = 0.5 * (last + first - lean)
+        edge[_LOWER] = min(max(middle, -_MOST_ASIDE_M), _MOST_ASIDE_M)
+        edge[_UPPER] = edge[_LOWER] + lean
         out[GAP] = max(first - last, 0.0)
     return True
 
 
 @kernel
 def _face(
-    span: tuple[int, int], values: _Floats, kinds: _Integers, about: _Floats
-) -> tuple[float, float, float, float]:
-    """The face: across at height 0, its lean, weight and spread of its points."""
-    tolerance, middle = about
+    span: tuple[int, int], values: _Floats, kinds: _Integers, tolerance: float, middle: float
+) -> _Face:
+    """The face, fitted about the height of its middle."""
     count = 0
     across = np.empty(span[1] - span[0])
     for i in range(span[0], span[1]):
@@ -280,18 +479,16 @@ def _face(
             across[count] = values[i, 1]
             values[i, 2] -= middle
             count += 1
-    if count < 3:
-        position = (0.0, 0.0, 0.0, 0.0, math.nan)
+    if count < _LEAST_FACE_POINTS:
+        plane = _Plane(0.0, 0.0, 0.0, 0.0, math.nan)
     else:
         start = float(np.median(across[:count]))
-        free = 0.15
-        position = _plane(
-            _FACE, span, values, kinds, np.array([tolerance, start, _TYPICAL_LEAN, free, 0.05])
-        )
+        prior = _Prior(tolerance, start, _TYPICAL_LEAN, _FREE_LEAN, _FREE_LEAN_ALONG)
+        plane = _plane(_FACE, span, values, kinds, prior)
     for i in range(span[0], span[1]):
         if kinds[i - span[0]] == _FACE:
             values[i, 2] += middle
-    return position[0] - position[1] * middle, position[1], position[3], position[4]
+    return _Face(plane.value_m - plane.slope * middle, plane.slope, plane.weight, plane.off_m)
 
 
 @kernel
@@ -299,28 +496,27 @@ def _measure(
     planes: _Floats, edge: _Floats, weights: _Floats, about: tuple[float, float], out: _Floats
 ) -> None:
     tolerance, spread = about
-    lower, upper = edge[0], edge[1]
+    lower, upper = edge[_LOWER], edge[_UPPER]
     out[LOWER_ACROSS], out[UPPER_ACROSS] = lower, upper
-    out[LOWER_ABOVE] = planes[0] + planes[1] * lower
-    out[UPPER_ABOVE] = planes[3] + planes[4] * upper
+    out[LOWER_ABOVE] = planes[_HEIGHT] + planes[_SLOPE] * lower
+    out[UPPER_ABOVE] = planes[_TOP_HEIGHT] + planes[_TOP_SLOPE] * upper
     step = max(out[UPPER_ABOVE] - out[LOWER_ABOVE], 0.0)
-    out[FACE_POINTS] = weights[2]
+    out[FACE_POINTS] = weights[_FACE]
     out[OFF] = spread
-    floor = 0.002
-    out[ERROR_LOW] = math.sqrt(floor**2 + tolerance**2 / weights[0])
-    out[ERROR_HIGH] = math.sqrt(floor**2 + tolerance**2 / weights[1])
-    if weights[2] >= _LEAST_FACE:
+    out[ERROR_LOW] = math.sqrt(_LEAST_ERROR_M**2 + tolerance**2 / weights[_LOW])
+    out[ERROR_HIGH] = math.sqrt(_LEAST_ERROR_M**2 + tolerance**2 / weights[_HIGH])
+    if weights[_FACE] >= _LEAST_FACE:
         noise = max(tolerance, spread)
-        out[ERROR_ACROSS] = math.sqrt(floor**2 + noise**2 / weights[2])
+        out[ERROR_ACROSS] = math.sqrt(_LEAST_ERROR_M**2 + noise**2 / weights[_FACE])
     else:
-        out[ERROR_ACROSS] = max(0.29 * out[GAP], 0.01)
+        out[ERROR_ACROSS] = max(_OF_GAP * out[GAP], _UNPLACED_M)
     # What is about as low as the surfaces are rough has no edge that could be placed.
-    out[ERROR_ACROSS] *= 1.0 + (5.0 * tolerance / max(step, 0.002)) ** 4
+    out[ERROR_ACROSS] *= 1.0 + (_LOW_STEP * tolerance / max(step, _LEAST_STEP_M)) ** 4
 
 
 @kernel
 def edges_kernel(
-    along: _Floats, across_above: _Floats, stations: _Floats, settings: _Floats, measures: _Floats
+    along: _Floats, across_above: _Floats, stations: _Floats, window: Window, measures: _Floats
 ) -> None:
     """Edges at every station of one approximate line.
 
@@ -331,13 +527,12 @@ def edges_kernel(
     across_above : (n, 2) float64
         m.
     stations : (m, 4) float64
-        Rough width of the face, whether it is hidden, rough step, whether it is of an edging.
-    settings : (4,) float64
-        Half the window, the longest half window, points that are enough in one, tolerance.
+        What is known roughly of each.
+    window : Window
     measures : (m, MEASURES) float64
         Filled with NaN before.
     """
-    half, most, enough, tolerance = settings
+    half, most, enough, tolerance = window
     first, last = 0, 0
     for k in range(stations.shape[0]):
         while first < along.shape[0] and along[first] < k - most / STEP_M:
@@ -355,8 +550,7 @@ def edges_kernel(
         values = np.empty(((far - near + stride - 1) // stride, 3))
         values[:, 0] = (along[near:far:stride] - k) * STEP_M
         values[:, 1:] = across_above[near:far:stride]
-        start = np.append(stations[k], tolerance)
-        _station((0, values.shape[0]), values, start, measures[k])
+        _station((0, values.shape[0]), values, stations[k], tolerance, measures[k])
 
 
 @kernel
@@ -394,7 +588,7 @@ def warm_up() -> None:
         np.linspace(0, 2, 200),
         position,
         np.zeros((3, 4)),
-        np.array([0.25, 0.5, 50.0, 0.005]),
+        Window(0.25, 0.5, 50.0, 0.005),
         measures,
     )
     nearest_kernel(np.zeros(1), np.zeros((1, 2)), np.zeros((1, 3)), 0.1, np.zeros(1, np.int64))

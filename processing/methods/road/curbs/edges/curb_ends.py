@@ -17,13 +17,18 @@ _Floats = NDArray[np.float64]
 _Flags = NDArray[np.bool_]
 
 FACED = 0.5
-"""Of curbs whose face looks to the vehicle at least this share of places has points on it."""
+"""Of curbs whose face looks to the vehicle at least this share of places has points on it: most. By
+trial: no measurement is recorded."""
 
 _ROUGHER = 1.5
-"""Times the line's own median: pavement differs by less, and soil or grass by more."""
+"""Times the line's own median: pavement differs by less, and soil or grass by more. By trial, on
+lines that went on for 10 to 25 m beyond the last stone along raised lots and planting strips."""
 
-_LEAST_ROUGH_M = 0.002  # by less no scanner tells surfaces apart
-_LEAST_M = 2.0  # what is shorter may be litter, a joint or a wheel
+_LEAST_ROUGH_M = 0.002
+"""By less no scanner tells surfaces apart."""
+
+_LEAST_M = 2.0
+"""What is shorter may be litter, a joint or a wheel."""
 
 
 def own_part(edges: JointEdges, is_known: _Flags, span: tuple[int, int]) -> tuple[int, int]:

@@ -23,23 +23,48 @@ from processing.methods.road.curbs.steps.curb_runs import StepRun
 
 _Floats = NDArray[np.float64]
 
+# "By trial": chosen while the tool was made; no measurement of the single value is recorded.
+
 _LEAST_NOISE_M = 0.002
-_NOISES = 2.5  # places of one face differ by so many times the noise of single points
-_TALLEST_USUAL_M = 0.25  # blocks of JIS A 5371 show no more
-_USUAL_LEAN = 0.3  # half of what a face may lean by Table 6-1, m across per m of height
-_LONG_M = 20.0  # what is longer may well stand behind another curb: a median, the far carriageway
+"""No scanner's points of even ground lie nearer to it."""
+
+_QUIET = 0.25
+"""Share of all stations, the quietest, whose ground is taken for even: more is grass and litter. By
+trial."""
+
+_NOISES = 2.5
+"""Places of one face differ by so many times the noise of single points. By trial."""
+
+_TALLEST_USUAL_M = 0.25
+"""Blocks of JIS A 5371 show no more above the road."""
+
+_USUAL_LEAN = 0.3
+"""Half of what a face may lean by Takahashi 2022, Table 6-1 (30°), m across per m of height."""
+
+_LONG_M = 20.0
+"""What is longer may well stand behind another curb: a median, the far carriageway. By trial."""
+
 _MOST_UNEVEN, _MOST_ROUGH = 1.5, 4.0
 _MOST_RISEN_M, _MOST_ABOVE_M, _MOST_TALL_M, _MOST_FLAT = 0.2, 0.1, 0.2, 0.7
+"""Bounds of facts, so that none outweighs all others; see `CurbFacts` for their units. They were
+set before the weights were fitted."""
+
 _ALONG, _HIDDEN = 0.7, 0.5
-_FIELD_M = 0.25  # below the road: no cross slope of a road comes down so far
+"""A run is along the vehicle's path if it goes on for at least this share of its length (45°); a
+line counts as hidden if at least half of its places are."""
+
+_FIELD_M = 0.25
+"""Below the road: no cross slope of a road comes down so far."""
+
 _LEAST_STATIONS = 4
+"""With fewer stations there are too few differences for a median."""
 
 
 def noise_of(measures: Sequence[_Floats]) -> float:
     """How far points of even ground lie off it, by the quieter quarter of all stations, m."""
     offs = np.concatenate([np.empty(0), *(one[:, LOW_OFF] for one in measures)])
     offs = offs[np.isfinite(offs)]
-    return max(float(np.quantile(offs, 0.25)), _LEAST_NOISE_M) if offs.size else _LEAST_NOISE_M
+    return max(float(np.quantile(offs, _QUIET)), _LEAST_NOISE_M) if offs.size else _LEAST_NOISE_M
 
 
 def facts_of(
@@ -54,7 +79,7 @@ def facts_of(
     Parameters
     ----------
     line : tuple
-        The guide and the line found along it.
+        The approximate line and the curb found along it.
     runs : sequence of StepRun
         What the approximate line is made of.
     edges : JointEdges
@@ -67,7 +92,7 @@ def facts_of(
     approximate_line, curb = line
     stations = slice(int(curb.frame[0, 0]), int(curb.frame[-1, 0]) + 1)
     shares = _shares(approximate_line, stations)
-    # What repeats along a street may cross the way and stand where others have risen.
+    # What repeats along a street may cross the vehicle's path and stand where others have risen.
     lone = 1.0 - _weighed(shares, lambda number: float(runs[number].chance_beside > 0))
     crossing = lone * _weighed(shares, lambda number: float(not _is_along(runs[number]))) > 0.5
     short = lone
@@ -99,7 +124,7 @@ def facts_of(
 
 
 def _shares(approximate_line: ApproximateLine, stations: slice) -> dict[int, float]:
-    """How much of some stations is of each run; of the whole guide where they are of none."""
+    """How much of some stations is of each run; of the whole line where they are of none."""
     of = approximate_line.runs[stations]
     of = of[of >= 0] if (of >= 0).any() else approximate_line.runs[approximate_line.runs >= 0]
     numbers, counts = np.unique(of, return_counts=True)

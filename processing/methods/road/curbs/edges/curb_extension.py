@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import fields, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,33 +31,82 @@ _Floats = NDArray[np.float64]
 
 _Recorded = tuple[Sequence[Drive], Sequence[ChosenPoints]]
 _Settings = tuple[EdgeSettings, float]
-_Way = tuple[
-    int, ApproximateLine, JointEdges
-]  # how many stations it has, its line, what is measured there
+
+
+class _Continuation(NamedTuple):
+    """A way to go on: how many stations it has, its line, what is measured there."""
+
+    count: int
+    line: ApproximateLine
+    edges: JointEdges
+
+
+# "By trial": chosen while the tool was made; no measurement of the single value is recorded.
 
 REACH_M = 30.0
-"""How far a curb is followed beyond its run: round a corner and some way into a side street."""
+"""How far a curb is followed beyond its run: round a corner and some way into a side street. By
+trial."""
 
-_AHEAD = 6  # stations at a time
-_KNOWN = 8  # stations that say how a line goes on
+_AHEAD = 6
+"""Stations that a line is carried on at a time, 1.5 m: as far as its last bend foretells within the
+0.4 m in which edges are looked for. By trial."""
+
+_KNOWN = 8
+"""Stations that say how a line goes on, 2 m. By trial."""
+
 _LEAST = 3
+"""Stations ahead that must have an edge for the line to be followed farther. By trial."""
+
 _LEAP, _LANDING, _LANDED = 24, 8, 7
 """Stations looked over at a time where a curb ends, lowered to the ground or hidden: 6 m, as long
-as an entrance (Table of mms.md 6.1 bridges 8 m); and how many of how many behind have its edge."""
+as an entrance; and how many of how many behind have its edge. By trial."""
+
 _LANDING_M = 0.02
+"""From station to station of a landing the edge moves aside by no more: it is straight. By
+trial."""
+
 _FAN = (0.0, 0.06, -0.06, 0.12, -0.12, 0.18, -0.18, 0.26, -0.26, 0.35, -0.35)
 """Directions of a leap, rad: the last stations of a corner tell it within some 20 degrees, and an
 edge is found within 0.25 m aside."""
-_LEAST_LINE = 20  # stations of a curb that is looked for farther on
-_END = 16  # stations that may lie too far ahead
-_BENDS = (0.0, 0.07, -0.07, 0.2, -0.2)  # more or less turn than up to now, rad a station
-_STRAIGHT = math.nan  # straight on: what is known may hold a corner that ends here
-_LAST = 3  # stations whose direction that is
+
+_LEAST_LINE = 20
+"""Stations of a curb that is looked for beyond a gap, 5 m: shorter ones tell too little of it. By
+trial."""
+
+_END = 16
+"""Stations of an end that may lie too far ahead, 4 m: a run may go on into a mouth. By trial."""
+
+_BENDS = (0.0, 0.07, -0.07, 0.2, -0.2)
+"""More or less turn than up to now, rad a station: radii of 3.6 m and 1.25 m, of corners. By
+trial."""
+
+_MOST_BEND = 0.25
+"""The sharpest turn, rad a station: a radius of 1 m."""
+
+_STRAIGHT = math.nan
+"""Straight on: what is known may hold a corner that ends here."""
+
+_LAST = 3
+"""Stations whose direction that is."""
+
 _HEIGHT_M = 1.2
+"""How far above or below an end points are kept: 30 m of a street that rises by 4 %. By trial."""
+
 _ASIDE_M = 0.2
+"""An edge may lie so far beside where the line was expected: half of what is looked at."""
+
 _LEAST_STEP_M = 0.015
-_STEP_SHARE, _STEP_M = 0.35, 0.03
+"""The step of a dropped curb as measured (`StepSettings.least_dropped_m`)."""
+
+_STEP_SHARE, _STEP_M, _USUAL_OF_END = 0.35, 0.03, 0.75
+"""A step is of the curb if it is no higher than usual by more than this share and this much; usual
+is the latter quantile near the end, as parts may be lowered. By trial."""
+
 _ERROR_M = 0.03
+"""An edge across must be known so well: no better than scanlines tell it already. By trial."""
+
+_ANCHORS = 2
+"""Stations of an extension that are of the line itself."""
 
 
 def extend_lines(
@@ -66,7 +116,7 @@ def extend_lines(
     limits: tuple[float, float],
     monitor: Monitor,
 ) -> tuple[ApproximateLine, ...]:
-    """Guides followed beyond their ends, and joined where they meet.
+    """Lines followed beyond their ends, and joined where they meet.
 
     Parameters
     ----------
@@ -83,7 +133,7 @@ def extend_lines(
     reach = (REACH_M + settings.across_m, _HEIGHT_M)
     parts = parts_of(monitor, [drive.count for drive in drives])
     near = [points_near(one, ends, reach, part) for one, part in zip(drives, parts, strict=True)]
-    now = _trimmed(approximate_lines, (drives, near), (settings, limits[0]))
+    now = _trim(approximate_lines, (drives, near), (settings, limits[0]))
     is_open = np.array([[not one.is_alone] * 2 for one in now], np.bool_)
     is_short = [one.is_alone or one.xyz.shape[0] < _LEAST_LINE for one in now]
     has_leapt = np.array([[short] * 2 for short in is_short], np.bool_)
@@ -104,19 +154,20 @@ def _carry_on(
 ) -> None:
     """Carry all open ends on once; ends without an edge ahead are closed."""
     ends = [(int(approximate_line), int(end)) for approximate_line, end in np.argwhere(is_open)]
-    straight = _counted(approximate_lines, ends, _BENDS[:1], (recorded, settings))
-    short = [end for end, (count, _, _) in zip(ends, straight, strict=True) if count < _AHEAD]
+    straight = _best_continuations(approximate_lines, ends, _BENDS[:1], (recorded, settings))
+    short = [end for end, one in zip(ends, straight, strict=True) if one.count < _AHEAD]
     bent = dict(
         zip(
             short,
-            _counted(approximate_lines, short, (*_BENDS[1:], _STRAIGHT), (recorded, settings)),
+            _best_continuations(
+                approximate_lines, short, (*_BENDS[1:], _STRAIGHT), (recorded, settings)
+            ),
             strict=True,
         )
     )
-    for (approximate_line, end), vehicle_path in zip(ends, straight, strict=True):
-        count, extension, edges = max(
-            vehicle_path, bent.get((approximate_line, end), vehicle_path), key=lambda one: one[0]
-        )
+    for (approximate_line, end), one in zip(ends, straight, strict=True):
+        other = bent.get((approximate_line, end), one)
+        count, extension, edges = max(one, other, key=lambda each: each.count)
         is_open[approximate_line, end] = count >= _LEAST
         if count:
             known = np.isfinite(edges.lower_across)
@@ -144,13 +195,13 @@ def _leap(
         _straight_on(approximate_lines[approximate_line], end, aside)
         for approximate_line, end, aside in fan
     ]
-    measured = _measured(extensions, recorded, settings)
+    measured = _measure(extensions, recorded, settings)
     for (approximate_line, end, _), extension, edges in zip(fan, extensions, measured, strict=True):
         has_leapt[approximate_line, end] = True
         if is_open[approximate_line, end]:
             continue
         is_good = _is_good(edges, approximate_lines[approximate_line], end)
-        count = _landed(_turned(edges) if end == 0 else edges, is_good[:: 1 if end else -1])
+        count = _landing_of(_turn_round(edges) if end == 0 else edges, is_good[:: 1 if end else -1])
         if count:
             approximate_lines[approximate_line] = _longer(
                 approximate_lines[approximate_line], extension, edges, (end, count), is_good
@@ -160,7 +211,7 @@ def _leap(
 
 
 def _straight_on(approximate_line: ApproximateLine, end: int, aside: float) -> ApproximateLine:
-    """A tail as long as a leap, turned aside, rad."""
+    """An extension as long as a leap, turned aside, rad."""
     extension = _extension(approximate_line, end, _STRAIGHT, _LEAP + _LANDING)
     pivot = extension.xyz[-2 if end == 0 else 1]
     cos, sin = math.cos(aside), math.sin(aside)
@@ -169,24 +220,24 @@ def _straight_on(approximate_line: ApproximateLine, end: int, aside: float) -> A
     return replace(extension, xyz=xyz, outwards=outwards_of(xyz))
 
 
-def _landed(edges: JointEdges, is_good: NDArray[np.bool_]) -> int:
+def _landing_of(edges: JointEdges, is_good: NDArray[np.bool_]) -> int:
     """How many stations behind the two known ones there are up to a straight edge; 0: none."""
-    for first in range(2, is_good.size - _LANDING + 1):
+    for first in range(_ANCHORS, is_good.size - _LANDING + 1):
         part = slice(first, first + _LANDING)
         good = is_good[part]
         if is_good[first] and good.sum() >= _LANDED:
             across = edges.lower_across[part][good]
             if np.abs(np.diff(across)).max() <= _LANDING_M:
-                return first - 2 + int(np.flatnonzero(good)[-1]) + 1
+                return first - _ANCHORS + int(np.flatnonzero(good)[-1]) + 1
     return 0
 
 
-def _counted(
+def _best_continuations(
     approximate_lines: Sequence[ApproximateLine],
     ends: Sequence[tuple[int, int]],
     bends: Sequence[float],
     known: tuple[_Recorded, _Settings],
-) -> list[_Way]:
+) -> list[_Continuation]:
     """For each end the best of some ways to go on."""
     extensions = [
         _extension(approximate_lines[approximate_line], end, bend)
@@ -195,31 +246,28 @@ def _counted(
     ]
     if not extensions:
         return []
-    edges = _measured(extensions, *known)
-    ways = []
+    edges = _measure(extensions, *known)
+    best: list[_Continuation] = []
     for number, (approximate_line, end) in enumerate(ends):
         those = range(number * len(bends), (number + 1) * len(bends))
-        counts = [
-            _followed(edges[vehicle_path], approximate_lines[approximate_line], end, 2)
-            for vehicle_path in those
-        ]
-        best = int(np.argmax(counts))
-        ways.append((counts[best], extensions[those[best]], edges[those[best]]))
-    return ways
+        counts = [_followed(edges[one], approximate_lines[approximate_line], end) for one in those]
+        most = int(np.argmax(counts))
+        best.append(_Continuation(counts[most], extensions[those[most]], edges[those[most]]))
+    return best
 
 
-def _trimmed(
+def _trim(
     approximate_lines: Sequence[ApproximateLine],
     recorded: _Recorded,
     settings: _Settings,
 ) -> list[ApproximateLine]:
-    """Guides without what is no edge at their ends: a run may go on too far into a mouth."""
+    """Lines without what is no edge at their ends: a run may go on too far into a mouth."""
     ends = [
         (approximate_line, end)
         for approximate_line in range(len(approximate_lines))
         for end in (0, 1)
     ]
-    edges = _measured(
+    edges = _measure(
         [_end_of(approximate_lines[approximate_line], end) for approximate_line, end in ends],
         recorded,
         settings,
@@ -227,7 +275,7 @@ def _trimmed(
     trimmed = list(approximate_lines)
     for number, (approximate_line, end) in enumerate(ends):
         inside = approximate_lines[approximate_line]
-        backwards = _turned(edges[number]) if end == 1 else edges[number]
+        backwards = _turn_round(edges[number]) if end == 1 else edges[number]
         is_good = _is_good(backwards, inside, end)
         if is_good.any():
             first = int(np.argmax(is_good))
@@ -238,7 +286,7 @@ def _trimmed(
     return trimmed
 
 
-def _measured(
+def _measure(
     extensions: Sequence[ApproximateLine],
     recorded: _Recorded,
     settings: _Settings,
@@ -273,7 +321,7 @@ def _part(approximate_line: ApproximateLine, part: slice) -> ApproximateLine:
     )
 
 
-def _turned(edges: JointEdges) -> JointEdges:
+def _turn_round(edges: JointEdges) -> JointEdges:
     return JointEdges(*(getattr(edges, field.name)[::-1] for field in fields(edges)))
 
 
@@ -292,12 +340,12 @@ def _extension(
         last = float(heading.mean()) + bend * float(away[-1])
     if math.isnan(more_bend):
         last, bend, more_bend = float(np.mean(heading[-_LAST:])), 0.0, 0.0
-    turned = last + np.clip(bend + more_bend, -0.25, 0.25) * np.arange(1, ahead_of + 1)
+    turned = last + np.clip(bend + more_bend, -_MOST_BEND, _MOST_BEND) * np.arange(1, ahead_of + 1)
     rise = float(np.median(ahead[:, 2]))
     going = np.column_stack(
         [np.cos(turned) * STEP_M, np.sin(turned) * STEP_M, np.full(ahead_of, rise)]
     )
-    xyz = np.vstack([known[-2:], known[-1] + np.cumsum(going, axis=0)])[order]
+    xyz = np.vstack([known[-_ANCHORS:], known[-1] + np.cumsum(going, axis=0)])[order]
     positions = np.full(xyz.shape[0], 0 if end == 0 else approximate_line.xyz.shape[0] - 1)
     return replace(
         approximate_line,
@@ -312,12 +360,12 @@ def _extension(
     )
 
 
-def _followed(edges: JointEdges, approximate_line: ApproximateLine, end: int, known: int) -> int:
+def _followed(edges: JointEdges, approximate_line: ApproximateLine, end: int) -> int:
     """How many stations ahead of the known ones have an edge like that of the approximate line."""
-    is_good = _is_good(_turned(edges) if end == 0 else edges, approximate_line, end)
+    is_good = _is_good(_turn_round(edges) if end == 0 else edges, approximate_line, end)
     missing = 0
     count = 0
-    for station, good in enumerate(is_good[known:].tolist()):
+    for station, good in enumerate(is_good[_ANCHORS:].tolist()):
         missing = 0 if good else missing + 1
         if missing > 1:
             break
@@ -328,7 +376,7 @@ def _followed(edges: JointEdges, approximate_line: ApproximateLine, end: int, kn
 def _is_good(edges: JointEdges, approximate_line: ApproximateLine, end: int) -> NDArray[np.bool_]:
     """Where there is an edge like those of the approximate line some way from its end."""
     inside = slice(0, 4 * _KNOWN) if end == 0 else slice(-4 * _KNOWN, None)
-    usual = float(np.quantile(approximate_line.step_m[inside], 0.75))
+    usual = float(np.quantile(approximate_line.step_m[inside], _USUAL_OF_END))
     with np.errstate(invalid="ignore"):
         return np.asarray(
             (np.abs(edges.lower_across) <= _ASIDE_M)
@@ -345,7 +393,7 @@ def _longer(
     which: tuple[int, int],
     known: NDArray[np.bool_],
 ) -> ApproximateLine:
-    """A guide with the stations of its tail up to the last that has an edge."""
+    """A line with the stations of its extension up to the last that has an edge."""
     end, count = which
     at = np.arange(known.size)
     across = np.interp(at, at[known], edges.lower_across[known])
@@ -353,8 +401,8 @@ def _longer(
     xyz = extension.xyz.copy()
     xyz[:, :2] += extension.outwards * across[:, None]
     xyz[:, 2] += above
-    behind = known.size - 2
-    part = slice(behind - count, behind) if end == 0 else slice(2, 2 + count)
+    behind = known.size - _ANCHORS
+    part = slice(behind - count, behind) if end == 0 else slice(_ANCHORS, _ANCHORS + count)
     return _with(
         approximate_line,
         end,
@@ -372,7 +420,7 @@ def _longer(
 
 
 def _with(approximate_line: ApproximateLine, end: int, more: ApproximateLine) -> ApproximateLine:
-    """A guide with more of it before or behind."""
+    """A line with more of it before or behind."""
     first, second = (more, approximate_line) if end == 0 else (approximate_line, more)
     xyz = np.vstack([first.xyz, second.xyz])
     return replace(

@@ -11,13 +11,23 @@ from processing.core.kernels import kernel
 
 _Floats = NDArray[np.float64]
 
-_MOST_OFFSET_M = 0.15  # between drives of one survey
+_MOST_OFFSET_M = 0.15
+"""Between drives of one survey: what trajectories differ by where satellites are hidden. Offsets
+beyond it are of two different edges, and none is removed. By trial: no measurement is recorded."""
+
 _LEAST_TOGETHER = 8
-_TURNS = 5
+"""Stations that several drives measured, two metres: from fewer no offset is told from noise. By
+trial."""
+
+_ROUNDS = 5
+"""Offsets and means are found in turn; the median of what is off has settled by then. By trial."""
+
+_LEAST_WEIGHT = 1e-12
+"""Guard of a division where nothing was measured."""
 
 
 @kernel
-def joined_kernel(values: _Floats, errors: _Floats, mean: _Floats, error: _Floats) -> None:
+def join_kernel(values: _Floats, errors: _Floats, mean: _Floats, error: _Floats) -> None:
     """Weighted mean of drives after their offsets are removed, and its error.
 
     Parameters
@@ -51,10 +61,10 @@ def _find_offsets(values: _Floats, weights: _Floats, offsets: _Floats) -> None:
         together[k] = np.sum(weights[:, k] > 0) > 1
     if together.sum() < _LEAST_TOGETHER:
         return
-    for _ in range(_TURNS):
+    for _ in range(_ROUNDS):
         for k in range(stations):
             total, summed = _total(values, weights, offsets, k)
-            means[k] = summed / max(total, 1e-12)
+            means[k] = summed / max(total, _LEAST_WEIGHT)
         for drive in range(drives):
             off = (values[drive] - offsets[drive] - means)[together & (weights[drive] > 0)]
             shifts[drive] = np.median(off) if off.size >= _LEAST_TOGETHER else 0.0
@@ -78,4 +88,4 @@ def _total(values: _Floats, weights: _Floats, offsets: _Floats, k: int) -> tuple
 def warm_up() -> None:
     """Compile the kernel."""
     values = np.zeros((2, 9))
-    joined_kernel(values, values + 1.0, np.empty(9), np.empty(9))
+    join_kernel(values, values + 1.0, np.empty(9), np.empty(9))

@@ -21,16 +21,24 @@ from processing.methods.road.curbs.edges.curb_edge_kernels import (
     UPPER_ABOVE,
     UPPER_ACROSS,
 )
-from processing.methods.road.curbs.edges.curb_join_kernels import joined_kernel
+from processing.methods.road.curbs.edges.curb_join_kernels import join_kernel
 
 _Floats = NDArray[np.float64]
 
-_MOST_ASIDE_M = 0.25  # a rough line is off by less
+_MOST_ASIDE_M = 0.25
+"""A rough line is off by less: runs of several passes are one within that (`approximate_lines`)."""
+
+_LOWEST_STEP_M = -0.02
+"""Where a curb is lowered to the ground noise may turn its step over by so much. By trial: no
+measurement is recorded."""
+
+_LEAST_WEIGHT = 1e-9
+"""Guard of a division where no points lie on a face."""
 
 
 @dataclass(frozen=True)
 class JointEdges:
-    """Edges of one curb at the stations of its guide, by all that measured it.
+    """Edges of one curb at the stations of its approximate line, by all that measured it.
 
     Attributes
     ----------
@@ -80,17 +88,17 @@ def join_edges(measures: Sequence[_Floats], most_step_m: float) -> JointEdges:
         is_good = (
             np.isfinite(stack[:, :, ERROR_ACROSS])
             & (np.abs(stack[:, :, LOWER_ACROSS]) <= _MOST_ASIDE_M)
-            & (step > -0.02)
+            & (step > _LOWEST_STEP_M)
             & (step <= most_step_m)
         )
     across = np.where(is_good, stack[:, :, ERROR_ACROSS], np.inf)
     low = np.where(is_good, stack[:, :, ERROR_LOW], np.inf)
     high = np.where(is_good, stack[:, :, ERROR_HIGH], np.inf)
-    lower, _ = _joined(stack[:, :, LOWER_ACROSS], across)
-    upper, across_error = _joined(stack[:, :, UPPER_ACROSS], across)
-    below, lower_error = _joined(stack[:, :, LOWER_ABOVE], low)
+    lower, _ = _join(stack[:, :, LOWER_ACROSS], across)
+    upper, across_error = _join(stack[:, :, UPPER_ACROSS], across)
+    below, lower_error = _join(stack[:, :, LOWER_ABOVE], low)
     # The step keeps its own offset: that of the height is the same for both edges.
-    steps, upper_error = _joined(step, high)
+    steps, upper_error = _join(step, high)
     faces = np.where(is_good & np.isfinite(stack[:, :, LEAN]), stack[:, :, FACE_POINTS], 0.0)
     weight = faces.sum(axis=0)
     lean = np.where(faces > 0, stack[:, :, LEAN], 0.0) * faces
@@ -99,7 +107,7 @@ def join_edges(measures: Sequence[_Floats], most_step_m: float) -> JointEdges:
         upper,
         below,
         below + steps,
-        np.where(weight > 0, lean.sum(axis=0) / np.maximum(weight, 1e-9), np.nan),
+        np.where(weight > 0, lean.sum(axis=0) / np.maximum(weight, _LEAST_WEIGHT), np.nan),
         across_error,
         lower_error,
         upper_error,
@@ -115,8 +123,8 @@ def _least(values: _Floats, is_good: NDArray[np.bool_]) -> _Floats:
     return np.asarray(np.where(known, values, np.inf).min(axis=0))
 
 
-def _joined(values: _Floats, errors: _Floats) -> tuple[_Floats, _Floats]:
+def _join(values: _Floats, errors: _Floats) -> tuple[_Floats, _Floats]:
     """Weighted mean of drives (d, m) after their offsets are removed, and its error."""
     mean, error = np.empty(values.shape[1]), np.empty(values.shape[1])
-    joined_kernel(np.ascontiguousarray(values), errors, mean, error)
+    join_kernel(np.ascontiguousarray(values), errors, mean, error)
     return mean, error

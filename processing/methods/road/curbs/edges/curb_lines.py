@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,21 +20,54 @@ from processing.methods.road.curbs.edges.curb_smoothing import Smoothness, smoot
 _Floats = NDArray[np.float64]
 _Flags = NDArray[np.bool_]
 
-FLAT_M = 0.008
-"""A lower step is no edge that could be seen: the ground goes on."""
+# "By trial": chosen while the tool was made; no measurement of the single value is recorded.
 
-_USUAL_M = 0.005  # errors that weigh 1
+FLAT_M = 0.008
+"""A lower step is no edge that could be seen: the ground goes on. Noise of 5 mm over a few points
+of two surfaces. By trial."""
+
+_USUAL_M = 0.005
+"""Errors of stations that weigh 1: the inlier tolerance of Takahashi 2022, Table 6-1."""
+
 _ACROSS = Smoothness(stiffness=12.0, kink=0.004)
 _HEIGHT = Smoothness(stiffness=12.0, kink=0.005)
 _STEP = Smoothness(stiffness=2.0, kink=0.003)
 _LEAN = Smoothness(stiffness=3000.0, kink=1.0)
+"""How places, heights and steps are smoothed, m: steps least, since ramps of dropped curbs are 70
+cm long, hardly three stations; the lean nearly not at all but for the whole line, since stones of
+one curb lean alike. By trial."""
+
 _TYPICAL_LEAN = 0.08
-_LONGEST_DROP_M = 12.0
-_FALLEN = 0.6  # of the usual step: it comes down to an opening
+"""Of upright kerb stones, m across per m of height; where no points lie on a face. By trial."""
+
+_LEAST_LEAN, _MOST_LEAN = -0.1, 1.5
+"""Bounds of what is measured: overhanging by noise, and ramp stones."""
+
+_LONGEST_DROP_M, _STEPS_DOWN_M = 12.0, 6.0
+"""How long a curb may be lowered to the road and go on: the width of an entrance with its ramps. It
+comes down towards it within the second. By trial."""
+
+_FALLEN, _USUAL_OF_END = 0.6, 0.8
+"""At an opening the step has come down to this share of the usual one, the latter quantile of those
+within the last metres. By trial."""
+
+_FLAT_SHARE, _SHORT_STATIONS = 0.5, 2
+"""A hole of which at least half is seen to be flat is an opening, else it is hidden; one of no more
+stations than this goes on in any case: one stone."""
+
 _LEAST_M = 1.0
+"""Shortest line: two kerb stones of 0.6 m, less their ends."""
+
 _HIDDEN = 0.5
+"""A line of which more is hidden looks away from the vehicle."""
+
 _AROUND_M, _USUAL_PERCENT = 8.0, 70.0
+"""To either side of a station, m, steps of the curb are asked for their usual height; the
+percentile lies above the median, since parts may be lowered. By trial."""
+
 _TALLER, _TALLER_M = 0.15, 0.015
+"""What is higher than usual by this share and this much stands on the curb, or is none: heights of
+one curb differ by 1 cm. By trial."""
 
 
 @dataclass(frozen=True)
@@ -64,6 +98,13 @@ class CurbLine:
         return self.upper[:, 2] - self.lower[:, 2]
 
 
+class _Longest(NamedTuple):
+    """How long a curb may be hidden, and lowered to the road, and go on; m."""
+
+    hidden: float
+    lowered: float
+
+
 def lines_of(
     approximate_line: ApproximateLine, edges: JointEdges, bridge_m: float
 ) -> Iterator[CurbLine]:
@@ -78,7 +119,7 @@ def lines_of(
     is_known = is_edge | is_flat
     # A face that looks away and is lowered to the ground shows nothing: there it ends.
     drop_m = 0.0 if approximate_line.is_hidden.mean() > _HIDDEN else _LONGEST_DROP_M
-    for part in _parts(is_edge, is_flat, edges.steps_m, (bridge_m, drop_m)):
+    for part in _parts(is_edge, is_flat, edges.steps_m, _Longest(bridge_m, drop_m)):
         first, stop = own_part(edges, is_edge, part)
         if (stop - first) * STEP_M >= _LEAST_M and is_edge[first:stop].sum() * STEP_M >= _LEAST_M:
             yield _line(approximate_line, edges, (is_edge, is_known), (first, stop))
@@ -97,7 +138,7 @@ def _stands_out(steps: _Floats, is_edge: _Flags) -> _Flags:
 
 
 def _parts(
-    is_edge: _Flags, is_flat: _Flags, steps: _Floats, longest_m: tuple[float, float]
+    is_edge: _Flags, is_flat: _Flags, steps: _Floats, longest_m: _Longest
 ) -> Iterator[tuple[int, int]]:
     """First and behind the last station of each curb."""
     seen = np.flatnonzero(is_edge)
@@ -118,30 +159,28 @@ def _goes_on(
     steps: _Floats,
     is_edge: _Flags,
     hole: slice,
-    longest_m: tuple[float, float],
+    longest_m: _Longest,
 ) -> bool:
-    """Whether a curb goes on where no edge was measured: hidden, or lowered to the road.
-
-    ``longest_m``: how long it may be so.
-    """
+    """Whether a curb goes on where no edge was measured: hidden, or lowered to the road."""
     long_m = (hole.stop - hole.start) * STEP_M
-    if float(is_flat[hole].mean()) < 0.5:
-        return bool(long_m <= longest_m[0])
-    if long_m > max(longest_m[1], 2 * STEP_M):
+    if float(is_flat[hole].mean()) < _FLAT_SHARE:
+        return bool(long_m <= longest_m.hidden)
+    short_m = _SHORT_STATIONS * STEP_M
+    if long_m > max(longest_m.lowered, short_m):
         return False
-    return long_m <= 2 * STEP_M or all(
-        _comes_down(steps, is_edge, end, vehicle_path)
-        for end, vehicle_path in ((hole.start - 1, -1), (hole.stop, 1))
+    return long_m <= short_m or all(
+        _comes_down(steps, is_edge, end, sign)
+        for end, sign in ((hole.start - 1, -1), (hole.stop, 1))
     )
 
 
-def _comes_down(steps: _Floats, is_edge: _Flags, end: int, vehicle_path: int) -> bool:
-    """Whether a curb is lowered towards an end."""
-    reach = np.arange(end, end + vehicle_path * int(6.0 / STEP_M), vehicle_path)
+def _comes_down(steps: _Floats, is_edge: _Flags, end: int, sign: int) -> bool:
+    """Whether a curb is lowered towards an end; the sign says which way the curb lies from it."""
+    reach = np.arange(end, end + sign * int(_STEPS_DOWN_M / STEP_M), sign)
     reach = reach[(reach >= 0) & (reach < steps.size)]
     reach = reach[is_edge[reach]]
     near = steps[reach[:2]]
-    return bool(near.min() < _FALLEN * np.quantile(steps[reach], 0.8))
+    return bool(near.min() < _FALLEN * np.quantile(steps[reach], _USUAL_OF_END))
 
 
 def _line(
@@ -159,7 +198,7 @@ def _line(
     lean_weight = np.where(np.isfinite(edges.lean[part]), edges.face_points[part], 0.0)
     lean_weight = lean_weight * np.nan_to_num(edges.steps_m[part]) ** 2
     lean = smooth_values(edges.lean[part], lean_weight, _LEAN)
-    lean = np.clip(np.where(np.isfinite(lean), lean, _TYPICAL_LEAN), -0.1, 1.5)
+    lean = np.clip(np.where(np.isfinite(lean), lean, _TYPICAL_LEAN), _LEAST_LEAN, _MOST_LEAN)
     # The middle of a face is better known than its ends; of a hidden one only the upper is seen.
     is_faced = (edges.face_points[part][is_edge[part]] > 0).mean() >= FACED
     share = 0.5 if is_faced else 1.0

@@ -16,6 +16,10 @@ from numpy.typing import NDArray
 from processing.core.monitor import Monitor
 from processing.core.worked_ahead import in_order
 from processing.methods.road.curbs.edges.curb_point_kernels import (
+    CellTable,
+    LineReach,
+    PlanFrame,
+    PlanLines,
     about_lines_kernel,
     fill_slots_kernel,
     in_cells_kernel,
@@ -27,23 +31,32 @@ _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
 
 BELOW_M, ABOVE_M = 0.3, 0.7
-"""How far below and above a rough lower edge a point may lie to say something about a curb."""
+"""How far below and above a rough lower edge a point may lie to say something about a curb: the
+ground before it and a rough line's error; the highest curb of 45 cm (Takahashi 2022, Table 6-1) and
+the same error."""
 
 POINTS_AT_ONCE = 500_000
+"""Points read at a time: 6 MB of coordinates, and short enough for a cancel to be felt at once."""
 
 _CELL_M, _COARSE_M = 0.25, 2.0
+"""Cells of the plan: that of lines is some half of how far from them points are wanted (0.4 m),
+that of whole ends is coarse, since 30 m about each are looked at. They change only the time."""
+
 _X_KEY = 0x100000000
-_ROUNDED_M = 0.001  # two origins make one place two numbers
+"""As in `curb_point_kernels`."""
+
+_ROUNDED_M = 0.001
+"""Two origins make one place two numbers: far more than they differ by."""
 
 
 @dataclass(frozen=True)
 class PointsAbout:
-    """The points of one drive about approximate lines, by guide and along it.
+    """The points of one drive about approximate lines, line by line and along each.
 
     Attributes
     ----------
     starts : (g + 1,) int64
-        Where each guide's points begin.
+        Where each line's points begin.
     along : (n,) float64
         Station of the approximate line, counted in its vertices.
     across : (n,) float64
@@ -109,7 +122,7 @@ class ChosenPoints:
         cell = np.minimum(np.searchsorted(self.keys, quarters >> 2), self.keys.size - 1)
         quarters = (4 * cell + (quarters & 3))[self.keys[cell] == quarters >> 2]
         spans = [self.order[self.starts[one] : self.starts[one + 1]] for one in quarters]
-        return np.sort(_joined(spans))
+        return np.sort(_join(spans))
 
 
 def points_near(
@@ -127,7 +140,7 @@ def points_near(
     origin: _Floats = np.floor(positions[0])
     keys, heights = _cells_about(positions - origin, reach)
     slots = _slots_of(keys)
-    position = _position(drive, origin, _COARSE_M)
+    frame = _frame_of(drive, origin, _COARSE_M)
     points, integers, quarters = [], [np.empty((0, 3), np.int32)], []
 
     def near(start: int) -> tuple[_Integers, NDArray[np.int32], _Integers]:
@@ -135,7 +148,7 @@ def points_near(
         stop = min(start + POINTS_AT_ONCE, drive.count)
         block = drive.coordinates.chunk(start, stop)
         chosen, quarter = np.empty(stop - start, np.int64), np.empty(stop - start, np.int64)
-        count = in_cells_kernel(block, position, (slots, keys), heights, (chosen, quarter))
+        count = in_cells_kernel(block, frame, (slots, keys), heights, (chosen, quarter))
         return chosen[:count] + start, block[chosen[:count]], quarter[:count].copy()
 
     starts = range(0, drive.count, POINTS_AT_ONCE)
@@ -144,11 +157,11 @@ def points_near(
         integers.append(found[1])
         quarters.append(found[2])
         monitor.report(done / len(starts))
-    quarter = _joined(quarters)
+    quarter = _join(quarters)
     begins = np.concatenate([[0], np.cumsum(np.bincount(quarter, minlength=4 * keys.size))])
     order = np.empty(quarter.size, np.int64)
     order_kernel(quarter, begins[:-1].copy(), order)
-    return ChosenPoints(_joined(points), np.vstack(integers), origin, keys, order, begins)
+    return ChosenPoints(_join(points), np.vstack(integers), origin, keys, order, begins)
 
 
 def _cells_about(positions: _Floats, reach: tuple[float, float]) -> tuple[_Integers, _Floats]:
@@ -172,9 +185,10 @@ def _slots_of(keys: _Integers) -> _Integers:
     return slots
 
 
-def _position(drive: Drive, origin: _Floats, cell_m: float) -> _Floats:
+def _frame_of(drive: Drive, origin: _Floats, cell_m: float) -> PlanFrame:
     """What makes metres about an origin of integers, and the size of a cell."""
-    return np.concatenate([*drive.coordinates.quantisation.about(origin), [cell_m]])
+    scale, shift = drive.coordinates.quantisation.about(origin)
+    return PlanFrame(*np.array(scale).tolist(), *np.array(shift).tolist(), cell_m)
 
 
 class LineCells:
@@ -201,20 +215,20 @@ class LineCells:
             np.vstack([approximate_line.outwards for approximate_line in approximate_lines])
         )
         self._line_of = np.repeat(np.arange(sizes.size), sizes).astype(np.int64)
-        self._limits = np.array([across_m, BELOW_M, ABOVE_M])
+        self._reach = LineReach(across_m, BELOW_M, ABOVE_M)
         self._table = self._table_of(across_m)
 
     def about(
         self, drive: Drive, monitor: Monitor, points_at_once: int = POINTS_AT_ONCE
     ) -> PointsAbout:
         """Points of a drive about the approximate lines."""
-        position = _position(drive, self.origin, _CELL_M)
+        frame = _frame_of(drive, self.origin, _CELL_M)
         points, owners, values = [], [], []
 
         def near(start: int) -> tuple[_Integers, _Integers, _Floats]:
             monitor.check()
             stop = min(start + points_at_once, drive.count)
-            found = self._found(drive.coordinates.chunk(start, stop), position)
+            found = self._find(drive.coordinates.chunk(start, stop), frame)
             return found[0] + start, found[1], found[2]
 
         starts = range(0, drive.count, points_at_once)
@@ -224,24 +238,24 @@ class LineCells:
             values.append(found[2])
             monitor.report(done / len(starts))
         return self._by_approximate_line(
-            _joined(points), _joined(owners), np.vstack([*values, _NO_VALUES])
+            _join(points), _join(owners), np.vstack([*values, _NO_VALUES])
         )
 
     def among(self, drive: Drive, chosen: ChosenPoints) -> PointsAbout:
         """Points about the approximate lines among some of a drive."""
-        near = chosen.about(self._approximate_lines, self._limits[0])
-        position = _position(drive, self.origin, _CELL_M)
-        which, owners, values = self._found(chosen.integers[near], position)
+        near = chosen.about(self._approximate_lines, self._reach.across_m)
+        frame = _frame_of(drive, self.origin, _CELL_M)
+        which, owners, values = self._find(chosen.integers[near], frame)
         return self._by_approximate_line(chosen.points[near[which]], owners, values)
 
-    def _found(
-        self, integers: NDArray[np.int32], position: _Floats
+    def _find(
+        self, integers: NDArray[np.int32], frame: PlanFrame
     ) -> tuple[_Integers, _Integers, _Floats]:
-        lines = (self._xyz, self._outwards, self._line_of)
+        lines = PlanLines(self._xyz, self._outwards, self._line_of)
         most = max(integers.shape[0], 1)
         while True:
             room = (np.empty(most, np.int64), np.empty(most, np.int64), np.empty((most, 3)))
-            count = about_lines_kernel(integers, position, self._table, lines, self._limits, room)
+            count = about_lines_kernel(integers, frame, self._table, lines, self._reach, room)
             if count >= 0:
                 return room[0][:count].copy(), room[1][:count].copy(), room[2][:count].copy()
             most *= 2
@@ -264,14 +278,15 @@ class LineCells:
     def _count(self) -> int:
         return self.firsts.size - 1
 
-    def _table_of(self, across_m: float) -> tuple[_Integers, _Integers, _Integers, _Integers]:
+    def _table_of(self, across_m: float) -> CellTable:
         segments = np.flatnonzero(self._line_of[:-1] == self._line_of[1:])
         ends = self._xyz[:, :2]
         which, x, y = _boxes((ends[segments], ends[segments + 1]), across_m, _CELL_M)
         keys = x * _X_KEY + y
         order = np.lexsort((which, keys))
         unique, starts = np.unique(keys[order], return_index=True)
-        return _slots_of(unique), unique, np.append(starts, which.size), segments[which[order]]
+        starts = np.append(starts, which.size)
+        return CellTable(_slots_of(unique), unique, starts, segments[which[order]])
 
 
 _NO_VALUES = np.empty((0, 3))
@@ -290,5 +305,5 @@ def _boxes(
     return which, x, first[which, 1] + within % count[which, 1]
 
 
-def _joined(parts: Sequence[_Integers]) -> _Integers:
+def _join(parts: Sequence[_Integers]) -> _Integers:
     return np.concatenate([*parts, np.empty(0, np.int64)])

@@ -15,9 +15,23 @@ from scipy.ndimage import median_filter
 
 _Floats = NDArray[np.float64]
 
-_TURNS = 4
+# "By trial": chosen while the tool was made; no measurement of the single value is recorded.
+
+_ROUNDS = 4
+"""Of the iteration that weighs sharp bends less. By trial."""
+
 _BESIDE = 9
-_FAR = 2.0  # what is off by more than so many times the usual weighs less and less
+"""Values among which one stands out: two metres of a curb. By trial."""
+
+_FAR = 2.0
+"""What is off by more than so many times the usual weighs less and less, at twice that a
+seventeenth."""
+
+_OF_MEDIAN = 1.5
+"""A standard deviation is about so many times the median of what is off (1.48 of normal noise)."""
+
+_LEAST_WEIGHT = 1e-12
+"""Keeps the equations solvable where nothing is known."""
 
 
 @dataclass(frozen=True)
@@ -56,27 +70,27 @@ def smooth_values(values: _Floats, weights: _Floats, smoothness: Smoothness) -> 
         return np.where(known, values, values[known][0] if known.any() else np.nan)
     filled = np.where(known, values, 0.0)
     trust = np.zeros(values.size)
-    trust[known] = _trusted(values[known], weights[known], smoothness.kink)
+    trust[known] = _trust_of(values[known], weights[known], smoothness.kink)
     bends = np.ones(values.size - 2)
     result = filled
-    for _ in range(_TURNS):
-        result = _solved(filled, trust, bends * smoothness.stiffness)
+    for _ in range(_ROUNDS):
+        result = _solve(filled, trust, bends * smoothness.stiffness)
         bends = 1.0 / (1.0 + np.abs(np.diff(result, 2)) / smoothness.kink)
     return result
 
 
-def _trusted(values: _Floats, weights: _Floats, least: float) -> _Floats:
+def _trust_of(values: _Floats, weights: _Floats, least: float) -> _Floats:
     """Weights, less where a value stands out from those beside it; a corner does not."""
     off = np.abs(values - median_filter(values, _BESIDE, mode="nearest"))
-    usual = max(1.5 * float(np.median(off)), least)
+    usual = max(_OF_MEDIAN * float(np.median(off)), least)
     return np.asarray(weights / (1.0 + (off / (_FAR * usual)) ** 4))
 
 
-def _solved(values: _Floats, weights: _Floats, bends: _Floats) -> _Floats:
+def _solve(values: _Floats, weights: _Floats, bends: _Floats) -> _Floats:
     """Least squares of values and second differences."""
     count = values.size
     band = np.zeros((3, count))
-    band[2] = weights + 1e-12
+    band[2] = weights + _LEAST_WEIGHT
     band[2, :-2] += bends
     band[2, 1:-1] += 4 * bends
     band[2, 2:] += bends

@@ -29,9 +29,19 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 WITHIN_M = 0.8
-"""Longest gap within a track; longer ones are judged by what goes before and after."""
+"""Longest gap within a track, eight scanlines: a sign's post or some pulses lost on a wet curb.
+Longer ones are judged by what goes before and after. By trial: no measurement is recorded."""
 
 _FEWEST = 5
+"""Steps of a track: half a metre of a curb, half of what a lone one must have (`LEAST_LENGTH_M` of
+`curb_filters`), since tracks are joined."""
+
+_USUAL_SPACING_M = 0.1
+"""Between scanlines where there is only one: that of `ScanlineSettings`."""
+
+_ROOM = 8
+"""Pairs of ends for each track for which there is room at first; where there are more the tables
+are made anew."""
 
 
 @dataclass(frozen=True)
@@ -84,12 +94,17 @@ def _tracks(steps: PassSteps) -> tuple[Integers, Integers]:
     """Rows of the table that are followed without a gap: all of them, and (t, 2) their bounds."""
     table = steps.table
     number = np.empty(table.shape[0], np.int64)
-    spacing = float(np.median(np.diff(steps.stations_m))) if steps.stations_m.size > 1 else 0.1
+    spacing = (
+        float(np.median(np.diff(steps.stations_m)))
+        if steps.stations_m.size > 1
+        else _USUAL_SPACING_M
+    )
     parts = [_middles(table), table[:, LOWER_HEIGHT], table[:, UPPER_HEIGHT], table[:, SIGN]]
     count = link_kernel(
         steps.sections,
         np.column_stack(parts),
-        np.array([spacing, WITHIN_M]),
+        spacing,
+        WITHIN_M,
         number,
     )
     order = np.argsort(number, kind="stable")
@@ -124,7 +139,7 @@ def _joins(
 
 
 def _pairs(ends: Floats, signs: Floats, join_m: float) -> tuple[Floats, Integers]:
-    room = 8 * signs.size
+    room = _ROOM * signs.size
     while True:
         costs, pairs = np.empty(room), np.empty((room, 2), np.int64)
         count = joins_kernel(ends, signs, join_m, costs, pairs)

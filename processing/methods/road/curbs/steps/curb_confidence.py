@@ -14,9 +14,26 @@ from numpy.typing import NDArray
 
 from processing.methods.road.curbs.steps.curb_runs import StepRun, median_of
 
+# Bounds of facts, so that none outweighs all others, and the units in which logarithms are taken.
+# They were set before the weights were fitted, which make up for any other choice of the units.
+
 _LEAST_SPREAD_M, _LEAST_ROUGH_M = 0.002, 0.003
+"""No curb is known to be straighter than scanners tell, and no ground smoother than pavement is."""
+
 _USUAL_SPREAD_M, _USUAL_SIGNIFICANCE = 0.01, 10.0
-_LONGEST_M, _WIDEST_M, _VEHICLE_M = 20.0, 0.3, 6.0
+"""Units of the spread of places, m, and of a step's height in its standard deviations."""
+
+_MOST_SPREAD_M, _LEAST_SIGNIFICANCE, _LEAST_SEEN_M = 0.2, 0.1, 0.1
+"""A place farther off weighs no more; guards of logarithms."""
+
+_LONGEST_M, _WIDEST_M = 20.0, 0.3
+"""A longer run is no surer, nor one with more level ground before and behind it."""
+
+_VEHICLE_M = 6.0
+"""A longer run is no vehicle's side."""
+
+_MOST_LOGIT, _LEAST_BEFORE, _MOST_BEFORE = 50.0, 0.01, 0.99
+"""Guards: of the exponential, and of the log-odds of what is certain."""
 
 # Fitted by logistic regression (L2, C = 1, runs weighed by their length up to 30 m) to 1,988 runs
 # of at least 1 m and 3 cm on 16 simulated drives of 12 streets with known curbs, none of the
@@ -30,8 +47,12 @@ _SPREAD = -0.94  # of the logarithm: concrete is straight, plants are not
 _LENGTH = 0.51  # of the logarithm
 _TOP, _FOOT = 4.49, 1.82  # per metre: level ground goes on behind and before a curb
 _FOOT_ROUGHNESS = -1.59  # of the logarithm: pavement lies before a curb, not soil
-_ISLAND, _AS_HIGH = 1.5, 0.3  # what a curb has raised comes down by another, about as far
-_BELOW_M = 0.15  # so far a road falls to its side by cross slope
+_ISLAND, _AS_HIGH = 1.5, 0.3
+"""What a curb has raised comes down by another, about as far: log-odds that this adds, set by trial
+after the fit; how much the two may differ, as a share of the height."""
+
+_BELOW_M = 0.15
+"""So far a road falls to its side by cross slope: 2 % over 7 m."""
 
 
 class CurbFacts(NamedTuple):
@@ -91,11 +112,12 @@ and 8 of 61. Weights fitted to those let as many more wrong lines as right ones 
 were kept."""
 
 CONSTANT = 4.56
+"""Log-odds of a line of which nothing is known; fitted with `WEIGHTS`."""
 
 
 def terms_of(facts: CurbFacts) -> CurbFacts:
     """The facts as the weights take them: of the first chance its log-odds."""
-    before = min(max(facts.before, 0.01), 0.99)
+    before = min(max(facts.before, _LEAST_BEFORE), _MOST_BEFORE)
     return facts._replace(before=math.log(before / (1 - before)))
 
 
@@ -121,21 +143,24 @@ def confidence_of(run: StepRun) -> float:
     seen = run.is_seen
     if not seen.any():
         return 0.0
-    spread = math.sqrt(float(np.nanmean(np.minimum(run.spread_m[seen], 0.2) ** 2)))
+    significance = max(_median(run.significance, run), _LEAST_SIGNIFICANCE)
+    spread = math.sqrt(float(np.nanmean(np.minimum(run.spread_m[seen], _MOST_SPREAD_M) ** 2)))
     # Blades of a verge hang over a curb's foot; so do vehicles over their tyres, which are short.
     rough_m = run.foot_cover_m if run.seen_m < _VEHICLE_M else run.foot_roughness_m
     logit = (
         _CONSTANT
-        + _SIGNIFICANCE * math.log(max(_median(run.significance, run), 0.1) / _USUAL_SIGNIFICANCE)
+        + _SIGNIFICANCE * math.log(significance / _USUAL_SIGNIFICANCE)
         + _SPREAD * math.log(max(spread, _LEAST_SPREAD_M) / _USUAL_SPREAD_M)
-        + _LENGTH * math.log(min(max(run.seen_m, 0.1), _LONGEST_M))
+        + _LENGTH * math.log(min(max(run.seen_m, _LEAST_SEEN_M), _LONGEST_M))
         + _TOP * min(_median(run.top_m, run), _WIDEST_M)
         + _FOOT * min(_median(run.foot_m, run), _WIDEST_M)
         + _FOOT_ROUGHNESS * math.log(max(_median(rough_m, run), _LEAST_ROUGH_M) / _LEAST_ROUGH_M)
     )
     if run.rises < 0 and _comes_down_again(run):
         logit += _ISLAND
-    return max(1.0 / (1.0 + math.exp(-min(max(logit, -50.0), 50.0))), run.chance_beside)
+    return max(
+        1.0 / (1.0 + math.exp(-min(max(logit, -_MOST_LOGIT), _MOST_LOGIT))), run.chance_beside
+    )
 
 
 def _comes_down_again(run: StepRun) -> bool:

@@ -18,29 +18,40 @@ from processing.image.scan_lines.scanlines import Scanlines
 from processing.methods.road.curbs.steps.curb_chains import chains_of
 from processing.methods.road.curbs.steps.curb_profile import PassSteps, StepSettings, steps_on_lines
 from processing.methods.road.curbs.steps.curb_runs import StepRun, run_of
-from processing.methods.road.curbs.steps.level_kernels import levels_kernel
+from processing.methods.road.curbs.steps.level_kernels import LevelGrid, levels_kernel
 from processing.methods.road.curbs.steps.step_columns import LOWER_ACROSS, VERTEX
 from processing.methods.road.curbs.steps.step_kernels import CELL_M
 
 Floats = NDArray[np.float64]
 
 _SPACING_M = 0.1
+"""Between lines of constant distance from the vehicle's path: as far as scanlines are apart, so
+that curbs across the path are sampled as those along it."""
+
 _HALF_M = 15.0
-_STRETCH, _OVERLAP = 600, 40
-"""Scanlines that are looked at together, and how many of them are seen twice: a step needs
-ground on both sides."""
+"""How far to either side: as far as scanlines reach (`ScanlineSettings`)."""
+
+_TOGETHER, _OVERLAP = 600, 40
+"""Scanlines that are looked at together: 60 m, which bounds the memory. So many of them are seen
+twice, 4 m: a step needs ground on both sides."""
 
 _STEEPEST = 1.2
-"""Runs that turn from square across by more (tangent) are found on the scanlines themselves."""
+"""Runs that turn from square across by more (tangent: 50°) are found on the scanlines themselves. A
+little over 45°, so that no direction is left out between the two looks."""
 
 _GRID_M = _SPACING_M / math.sqrt(12)
-"""How far an edge on lines of points `_SPACING_M` apart lies off by that alone."""
+"""How far an edge on lines of points `_SPACING_M` apart lies off by that alone: the standard
+deviation of a uniform distribution of that width."""
 
 _DENSER = math.sqrt(_SPACING_M / CELL_M)
 """Of scanlines every cell holds points, of these lines one in so many (squared): what is known of
 foot and top is worse by it, and says nothing against a curb."""
 
 _LEAST_SPREAD_M = 0.01
+"""What is left of a run's spread without `_GRID_M` is known no better than this. By trial."""
+
+_MARGIN_M = 0.1
+"""Beyond the outermost place, so that it falls into a cell: one spacing of scanlines."""
 
 
 @dataclass(frozen=True)
@@ -70,20 +81,20 @@ def crossing_runs(
     is_first = True
     for stretch in stretches:
         held.append(_levels_of(stretch))
-        while sum(one.stations_m.size for one in held) >= _STRETCH + 2 * _OVERLAP:
-            whole = _joined(held)
-            yield from _runs_in(_part(whole, 0, _STRETCH), (is_first, False), number, settings)
-            held = [_part(whole, _STRETCH - 2 * _OVERLAP, whole.stations_m.size)]
+        while sum(one.stations_m.size for one in held) >= _TOGETHER + 2 * _OVERLAP:
+            whole = _join_levels(held)
+            yield from _runs_in(_part(whole, 0, _TOGETHER), (is_first, False), number, settings)
+            held = [_part(whole, _TOGETHER - 2 * _OVERLAP, whole.stations_m.size)]
             is_first = False
     if held:
-        yield from _runs_in(_joined(held), (is_first, True), number, settings)
+        yield from _runs_in(_join_levels(held), (is_first, True), number, settings)
 
 
 def _levels_of(stretch: Scanlines) -> _Levels:
     count = round(2 * _HALF_M / _SPACING_M) + 1
     heights = np.empty((stretch.stations_m.size, count))
     levels_kernel(
-        stretch.across_m, stretch.height_m, stretch.starts, np.array([_HALF_M, _SPACING_M]), heights
+        stretch.across_m, stretch.height_m, stretch.starts, LevelGrid(_HALF_M, _SPACING_M), heights
     )
     times = np.full(stretch.stations_m.size, np.nan)
     filled = np.diff(stretch.starts) > 0
@@ -92,7 +103,7 @@ def _levels_of(stretch: Scanlines) -> _Levels:
     return _Levels(heights, stretch.positions, stretch.rights, stretch.stations_m, times)
 
 
-def _joined(parts: list[_Levels]) -> _Levels:
+def _join_levels(parts: list[_Levels]) -> _Levels:
     return _Levels(
         np.vstack([one.heights for one in parts]),
         np.vstack([one.positions for one in parts]),
@@ -125,7 +136,7 @@ def _runs_in(
     starts = np.concatenate([[0], np.cumsum(filled.sum(axis=1))]).astype(np.int64)
     which = np.nonzero(filled)[1]
     middle = (stations[0] + stations[-1]) / 2
-    half = float(stations[-1] - stations[0]) / 2 + 0.1
+    half = float(stations[-1] - stations[0]) / 2 + _MARGIN_M
     table = steps_on_lines(
         (stations[which] - middle, lines[filled], starts), half, settings, is_square=False
     )
@@ -141,10 +152,10 @@ def _runs_in(
         run = run_of(steps, chain, number)
         turn = np.abs(np.diff(run.lower[:, 0])) / _SPACING_M
         if turn.size and float(np.median(turn)) <= _STEEPEST:
-            yield _laid_out(run, levels, middle, chain.sign)
+            yield _placed_on_map(run, levels, middle, chain.sign)
 
 
-def _laid_out(run: StepRun, levels: _Levels, middle: float, sign: int) -> StepRun:
+def _placed_on_map(run: StepRun, levels: _Levels, middle: float, sign: int) -> StepRun:
     """A run of places (station, 0, height) over places across, put where it is."""
     across = run.stations_m
     edges = []
@@ -154,7 +165,8 @@ def _laid_out(run: StepRun, levels: _Levels, middle: float, sign: int) -> StepRu
         right = _between(at, levels.stations_m, levels.rights)
         shift = np.column_stack([across[:, None] * right, edge[:, 2]])
         edges.append(position + shift)
-    # Seen from left to right the way goes on to the left: higher there is higher on the left.
+    # Seen from left to right the vehicle's path goes on to the left: what is higher there is
+    # higher on the left.
     return replace(
         run,
         face_m=np.maximum(run.face_m - _SPACING_M, 0.0),

@@ -34,9 +34,12 @@ from processing.methods.road.requested_position import RequestedPosition
 Floats = NDArray[np.float64]
 
 ABOUT_M = 12.0
-"""Runs are followed so far to either side: longer ones are no surer."""
+"""Runs are followed so far to either side: with both sides they are longer than what makes a run no
+surer (20 m, `curb_confidence`)."""
 
 _BESIDE_M = 0.15
+"""A step of the scanline alone that lies nearer to a run is that run's: they are known within some
+3 cm, and two edges of one stone lie farther apart."""
 
 _HEIGHT = Text("Height of the step, median of its run", "段差の高さ（連続区間の中央値）")
 _HEIGHT_HERE = Text("Height of the step", "段差の高さ")

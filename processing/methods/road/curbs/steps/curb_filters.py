@@ -37,23 +37,37 @@ LEAST_LENGTH_M = 1.0
 """What stands alone has to be so long: a kerb stone is 0.6 m, two of them make a line."""
 
 LEAST_CHANCE = 0.4
-"""Runs less likely than this are left out: more of them are wrong than right."""
+"""Runs less likely than this are left out: more of them are wrong than right (of those from 0.4 to
+0.7 39 % were right, see `curb_confidence`)."""
 
 _HIGH_M, _MOST_LEAN = 0.10, 0.7
-"""Faces of high curbs lean by less than 35° (Table 6-1: 30°): banks of earth between fields don't.
-Of low steps too few points tell."""
+"""From this height, m, faces of curbs lean by less than 35° (Takahashi 2022, Table 6-1: 30°), m
+across per m of height: banks of earth between fields don't. Of low steps too few points tell."""
 
 _LEVEL_M, _LEVEL_SHARE, _RISEN_SHARE = 0.02, 0.25, 0.5
-"""Where the ground falls away from the road and what falls is hardly higher than the road itself,
-less than this share of it having risen before, no island ends but a ditch or a bank begins."""
+"""Where the ground falls away from the road and what falls is hardly higher than the road itself
+(by less than 2 cm, or than a quarter of the fall), less than half of the fall having risen before,
+no island ends but a ditch or a bank begins. The quarter followed two streets of twelve on which the
+edge of a shoulder 3 cm above the road, 30 cm above a ditch, made 182 false sections of 2 m."""
 
 _DEEP_M, _CHANNEL_M = 0.10, 0.5
-"""What comes up from as deep below the road, over ground as narrow, is the wall of a channel."""
+"""What comes up from as deep below the road, over ground as narrow, is the wall of a channel. By
+trial, on streets with open channels and levees."""
 
-_WIDEST_STONE_M = 0.35  # 25 cm, and both edges are known within some centimetres
-_BESIDE_SHARE = 0.25  # no planting strip is as narrow as a stone
+_WIDEST_STONE_M = 0.35
+"""Stones are up to 25 cm wide, and both edges are known within some centimetres."""
+
+_BESIDE_SHARE = 0.25
+"""Along so much of a run a stone's other edge must lie; no planting strip is as narrow as a stone,
+so a part of it suffices. By trial."""
+
 _ABOVE_ROAD_M = 0.05
+"""A curb whose foot lies lower above the road at the vehicle's path stands on the road: less than
+the lowest full curb. By trial."""
+
 _WIDEST_STRIP_M, _ALONG_SHARE = 3.5, 0.5
+"""How far behind a curb an edging stone stands at most, the width of a planting strip with a tree,
+and along how much of it. By trial."""
 
 
 def step_runs(
@@ -95,7 +109,7 @@ def runs_of(
     for _, stretches in groupby(scanlines, key=lambda one: one.number):
         parts: list[PassSteps] = []
         ridges: list[PassRidges] = []
-        noted = _noted(stretches, settings, parts, ridges)
+        noted = _note_steps(stretches, settings, parts, ridges)
         yield from crossing_runs(noted, number, settings)
         steps = join_steps(parts)
         yield from ridge_runs(ridges, steps, number, settings)
@@ -103,13 +117,13 @@ def runs_of(
             yield run_of(steps, chain, number)
 
 
-def _noted(
+def _note_steps(
     stretches: Iterable[Scanlines],
     settings: StepSettings,
     parts: list[PassSteps],
     ridges: list[PassRidges],
 ) -> Iterator[Scanlines]:
-    """The stretches, each one's steps being noted on the way: none is held."""
+    """The stretches, each one's steps being noted as it passes: none is held."""
     for stretch in stretches:
         parts.append(steps_of(stretch, settings))
         ridges.append(ridges_of(stretch, settings))

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,11 +16,29 @@ from numpy.typing import NDArray
 from processing.methods.road.curbs.steps.curb_profile import StepSettings
 from processing.methods.road.curbs.steps.curb_runs import StepRun, is_raised, median_of
 
+# "By trial": chosen on the streets named at `CHANCE`; no measurement of the single value is
+# recorded.
+
 _SHORTEST_M, _LONGEST_M = 0.6, 3.0
+"""Length of a pit's side that was seen: one kerb stone at least; no pit of a street tree is longer.
+Pits of a row are also farther apart than that."""
+
 _LEAST_SURE = 8.0
+"""Median height of its steps in their standard deviations: hardly less than that of usual curbs
+(10). By trial."""
+
 _LIKE_M, _LIKE_LONG_M, _LIKE_RISEN_M = 0.015, 0.5, 0.03
+"""By how much pits of a row may differ: in height, in length, and in what other steps have raised
+before them; m. A height is known within a centimetre, a length within two ends of a few scanlines.
+By trial."""
+
 _LEAST_OTHERS = 2
+"""Others that are alike: three make a row, two may be any two planters."""
+
 _CORNER_M, _CORNER_UP_M = 0.5, 0.1
+"""How far in plan and in height a side may end from the corner of a front that it meets: rounded
+corners, which scanlines see badly. By trial."""
+
 CHANCE = 0.8
 """Taken, not learnt: of the streets looked at (seeds 301 to 332, 575 to 589) 304, 331 and 583 got
 sections of tree pits by it, and none a false one."""
@@ -50,18 +69,27 @@ def _is_short(run: StepRun, settings: StepSettings) -> bool:
 
 def _alike(runs: Sequence[StepRun]) -> list[StepRun]:
     """Those of which there are others of the same height and length behind as much of a curb."""
-    facts = np.array([_facts(run) for run in runs]).reshape(-1, 5)
-    off = np.abs(facts[:, None] - facts[None])
-    is_like = (off[..., 0] == 0) & (off[..., 1] <= _LIKE_M) & (off[..., 2] <= _LIKE_LONG_M)
-    is_like &= (off[..., 3] <= _LIKE_RISEN_M) & (off[..., 4] > _LONGEST_M)
+    facts = np.array([_facts(run) for run in runs]).reshape(-1, len(_PitFacts._fields))
+    side, height, seen, risen, station = np.moveaxis(np.abs(facts[:, None] - facts[None]), -1, 0)
+    is_like = (side == 0) & (height <= _LIKE_M) & (seen <= _LIKE_LONG_M)
+    is_like &= (risen <= _LIKE_RISEN_M) & (station > _LONGEST_M)
     enough = is_like.sum(axis=1) >= _LEAST_OTHERS
     return [run for run, is_enough in zip(runs, enough, strict=True) if is_enough]
 
 
-def _facts(run: StepRun) -> tuple[float, float, float, float, float]:
-    """Side, height, length, what has risen before, and where along the vehicle's path."""
+class _PitFacts(NamedTuple):
+    """Side of the road; height, length, what has risen before, station along the path; m."""
+
+    side: float
+    height_m: float
+    seen_m: float
+    risen_m: float
+    station_m: float
+
+
+def _facts(run: StepRun) -> _PitFacts:
     seen = run.is_seen
-    return (
+    return _PitFacts(
         float(run.side),
         median_of(run.heights_m[seen]),
         run.seen_m,

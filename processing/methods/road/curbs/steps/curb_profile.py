@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from processing.image.scan_lines.scanlines import Scanlines
 from processing.methods.road.curbs.steps.step_columns import SECTION, STEP_COLUMNS, VERTEX
-from processing.methods.road.curbs.steps.step_edge_kernels import edges_kernel
-from processing.methods.road.curbs.steps.step_kernels import steps_kernel
+from processing.methods.road.curbs.steps.step_edge_kernels import EdgeLimits, edges_kernel
+from processing.methods.road.curbs.steps.step_kernels import StepLimits, steps_kernel
 
 Floats = NDArray[np.float64]
 
@@ -25,13 +25,18 @@ _WEAK_SHARE = 0.5
 """A run may go on over steps of half the least height: one of 2 cm is measured at 1 to 3 cm."""
 
 LEAST_SCANNER_M, HIGHEST_SCANNER_M = 1.5, 3.0
-"""How high scanners are above the road; it tells how long shadows may be, and where they begin."""
+"""How high scanners are above the road, on a small car and on a lorry (2.6 m in Takahashi 2022,
+Table 6-1); it tells how long shadows may be, and where they begin."""
 
 _LEAST_FACE = 0.25
-"""Rise per metre of the flattest face: ramp stones before driveways."""
+"""Rise per metre of the flattest face, 14°: ramp stones before driveways. By trial."""
+
+_MARGIN_M = 0.1
+"""Beyond the outermost vertex, so that it falls into a cell."""
 
 _ROOM = 64
-"""Steps of a scanline: fields have thirty; what isn't filled takes no memory."""
+"""Steps of a scanline for which there is room at first: fields have thirty; what isn't filled takes
+no memory, and where there are more the table is made anew."""
 
 
 @dataclass(frozen=True)
@@ -41,13 +46,15 @@ class StepSettings:
     Attributes
     ----------
     least_step_m, most_step_m : float
-        Least and greatest height; mms.md Table 6-1: 3 cm and 45 cm.
+        Least and greatest height; Takahashi 2022, Table 6-1: 3 cm and 45 cm.
     least_dropped_m : float
-        Least height where a run goes on: the step of a dropped curb.
+        Least height where a run goes on: the step of a dropped curb, which is 2 cm at crossings,
+        less what measuring it costs.
     face_deg, ground_deg : float
-        Greatest angle of a face, and least angle of ground, to the vertical; Table 6-1.
+        Greatest angle of a face, and least angle of ground, to the vertical; Table 6-1: 30° and
+        70°.
     join_m : float
-        How far apart what belongs together may be; Table 6-1.
+        How far apart what belongs together may be; Table 6-1: 2.5 m.
     """
 
     least_step_m: float = 0.03
@@ -64,7 +71,7 @@ class PassSteps:
 
     Attributes
     ----------
-    stations_m, places, rights
+    stations_m, positions, rights
         Of the scanlines, as in `Scanlines`.
     table : (n, STEP_COLUMNS) float64
         See `step_kernels`; in the order of the scanlines.
@@ -86,7 +93,7 @@ class PassSteps:
 
 def steps_of(scanlines: Scanlines, settings: StepSettings) -> PassSteps:
     """The steps of the scanlines of one stretch, weak ones too."""
-    half_m = float(np.abs(scanlines.across_m).max(initial=1.0)) + 0.1
+    half_m = float(np.abs(scanlines.across_m).max(initial=1.0)) + _MARGIN_M
     lines = (scanlines.across_m, scanlines.height_m, scanlines.starts)
     table = steps_on_lines(lines, half_m, settings, is_square=True)
     times = scanlines.time_s[table[:, VERTEX].astype(np.int64)]
@@ -112,14 +119,12 @@ def steps_on_lines(
         Whether the lines are square to the vehicle's path, which crosses them at 0: then far faces
         are in shadow.
     """
-    limits = np.array(
-        [
-            _WEAK_SHARE * settings.least_dropped_m,
-            settings.most_step_m,
-            math.tan(math.radians(90.0 - settings.ground_deg)),
-            half_m,
-            LEAST_SCANNER_M if is_square else math.inf,
-        ]
+    limits = StepLimits(
+        _WEAK_SHARE * settings.least_dropped_m,
+        settings.most_step_m,
+        math.tan(math.radians(90.0 - settings.ground_deg)),
+        half_m,
+        LEAST_SCANNER_M if is_square else math.inf,
     )
     along, height, starts = lines
     table = np.empty((_ROOM * starts.size, STEP_COLUMNS))
@@ -130,8 +135,8 @@ def steps_on_lines(
         table = np.empty((count, STEP_COLUMNS))
     table = table[:count]
     highest = HIGHEST_SCANNER_M if is_square else 0.0
-    heights = np.array([limits[0], limits[1], _LEAST_FACE, highest])
-    return table[: edges_kernel(along, height, starts, heights, table)].copy()
+    edges = EdgeLimits(limits.least_m, limits.most_m, _LEAST_FACE, highest)
+    return table[: edges_kernel(along, height, starts, edges, table)].copy()
 
 
 def join_steps(parts: Sequence[PassSteps]) -> PassSteps:

@@ -24,7 +24,7 @@ from processing.methods.road.curbs.steps.curb_profile import (
     join_steps,
 )
 from processing.methods.road.curbs.steps.curb_runs import StepRun, run_of, spread_of
-from processing.methods.road.curbs.steps.ridge_kernels import ridges_kernel
+from processing.methods.road.curbs.steps.ridge_kernels import RidgeLimits, ridges_kernel
 from processing.methods.road.curbs.steps.step_columns import (
     LOWER_ACROSS,
     STEP_COLUMNS,
@@ -37,9 +37,15 @@ Floats = NDArray[np.float64]
 _HIGHEST_M = 0.18
 """Blocks for edging are 12 to 15 cm high (JIS A 5371): what stands out by more is a wall."""
 
-_ABOVE_ROAD_M = 0.5  # how far an edge may lie above the road
-_ASIDE_M = 0.5  # how far a scanner may be beside the vehicle's path: shadows look shorter by it
-_ROOM = 4  # ridges of a scanline
+_ABOVE_ROAD_M = 0.5
+"""How far an edge may lie above the road: a curb and an edging stone on the walk behind it."""
+
+_ASIDE_M = 0.5
+"""How far a scanner may be beside the vehicle's path: shadows look shorter by it."""
+
+_ROOM = 4
+"""Ridges of a scanline for which there is room at first; where there are more the table is made
+anew."""
 
 
 @dataclass(frozen=True)
@@ -60,14 +66,12 @@ class PassRidges:
 
 def ridges_of(scanlines: Scanlines, settings: StepSettings) -> PassRidges:
     """The ridges of the scanlines of one stretch."""
-    limits = np.array(
-        [
-            settings.least_step_m,
-            min(_HIGHEST_M, settings.most_step_m),
-            math.tan(math.radians(90.0 - settings.ground_deg)),
-            LEAST_SCANNER_M - _ABOVE_ROAD_M,
-            HIGHEST_SCANNER_M + _ASIDE_M,
-        ]
+    limits = RidgeLimits(
+        settings.least_step_m,
+        min(_HIGHEST_M, settings.most_step_m),
+        math.tan(math.radians(90.0 - settings.ground_deg)),
+        LEAST_SCANNER_M - _ABOVE_ROAD_M,
+        HIGHEST_SCANNER_M + _ASIDE_M,
     )
     lines = (scanlines.across_m, scanlines.height_m, scanlines.starts)
     room = _ROOM * scanlines.starts.size

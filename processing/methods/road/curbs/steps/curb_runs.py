@@ -31,10 +31,19 @@ _Line = tuple[Floats, Floats, Floats, NDArray[np.bool_]]
 something was measured near each."""
 
 _REACH_M, _HIGH_REACH_M = 0.6, 0.35
-"""How far along a run places and heights are smoothed: ramps of dropped curbs are 0.7 m long."""
+"""How far along a run places and heights are smoothed: ramps of dropped curbs are 0.7 m long, so
+heights over half of one to either side, places over somewhat more."""
 
 _SEEN_WITHIN_M = 0.3
+"""A place of a run is seen if a step was found so near along the vehicle's path: three scanlines.
+By trial: no measurement is recorded."""
+
 _BEFORE_M = 0.3
+"""What rises so near before a run is of its own foot or apron and doesn't count as risen before.
+By trial: no measurement is recorded."""
+
+_HIDDEN_WEIGHT = 0.5
+"""Of a step without a vertex on its face, whose place is only known to lie in a gap. By trial."""
 
 
 @dataclass(frozen=True)
@@ -46,7 +55,7 @@ class StepRun:
     drive : int
         Which of the drives given.
     side : int
-        −1 left, 1 right of the way.
+        −1 left, 1 right of the vehicle's path.
     rises : int
         1 where the ground is higher on the far side (seen from the vehicle's path), −1 where it is
         lower: the far edges of islands, whose faces mostly are hidden.
@@ -144,8 +153,8 @@ def run_of(steps: PassSteps, chain: Chain, number: int, among: PassSteps | None 
     middle, face = _smooth(positions, line), _smooth(wide, line)
     low = _smooth(rows[:, LOWER_HEIGHT], line, _HIGH_REACH_M)
     high = _smooth(rows[:, UPPER_HEIGHT], line, _HIGH_REACH_M)
-    lower = _placed(steps, every, middle - chain.sign * face / 2, low)
-    upper = _placed(steps, every, middle + chain.sign * face / 2, np.maximum(high, low))
+    lower = _place(steps, every, middle - chain.sign * face / 2, low)
+    upper = _place(steps, every, middle + chain.sign * face / 2, np.maximum(high, low))
     off = np.abs(positions - np.interp(at, stations, middle))
     side = 1 if median_of(middle) > 0 else -1
     unseen = np.where(is_seen, 0.0, np.nan)
@@ -189,7 +198,7 @@ def _line_of(steps: PassSteps, chain: Chain) -> tuple[NDArray[np.int64], NDArray
     stations = steps.stations_m[every]
     nearest = nearest_rising(at, stations)
     is_seen = np.abs(at[nearest] - stations) <= _SEEN_WITHIN_M
-    weights = np.where(steps.table[chain.rows, FACE_COUNT] > 0, 1.0, 0.5)
+    weights = np.where(steps.table[chain.rows, FACE_COUNT] > 0, 1.0, _HIDDEN_WEIGHT)
     return every, nearest, (at, weights, stations, is_seen)
 
 
@@ -205,7 +214,7 @@ def _smooth(values: Floats, line: _Line, reach_m: float = _REACH_M) -> Floats:
     return smooth
 
 
-def _placed(steps: PassSteps, every: NDArray[np.int64], across: Floats, height: Floats) -> Floats:
+def _place(steps: PassSteps, every: NDArray[np.int64], across: Floats, height: Floats) -> Floats:
     """Where places beside the vehicle's path are: (k, 3), m, project CRS."""
     shift = np.column_stack([across[:, None] * steps.rights[every], height])
     positions: Floats = steps.positions[every] + shift
@@ -213,7 +222,7 @@ def _placed(steps: PassSteps, every: NDArray[np.int64], across: Floats, height: 
 
 
 def _risen(steps: PassSteps, line: tuple[NDArray[np.int64], Floats], side: int) -> Floats:
-    """(k,) heights of the steps between the way and a line, up less down, m."""
+    """(k,) heights of the steps between the path and a line, up less down, m."""
     every, middle = line
     first, stop = np.searchsorted(steps.sections, [every[0], every[-1] + 1])
     rows = steps.table[first:stop]

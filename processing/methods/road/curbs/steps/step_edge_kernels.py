@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,20 +29,76 @@ from processing.methods.road.curbs.steps.step_columns import (
 _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
 
-_FOOT_SHARE, _TOP_SHARE = 0.2, 0.8  # of the rise: what is below and above isn't on the face
+# "By trial": chosen while the tool was made; no measurement of the single value is recorded.
+
+_FOOT_SHARE, _TOP_SHARE = 0.2, 0.8
+"""Of the rise: what is below and above isn't on the face. Symmetric, and far enough from both ends
+that noise of some millimetres on a step of 3 cm is not taken for the face."""
+
 _BEYOND_M = 0.06
-_HELD = 0.01  # of squared shares: a few vertices tell no lean, a face is upright then
+"""How far beyond the face as found a vertex may be of it: three cells of the search. By trial."""
+
+_HELD = 0.01
+"""Of squared shares: a few vertices tell no lean, a face is upright then. By trial."""
+
 _SAME_M = 0.12
-_FOOT_REACH_M, _FACE_OFF_M = 0.30, 0.03  # what is nearer to the edge may be the face's
-_WALL_M = 0.02  # of a gutter: it leans by less
-_OVER_M, _OVERHEAD_M = 0.15, 1.2  # what lies higher hangs over, is no growth of the ground
+"""Steps of one direction whose middles lie nearer are one: narrower than an edging stone's two
+faces, which differ in direction. By trial."""
+
+_FOOT_REACH_M, _FACE_OFF_M = 0.30, 0.03
+"""Over how much ground before the edge roughness is measured, the width of an apron; what is nearer
+to the edge may be the face's. By trial."""
+
+_WALL_M = 0.02
+"""Of a gutter beside the foot: it leans by less. By trial."""
+
+_OVER_M, _OVERHEAD_M = 0.15, 1.2
+"""What lies higher over the upper edge hangs over it; what lies higher over the foot is no growth
+of the ground but a crown or a mirror. By trial."""
+
 _SEEN_FACE_M, _HIDDEN_M = 0.04, 0.15
+"""A wider gap between foot and top without a vertex is in shadow, as a face of that width would
+show two cells; so far before the first vertex of the top its edge lies at most. By trial."""
+
 _BESIDE_M, _MOST_ROUGH_M = 0.16, 0.30
+"""How far beyond the face vertices of foot and top are looked for, a kerb stone's width; no vertex
+counts as farther off the foot, so that a single one cannot decide. By trial."""
+
+_LEAST_RISE_M = 1e-3
+"""Guard of a division where foot and top meet."""
+
+
+class EdgeLimits(NamedTuple):
+    """What the edges of steps may be.
+
+    Attributes
+    ----------
+    least_m, most_m : float
+        Height of a step.
+    least_face : float
+        Rise per metre of the face.
+    scanner_m : float
+        Height of a high scanner; 0 where lines don't run from the vehicle's path.
+    """
+
+    least_m: float
+    most_m: float
+    least_face: float
+    scanner_m: float
+
+
+class _FaceSums(NamedTuple):
+    """Sums over the vertices of a face: of their place, share of the rise, product, share²."""
+
+    total: float
+    shares: float
+    products: float
+    squares: float
 
 
 @kernel
 def edges_kernel(
-    across: _Floats, height: _Floats, starts: _Integers, limits: _Floats, table: _Floats
+    across: _Floats, height: _Floats, starts: _Integers, limits: EdgeLimits, table: _Floats
 ) -> int:
     """Put the edges of steps where the vertices have them; leave out what doesn't rise steeply.
 
@@ -51,9 +108,7 @@ def edges_kernel(
         Vertices, left to right, m.
     starts : (s + 1,)
         Where the scanlines begin.
-    limits : (4,)
-        Least and greatest step, m; least rise per metre of the face; height of a high scanner, m,
-        0 where lines don't run from the vehicle's path.
+    limits : EdgeLimits
     table : (k, STEP_COLUMNS)
         Steps as found; those that are kept are moved to the front.
 
@@ -69,11 +124,12 @@ def edges_kernel(
         begin, end = starts[section], starts[section + 1]
         x, h = across[begin:end], height[begin:end]
         row[VERTEX] = -1.0
-        if not _cross(x, h, limits[3], row):
+        if not _cross(x, h, limits.scanner_m, row):
             continue
         wide = abs(row[UPPER_ACROSS] - row[LOWER_ACROSS])
         high = row[UPPER_HEIGHT] - row[LOWER_HEIGHT]
-        if not limits[0] <= high <= limits[1] or high < limits[2] * wide:
+        is_step = limits.least_m <= high <= limits.most_m
+        if not is_step or high < limits.least_face * wide:
             continue
         _roughness(x, h, row)
         row[VERTEX] += begin
@@ -110,7 +166,7 @@ def _cross(x: _Floats, h: _Floats, highest: float, row: _Floats) -> bool:
             off = abs(u)
             row[VERTEX] = i
         base = foot + row[FOOT_SLOPE] * u
-        share = (h[i] - base) / max(top + row[TOP_SLOPE] * u - base, 1e-3)
+        share = (h[i] - base) / max(top + row[TOP_SLOPE] * u - base, _LEAST_RISE_M)
         if share < _FOOT_SHARE and last_low < u < first_high:
             last_low = u
         if share > _TOP_SHARE and -reach < u < first_high:
@@ -123,10 +179,12 @@ def _cross(x: _Floats, h: _Floats, highest: float, row: _Floats) -> bool:
             squares += share * share
     if not math.isfinite(last_low - first_high):
         return False
-    wide = _width(max(first_high - last_low, 0.0), count, (total, shares, products, squares))
+    sums = _FaceSums(total, shares, products, squares)
+    wide = _width(max(first_high - last_low, 0.0), count, sums)
     centre = total / count if count > 0 else (first_high + last_low) / 2
     if count == 0 and wide > _SEEN_FACE_M and highest > 0:
-        # No point on the face: upright, where the side that is turned to the way ends.
+        # No point on the face: upright, where the side that faces the vehicle's path
+        # ends.
         centre = last_low
         if middle * sign < 0:
             # In shadow: between the last point of the top and where the ray that touches the
@@ -143,7 +201,7 @@ def _cross(x: _Floats, h: _Floats, highest: float, row: _Floats) -> bool:
 
 
 @kernel
-def _width(gap: float, count: int, sums: tuple[float, float, float, float]) -> float:
+def _width(gap: float, count: int, sums: _FaceSums) -> float:
     """How wide a face is, from the gap between foot and top and sums over the vertices on it.
 
     Foot and top end somewhere between two vertices; the face's own say how it leans.
@@ -163,7 +221,7 @@ def _roughness(x: _Floats, h: _Floats, row: _Floats) -> None:
     of a verge, or is a vehicle over its tyre; where it falls as deep an open gutter begins.
     """
     off_ground = _TOP_SHARE * (row[UPPER_HEIGHT] - row[LOWER_HEIGHT])
-    sums = np.zeros(4)
+    cover, cover_count, rough, rough_count = 0.0, 0.0, 0.0, 0.0
     ground_m = _FOOT_REACH_M
     for i in range(x.size):
         before = (row[LOWER_ACROSS] - x[i]) * row[SIGN]
@@ -174,17 +232,17 @@ def _roughness(x: _Floats, h: _Floats, row: _Floats) -> None:
         if 0.0 < before <= _FOOT_REACH_M:
             off = h[i] - row[LOWER_HEIGHT] + row[FOOT_SLOPE] * before
             if off < _OVERHEAD_M:
-                sums[0] += min(off * off, _MOST_ROUGH_M**2)
-                sums[1] += 1.0
+                cover += min(off * off, _MOST_ROUGH_M**2)
+                cover_count += 1.0
             if _FACE_OFF_M < before < ground_m and abs(off) < off_ground:
-                sums[2] += off * off
-                sums[3] += 1.0
-    row[FOOT_COVER_M] = math.sqrt(sums[0] / max(sums[1], 1.0))
-    row[FOOT_ROUGH_M] = math.sqrt(sums[2] / max(sums[3], 1.0))
+                rough += off * off
+                rough_count += 1.0
+    row[FOOT_COVER_M] = math.sqrt(cover / max(cover_count, 1.0))
+    row[FOOT_ROUGH_M] = math.sqrt(rough / max(rough_count, 1.0))
 
 
 def warm_up() -> None:
     """Compile the kernel."""
     across, height = np.linspace(-1.0, 1.0, 9), np.zeros(9)
     table = np.zeros((1, STEP_COLUMNS))
-    edges_kernel(across, height, np.array([0, 9]), np.array([0.01, 0.45, 0.25, 3.0]), table)
+    edges_kernel(across, height, np.array([0, 9]), EdgeLimits(0.01, 0.45, 0.25, 3.0), table)
