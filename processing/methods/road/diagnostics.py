@@ -1,4 +1,4 @@
-"""Trials: the places that a tool looked at and the tests that decided there, for people to read."""
+"""Diagnostics: places that a tool looked at and the tests that decided there, for people to read."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ class DiagnosticTest:
     Attributes
     ----------
     name : Text
-        What was measured, in the trade's words: "Height of the step".
+        What was measured, in surveyors' words: "Height of the step".
     value, limit : float
         Measured, and what it was held against; both in ``unit``. NaN where nothing could be
         measured.
@@ -42,7 +42,7 @@ class Diagnostic:
     ----------
     xyz : (3,) float64
         m, project CRS.
-    outcomes : tuple of Outcome
+    outcomes : tuple of DiagnosticTest
         In the order in which the tool asks.
     is_taken : bool
     """

@@ -7,10 +7,21 @@ from typing import NamedTuple
 
 from processing.methods.road.gutters.grating_facts import GratingFacts
 
+# Bounds of facts, so that none outweighs all others, and the units in which logarithms are taken;
+# set before the weights were fitted.
+
 _DEEP_M, _DEEPEST_M, _FLATTEST_M = 0.02, 0.10, 0.01
+"""Unit of depths, and their bounds: rough asphalt is less deep than the unit, bars are 5 to 10 cm
+high, and 1 cm is the least that counts as open (z_t of Takahashi 2022, Table 7-3)."""
+
 _LITTLE = 0.02
+"""Share of a surface, added to both of a ratio, so that nearly none against none says nothing."""
+
 _MOST_ROWS, _MOST_RAISED_M = 30.0, 0.3
+"""More rows of a slow vehicle say no more, nor does what is raised higher than a hedge's foot."""
+
 _MOST_OPEN, _MOST_PART = 0.8, 0.6
+"""Share that bars leave open; of one of nine parts, which fewer rows cross."""
 
 
 class GratingTerms(NamedTuple):
@@ -54,6 +65,7 @@ and more were gratings, 6 of 8 of those from 0.5 and 3 of 256 of those below. Fi
 rows are followed outwards, they found fewer on 45 streets and were left."""
 
 CONSTANT = -15.93
+"""Log-odds of a rectangle of which nothing is known; fitted with `WEIGHTS`."""
 
 
 def terms_of(facts: GratingFacts) -> GratingTerms:

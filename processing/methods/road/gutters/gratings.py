@@ -1,9 +1,9 @@
-"""Gratings and catch basins: where many notches lie close together (mms.md, 7.3 c1).
+"""Gratings and catch basins: where many notches lie close together.
 
-The holes of lids lie on a line across the gutter; between the bars of a grating the surface is
-open all over a rectangle. So what makes a grating is how much of the surface is open, however
-slowly the vehicle goes, and that openings fill a rectangle of a possible size with an edge all
-round.
+After Takahashi 2022, section 7.3 c1. The holes of lids lie on a line across the gutter; between the
+bars of a grating the surface is open all over a rectangle. So what makes a grating is how much of
+the surface is open, however slowly the vehicle goes, and that openings fill a rectangle of a
+possible size with an edge all round.
 """
 
 from __future__ import annotations
@@ -30,15 +30,53 @@ from processing.recording.passes import Pass, passes_of
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
-_FEWEST = 6  # notches
+# "By trial": chosen while the tool was made; no measurement of the single value is recorded.
+
+_FEWEST = 6
+"""Notches of a grating: with fewer no rectangle has an edge all round. By trial."""
+
 _LEAST_STRENGTH = 0.1
-_FARTHEST_M = 0.25  # from row to row of one grating
-_EDGE_M = 0.005  # frame beyond the outermost opening
+"""Weaker notches are noise more often than not. By trial."""
+
+_FARTHEST_M, _ROWS_APART = 0.25, 1.1
+"""Rows of one grating may be so far apart: at 90 km/h and 100 rev/s they are 25 cm. Notches join
+over a little more than from row to row."""
+
+_EDGE_M = 0.005
+"""Frame beyond the outermost opening. By trial."""
+
 _FRAME_M, _ABOUT_M = 0.02, 0.50
+"""The surface around begins beyond the frame and goes so far: that of the road beside. By trial."""
+
 _BIN_M = 0.01
-_CORNER_M = 0.10  # a notch so near to a corner shows it
+"""Bins of the outline, m: a spacing of points."""
+
+_BLUNT_M = 0.01
+"""An opening ends so much nearer than its width says, to both sides together twice: the rim. By
+trial."""
+
+_CORNER_M = 0.10
+"""A notch so near to a corner shows it. By trial."""
+
 _EDGE_SHARE = 0.4
-_MOST_TURNED_DEG, _TURN_STEP_DEG = 8.0, 1.0
+"""Bins covered by this share of the usual number of openings are of the grating, rarer ones are
+strays. By trial."""
+
+_MOST_TURNED_DEG, _TURN_STEP_DEG, _TURN_COST = 8.0, 1.0, 0.002
+"""Gratings lie along the vehicle's path within so much, in steps of so much; a degree costs this
+share of the area, so that ties go to the path's own direction. By trial."""
+
+_MEMBERS_WITHIN_S = 1.0
+"""Rows so long after or before a grating's are of the same passage; another says nothing here."""
+
+_DEPTH_QUANTILE = 0.75
+"""Of depths: half of what falls between bars meets their flanks."""
+
+_PARTS = 3
+"""Parts along each side: nine, of which the least open but one counts."""
+
+_LEAST_WIDTH_M = 1e-6
+"""Guard of a division."""
 
 
 @dataclass(frozen=True)
@@ -49,10 +87,11 @@ class GratingParameters:
     ----------
     radius_m, least_open : float
         So much of the surface is open within so far of a place on it. The thesis' 8 notches
-        within 0.25 m (Table 7-3) are that of its recording; shares are the same however fast the
-        vehicle goes.
+        within 0.25 m (Takahashi 2022, Table 7-3) are that of its recording; shares are the same
+        however fast the vehicle goes. By trial: no measurement is recorded.
     least_m, longest_m, widest_m : float
-        Sizes that are made: shortest side, longest long side, longest short side.
+        Sizes that are made, with some centimetres to either side: shortest side, longest long
+        side, longest short side.
     joining_m : float
         Notches nearer than this to one another are of one grating, or of its neighbour's; as far
         as from row to row where those are farther apart.
@@ -79,27 +118,33 @@ def gratings_among(
 ) -> tuple[GratingFound, ...]:
     """Gratings among notches, in the order of passes and stations."""
     found: list[GratingFound] = []
-    for vehicle_path in passes:
-        for members in _clusters(notches, vehicle_path.number, parameters):
-            one = _grating(notches, members, vehicle_path, parameters)
+    for one_pass in passes:
+        for members in _clusters(notches, one_pass.number, parameters):
+            one = _grating(notches, members, one_pass, parameters)
             if one is not None:
                 found.append(one)
     return tuple(found)
 
 
-def _clusters(notches: Notches, stretch: int, parameters: GratingParameters) -> Iterator[Integers]:
+def _clusters(
+    notches: Notches, pass_number: int, parameters: GratingParameters
+) -> Iterator[Integers]:
     """Numbers of notches that lie close together."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
     from scipy.spatial import cKDTree
 
-    chosen = np.flatnonzero((notches.stretch == stretch) & (notches.strength >= _LEAST_STRENGTH))
+    chosen = np.flatnonzero(
+        (notches.pass_number == pass_number) & (notches.strength >= _LEAST_STRENGTH)
+    )
     if chosen.size < _FEWEST:
         return
     positions = notches.xyz[chosen, :2] - notches.xyz[chosen[0], :2]
     tree = cKDTree(positions)
-    apart = float(np.median(notches.area_m2[chosen] / np.maximum(notches.width_m[chosen], 1e-6)))
-    joining = min(max(parameters.joining_m, 1.1 * apart), _FARTHEST_M)
+    apart = float(
+        np.median(notches.area_m2[chosen] / np.maximum(notches.width_m[chosen], _LEAST_WIDTH_M))
+    )
+    joining = min(max(parameters.joining_m, _ROWS_APART * apart), _FARTHEST_M)
     radius = max(parameters.radius_m, joining)
     pairs = tree.query_pairs(radius, output_type="ndarray")
     area = notches.area_m2[chosen]
@@ -118,15 +163,15 @@ def _clusters(notches: Notches, stretch: int, parameters: GratingParameters) -> 
 
 
 def _grating(
-    notches: Notches, members: Integers, vehicle_path: Pass, parameters: GratingParameters
+    notches: Notches, members: Integers, one_pass: Pass, parameters: GratingParameters
 ) -> GratingFound | None:
     """The rectangle that a cluster fills, if it is one."""
     centre = np.median(notches.xyz[members], axis=0)
-    half = np.maximum(notches.width_m[members] / 2 - 0.01, 0.0)[:, None]
+    half = np.maximum(notches.width_m[members] / 2 - _BLUNT_M, 0.0)[:, None]
     positions = notches.xyz[members, :2] - centre[:2]
     aside = half * notches.direction[members]
     ends = np.stack([positions - aside, positions + aside])
-    ahead = vehicle_path.directions_at(np.array([np.median(notches.station_m[members])]))[0]
+    ahead = one_pass.directions_at(np.array([np.median(notches.station_m[members])]))[0]
     along, box = _least_box(ends, ahead)
     box = box + np.array([[-_EDGE_M], [_EDGE_M]])
     size = box[1] - box[0]
@@ -156,8 +201,8 @@ def _least_box(ends: Floats, ahead: Floats) -> tuple[Floats, Floats]:
     left = np.column_stack([-turns.imag, turns.real])
     low, high = _filled(ends @ np.vstack([along, left]).T)
     size = (high - low).reshape(2, -1)
-    # Ties are for the way's own direction, since gutters follow it.
-    best = int(np.argmin(size[0] * size[1] * (1.0 + 0.002 * np.abs(turned))))
+    # Ties are for the path's own direction, since gutters follow it.
+    best = int(np.argmin(size[0] * size[1] * (1.0 + _TURN_COST * np.abs(turned))))
     which = [best, best + turned.size]
     return along[best], np.array([low[which], high[which]])
 
@@ -208,7 +253,7 @@ def _corners(box: Floats, along: Floats, centre: Floats, xyz: Floats) -> Floats:
 
 def _facts(notches: Notches, members: Integers, corners: Floats) -> GratingFacts:
     # Another pass of the same place says nothing here.
-    span = np.ptp(notches.time_s[members]) + 1.0
+    span = np.ptp(notches.time_s[members]) + _MEMBERS_WITHIN_S
     is_near = np.abs(notches.time_s - np.median(notches.time_s[members])) <= span
     near = notches.chosen(np.flatnonzero(is_near & (notches.strength >= _LEAST_STRENGTH)))
     own, long, wide = in_rectangle(near.xyz, corners)
@@ -216,12 +261,14 @@ def _facts(notches: Notches, members: Integers, corners: Floats) -> GratingFacts
     is_about = inside(near.xyz, corners, _ABOUT_M) & ~inside(near.xyz, corners, _FRAME_M)
     about_m2 = (long + 2 * _ABOUT_M) * (wide + 2 * _ABOUT_M)
     about_m2 -= (long + 2 * _FRAME_M) * (wide + 2 * _FRAME_M)
-    cells = np.clip((own[is_in] / [long / 3, wide / 3]).astype(np.int64), 0, 2) @ [3, 1]
-    parts = np.bincount(cells, near.area_m2[is_in], minlength=9) * 9 / (long * wide)
+    of_part = own[is_in] / [long / _PARTS, wide / _PARTS]
+    cells = np.clip(of_part.astype(np.int64), 0, _PARTS - 1) @ [_PARTS, 1]
+    count = _PARTS * _PARTS
+    parts = np.bincount(cells, near.area_m2[is_in], minlength=count) * count / (long * wide)
     return GratingFacts(
         rows=int(np.unique(near.row[is_in]).size),
         open_share=float(near.area_m2[is_in].sum() / (long * wide)),
-        depth_m=float(np.quantile(near.depth_m[is_in], 0.75)),
+        depth_m=float(np.quantile(near.depth_m[is_in], _DEPTH_QUANTILE)),
         least_part=float(np.sort(parts)[1]),
         about=float(near.area_m2[is_about].sum() / about_m2),
         raised_m=float(np.median(near.higher_m(is_in))),

@@ -1,4 +1,4 @@
-"""The line of a gutter in plan, with places told along and across it."""
+"""The line of a gutter in plan, with coordinates along and across it."""
 
 from __future__ import annotations
 
@@ -11,6 +11,14 @@ from scipy.spatial import cKDTree
 _Floats = NDArray[np.float64]
 
 STEP_M = 0.25
+"""Between places of an axis: under half a lid, and a bend of 10 m radius leaves a chord by less
+than a millimetre there."""
+
+_SAME_M, _LEAST_M = 1e-6, 1e-9
+"""Places nearer to the one before are the same; guard of a division."""
+
+_BEYOND_M = 0.5
+"""Places before and behind an axis are still told along it so far: a lid's length nearly."""
 
 
 @dataclass(frozen=True)
@@ -32,17 +40,17 @@ class GutterAxis:
     def through(positions: _Floats) -> GutterAxis:
         """The axis through places in order: (n, 3) float64, n ≥ 2, m."""
         driven = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(positions[:, :2], axis=0).T))])
-        is_new = np.concatenate([[True], np.diff(driven) > 1e-6])
+        is_new = np.concatenate([[True], np.diff(driven) > _SAME_M])
         count = max(2, int(np.ceil(driven[-1] / STEP_M)) + 1)
         at = np.arange(count) * STEP_M
         inside = np.minimum(at, driven[-1])
         xyz = np.column_stack([np.interp(inside, driven[is_new], k[is_new]) for k in positions.T])
         end = xyz[-1] - xyz[-2]
         if at[-1] > driven[-1]:
-            left = max(float(np.hypot(end[0], end[1])), 1e-9)
+            left = max(float(np.hypot(end[0], end[1])), _LEAST_M)
             xyz[-1] = xyz[-2] + end * (STEP_M / left)
         ahead = np.gradient(xyz[:, :2], axis=0)
-        ahead /= np.maximum(np.hypot(ahead[:, 0], ahead[:, 1]), 1e-9)[:, None]
+        ahead /= np.maximum(np.hypot(ahead[:, 0], ahead[:, 1]), _LEAST_M)[:, None]
         return GutterAxis(xyz, np.column_stack([ahead[:, 1], -ahead[:, 0]]))
 
     @property
@@ -61,7 +69,7 @@ class GutterAxis:
         xyz[:, :2] += beyond[:, None] * np.column_stack([-right[:, 1], right[:, 0]])
         return xyz
 
-    def told(self, xyz: _Floats, within_m: float) -> tuple[_Floats, _Floats, _Floats]:
+    def coordinates_of(self, xyz: _Floats, within_m: float) -> tuple[_Floats, _Floats, _Floats]:
         """Along, across (to the right) and above of places: (n,) each, NaN for those farther off.
 
         Parameters
@@ -88,7 +96,11 @@ class GutterAxis:
         here = np.column_stack([np.interp(along / STEP_M, known, axis) for axis in self.outwards.T])
         off = xyz[near] - back
         across = (off[:, :2] * here).sum(axis=1)
-        is_in = (np.abs(across) <= within_m) & (along >= -0.5) & (along <= self.length_m + 0.5)
+        is_in = (
+            (np.abs(across) <= within_m)
+            & (along >= -_BEYOND_M)
+            & (along <= self.length_m + _BEYOND_M)
+        )
         chosen = near[is_in]
         found[:, chosen] = np.array([along, across, off[:, 2]])[:, is_in]
         return found[0], found[1], found[2]

@@ -13,11 +13,25 @@ from processing.methods.road.gutters.gutter_lids import GutterCover
 from processing.methods.road.gutters.gutter_runs import GutterRun
 from processing.methods.road.gutters.notches import Notches
 
-_FEW_HOLES = 8  # notches that make the holes' places half believed
+# Bounds of facts, so that none outweighs all others; set before the weights were fitted.
+
+_FEW_HOLES = 8
+"""Notches that make the holes' places half believed."""
+
 _FEW_POINTS = 10
-_MOST_JOINTS, _MOST_CONTRAST, _MOST_RAISED_M = 60.0, 4.0, 0.3
-_GAINS = (-1.0, 2.0)
+"""With fewer points on its top a cover's plane is that of its neighbours."""
+
+_MOST_JOINTS, _MOST_RAISED_M = 60.0, 0.3
+"""A row of joints that is worth more, or one raised higher, is no surer."""
+
+_LEAST_CONTRAST, _MOST_CONTRAST = -1.0, 4.0
+"""Bounds of both contrasts, as logarithms."""
+
+_LEAST_GAIN, _MOST_GAIN = -1.0, 2.0
+"""Bounds of what the holes' places gain for each notch, as logarithms."""
+
 _MOST = 0.99
+"""No cover is surer: of those given 0.9 and more 93 to 98 % were right (see `WEIGHTS`)."""
 
 
 class CoverFacts(NamedTuple):
@@ -78,6 +92,7 @@ more were right, 265 of 313 of those from 0.7, 44 of 58 of those from 0.5 and 20
 below; of ten others 426 of 436, 101 of 104, 3 of 3 and 3 of 14."""
 
 CONSTANT = -6.03
+"""Log-odds of a cover of which nothing is known; fitted with `WEIGHTS`."""
 
 
 def facts_of(
@@ -88,7 +103,7 @@ def facts_of(
     Parameters
     ----------
     run : GutterRun
-    covers : tuple of Cover
+    covers : tuple of GutterCover
         All of its row's.
     notches : sequence of Notches
         Of each drive.
@@ -96,25 +111,31 @@ def facts_of(
     contrast = contrast_of(run, notches)
     joints = math.log(min(max(run.row.value, 1.0), _MOST_JOINTS))
     believed = run.holes.count / (run.holes.count + _FEW_HOLES)
-    holes = believed * float(np.clip(run.holes.gain, *_GAINS))
-    of_run = joints, holes, float(run.holes.type.holes == 1)
+    holes = believed * float(np.clip(run.holes.gain, _LEAST_GAIN, _MOST_GAIN))
+    of_run = _RunFacts(joints, holes, float(run.holes.type.holes == 1))
     return [_facts(one, of_run, contrast, k) for k, one in enumerate(covers)]
 
 
-def _facts(
-    cover: GutterCover, of_run: tuple[float, float, float], contrast: Contrast, number: int
-) -> CoverFacts:
+class _RunFacts(NamedTuple):
+    """Facts that all covers of a gutter share: see `CoverFacts`."""
+
+    joints: float
+    holes: float
+    one_hole: float
+
+
+def _facts(cover: GutterCover, of_run: _RunFacts, contrast: Contrast, number: int) -> CoverFacts:
     lids, beside = (
-        min(max(float(one[number]), -1.0), _MOST_CONTRAST)
+        min(max(float(one[number]), _LEAST_CONTRAST), _MOST_CONTRAST)
         for one in (contrast.lids, contrast.beside)
     )
     return CoverFacts(
-        of_run[0],
-        of_run[1],
+        of_run.joints,
+        of_run.holes,
         lids,
         beside,
         min(contrast.raised_m, _MOST_RAISED_M),
-        of_run[2],
+        of_run.one_hole,
         float(cover.is_bridged),
         float(cover.is_grating),
         float(cover.on_top < _FEW_POINTS),

@@ -19,12 +19,32 @@ from processing.methods.road.gutters.notches import Notches
 _Floats = NDArray[np.float64]
 _Bools = NDArray[np.bool_]
 
-_JOINT_M = 0.03  # to either side of a joint its holes lie
-_BESIDE_M = (0.05, 0.40)  # from the lids' edges: where the road beside begins and ends
+# "By trial": chosen while the tool was made; no measurement of the single value is recorded.
+
+_JOINT_M = 0.03
+"""To either side of a joint its holes lie: half of the longest of 5 cm (Takahashi 2022, Table 7-2),
+rounded up."""
+
+_BESIDE_FROM_M, _BESIDE_TO_M = 0.05, 0.40
+"""From the lids' edges: where the road beside begins and ends. By trial."""
+
 _LEVEL_M = 0.15
+"""Notches farther above or below the axis are of something else: a curb's height. By trial."""
+
 _LEAST_STRENGTH = 0.1
-_ABOUT = 5  # covers to either side that are asked too
-_CLOSED = 0.005  # share of a closed surface that is open by noise
+"""As in `gratings`."""
+
+_ABOUT = 5
+"""Covers to either side that are asked too: of 6 m, as one lid is crossed by few rows. By trial."""
+
+_CLOSED = 0.005
+"""Share of a closed surface that is open by noise. By trial."""
+
+_BOX_M = 1.0
+"""How far around the box of an axis notches are asked: more than the reach to either side."""
+
+_LEAST_AREA_M2 = 1e-9
+"""Guard of a division."""
 
 
 @dataclass(frozen=True)
@@ -57,7 +77,7 @@ def contrast_of(run: GutterRun, notches: Sequence[Notches]) -> Contrast:
     """
     row, half = run.row, run.edges[1]
     long = row.ends_m - row.starts_m
-    (along, across, area), raised_m = _told(run, notches)
+    (along, across, area), raised_m = _notches_about(run, notches)
     which = np.clip(np.searchsorted(row.starts_m, along, side="right") - 1, 0, long.size - 1)
     to_joint = np.minimum(np.abs(along - row.starts_m[which]), np.abs(along - row.ends_m[which]))
     is_on = (along > row.starts_m[which] - _JOINT_M) & (along < row.ends_m[which] + _JOINT_M)
@@ -70,8 +90,8 @@ def contrast_of(run: GutterRun, notches: Sequence[Notches]) -> Contrast:
             np.where(is_lid, (long - 2 * _JOINT_M) * 2 * half, 0.0),
         ),
         (
-            is_on & (np.abs(across) >= half + _BESIDE_M[0]),
-            long * 2 * (_BESIDE_M[1] - _BESIDE_M[0]),
+            is_on & (np.abs(across) >= half + _BESIDE_FROM_M),
+            long * 2 * (_BESIDE_TO_M - _BESIDE_FROM_M),
         ),
     )
     shares = [_share(which[chosen], area[chosen], of_m2) for chosen, of_m2 in positions]
@@ -79,14 +99,14 @@ def contrast_of(run: GutterRun, notches: Sequence[Notches]) -> Contrast:
     return Contrast(joints - lids, joints - beside, raised_m)
 
 
-def _told(run: GutterRun, notches: Sequence[Notches]) -> tuple[_Floats, float]:
+def _notches_about(run: GutterRun, notches: Sequence[Notches]) -> tuple[_Floats, float]:
     """Along, across and area of notches on a gutter and beside it; how far it is raised."""
-    reach = run.edges[1] + _BESIDE_M[1]
-    low, high = run.axis.xyz.min(axis=0) - 1.0, run.axis.xyz.max(axis=0) + 1.0
+    reach = run.edges[1] + _BESIDE_TO_M
+    low, high = run.axis.xyz.min(axis=0) - _BOX_M, run.axis.xyz.max(axis=0) + _BOX_M
     parts, heights = [], [np.empty(0)]
     for own in notches:
         is_near = (own.strength >= _LEAST_STRENGTH) & ((own.xyz >= low) & (own.xyz <= high)).all(1)
-        along, across, above = run.axis.told(own.xyz[is_near], reach)
+        along, across, above = run.axis.coordinates_of(own.xyz[is_near], reach)
         is_on = np.isfinite(along) & (np.abs(above) < _LEVEL_M)
         parts.append(np.array([along[is_on], across[is_on], own.area_m2[is_near][is_on]]))
         is_within = is_near.copy()
@@ -104,5 +124,5 @@ def _share(which: NDArray[np.int64], area: _Floats, of_m2: _Floats) -> _Floats:
         for one in (np.bincount(which, area, minlength=of_m2.size), of_m2)
     ]
     # Where there is no lid to be asked, nothing is known: as open as can be.
-    share: _Floats = np.where(sums[1] > 0, sums[0] / np.maximum(sums[1], 1e-9), 1.0)
+    share: _Floats = np.where(sums[1] > 0, sums[0] / np.maximum(sums[1], _LEAST_AREA_M2), 1.0)
     return np.minimum(share, 1.0)

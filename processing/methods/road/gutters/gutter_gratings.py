@@ -18,9 +18,20 @@ from processing.methods.road.gutters.gutter_lids import GutterCover
 
 _Floats = NDArray[np.float64]
 
-_ON_SHARE = 0.5  # of a grating: so much lies on the gutter
-_CLASH = 0.3  # of the shorter one: what overlaps so much cannot both be
-_SAME = 0.5  # of both together
+# "By trial": chosen while the tool was made; no measurement of the single value is recorded.
+
+_ON_SHARE = 0.5
+"""Of a grating: so much lies on the gutter's covers. By trial."""
+
+_CLASH = 0.3
+"""Of the shorter one: what overlaps so much along the gutter cannot both be. By trial."""
+
+_SAME = 0.5
+"""Of both together: what overlaps so much is one, as in the scores of lids
+(`processing.scoring`)."""
+
+_AHEAD_M = 0.1
+"""To either side of a place, for the direction of the axis there."""
 
 
 @dataclass(frozen=True)
@@ -58,14 +69,16 @@ def _on_gutter(
     axis: GutterAxis, covers: Sequence[GutterCover], found: GratingFound
 ) -> GutterCover | None:
     """A grating as a cover of a gutter; None where it lies beside all its covers."""
-    along, _, _ = axis.told(found.corners.mean(axis=0)[None], found.length_m)
+    along, _, _ = axis.coordinates_of(found.corners.mean(axis=0)[None], found.length_m)
     if not np.isfinite(along[0]):
         return None
     at = float(along[0])
     near = [one for one in covers if abs(one.along_m - at) < one.length_m + found.length_m]
     if sum(found.share_in(one.corners) for one in near) < _ON_SHARE:
         return None
-    ahead = np.diff(axis.positions(np.array([at - 0.1, at + 0.1]), np.zeros(2))[:, :2], axis=0)[0]
+    ahead = np.diff(
+        axis.positions(np.array([at - _AHEAD_M, at + _AHEAD_M]), np.zeros(2))[:, :2], axis=0
+    )[0]
     sides = np.roll(found.corners, -1, axis=0) - found.corners
     first = int(np.argmax(sides[:, :2] @ ahead / np.hypot(*sides[:, :2].T)))
     long, wide = (float(np.hypot(*sides[(first + k) % 4, :2])) for k in range(2))

@@ -11,22 +11,53 @@ from scipy.ndimage import gaussian_filter1d
 
 _Floats = NDArray[np.float64]
 
+# "By trial": chosen while the tool was made; no measurement of the single value is recorded.
+
 _BIN_M = 0.01
-_EXTENTS_M = (0.04, 0.08, 0.15, 0.25)  # how wide openings are across the gutter: ends of classes
+"""Bins across the gutter: a spacing of points."""
+
+_EXTENTS_M = (0.04, 0.08, 0.15, 0.25)
+"""How wide openings are across the gutter: ends of classes, so that holes of 10 cm and of 18 to 19
+cm (Takahashi 2022, Table 7-2) seen whole are of classes of their own, and joints of the first."""
+
 _USUAL_M = (0.02, 0.06, 0.11, 0.18)
-_WIDER_M = 0.03  # an opening is seen at most so much wider than it is: a spacing of points
-_SQUARE = 0.9  # rows nearly square to the gutter see holes as wide as they are
-_SEEN_WHOLE = 0.6  # share of a hole's crossings by such rows
-_GROOVES = (0.0, 0.25, 0.5, 0.75)  # shares of narrow openings that are the joint's beside the holes
+"""Width that stands for each class."""
+
+_WIDER_M = 0.03
+"""An opening is seen at most so much wider than it is: a spacing of points to either side."""
+
+_SQUARE = 0.9
+"""Sine of the angle between row and gutter (64°) from which rows see holes as wide as they are."""
+
+_SEEN_WHOLE = 0.6
+"""Share of a hole's crossings by such rows. By trial."""
+
+_GROOVES = (0.0, 0.25, 0.5, 0.75)
+"""Shares of narrow openings that are the joint's beside the holes, of which the best is taken."""
+
 _SPREAD_M = 0.02
-_CHANCE = 0.15  # share of notches that lie anywhere
+"""Standard deviation of a notch's place across: a spacing of points and the axis' error. By
+trial."""
+
+_CHANCE = 0.15
+"""Share of notches that lie anywhere. By trial."""
+
 _REACH_M = 0.45
+"""To either side of the axis: half of the widest lid of 66 cm and its offset."""
+
+_MOST_OFFSET_M = 0.2
+"""The middle of lids is looked for so far to either side of the axis: within half a lid. By
+trial."""
+
+_LEAST_SUM = 1e-9
+"""Guard of a division."""
+
 _EDGES_M = np.arange(-_REACH_M, _REACH_M + _BIN_M, _BIN_M)
 
 
 @dataclass(frozen=True)
 class LidType:
-    """A standard lid (mms.md, Table 7-2): m.
+    """A standard lid (Takahashi 2022, Table 7-2): m.
 
     Attributes
     ----------
@@ -56,6 +87,9 @@ LID_TYPES = (
     LidType(1, 0.40, 0.18, 0.032),
     LidType(1, 0.40, 0.10, 0.002),
 )
+"""Types of Table 7-2 that differ in what a row across them shows, with their shares of the 3,801
+lids counted there; those that differ in the length of the hole alone, or by a centimetre, are
+one."""
 
 
 @dataclass(frozen=True)
@@ -132,7 +166,7 @@ def _fits() -> tuple[_Floats, _Floats]:
     The latter (types, k, grooves, 2, classes, bins) for rows that are oblique and square to the
     gutter, as logarithms.
     """
-    positions: _Floats = np.arange(-0.2, 0.2001, _BIN_M)
+    positions: _Floats = np.arange(-_MOST_OFFSET_M, _MOST_OFFSET_M + _BIN_M / 100, _BIN_M)
     middles = (_EDGES_M[1:] + _EDGES_M[:-1]) / 2
     shape = (len(LID_TYPES), positions.size, len(_GROOVES), 2, len(_USUAL_M), middles.size)
     mix = np.empty(shape)
@@ -142,7 +176,7 @@ def _fits() -> tuple[_Floats, _Floats]:
             for kind in range(len(_USUAL_M)):
                 holes = _holes(one, middles - position, kind)
                 for square in range(2):
-                    mix[number, at, :, square, kind] = holes * _told(one, kind, square)
+                    mix[number, at, :, square, kind] = holes * _odds_of_extent(one, kind, square)
             share = np.array(_GROOVES)[:, None, None]
             mix[number, at, :, :, 0] *= 1 - share
             mix[number, at, :, :, 0] += share * groove
@@ -150,7 +184,7 @@ def _fits() -> tuple[_Floats, _Floats]:
     return positions, np.log(mix * 2 * _REACH_M)
 
 
-def _told(one: LidType, kind: int, square: int) -> float:
+def _odds_of_extent(one: LidType, kind: int, square: int) -> float:
     """How much likelier than by chance a hole is seen so wide."""
     if _USUAL_M[kind] > one.hole_wide_m + _WIDER_M:
         return 0.0
@@ -171,5 +205,5 @@ def _holes(one: LidType, across: _Floats, kind: int) -> _Floats:
 def _box(across: _Floats, half_m: float) -> _Floats:
     is_in = np.abs(across) <= half_m + _BIN_M / 4
     spread: _Floats = gaussian_filter1d(is_in.astype(np.float64), _SPREAD_M / _BIN_M)
-    density: _Floats = spread / max(float(spread.sum()) * _BIN_M, 1e-9)
+    density: _Floats = spread / max(float(spread.sum()) * _BIN_M, _LEAST_SUM)
     return density

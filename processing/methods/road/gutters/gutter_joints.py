@@ -1,7 +1,7 @@
 """Joints of the lids along a gutter: the row that explains the notches best.
 
-The thesis keeps notches that have a partner a whole number of lids away (mms.md, equations 7-4 and
-7-5). Here a row of covers is laid along the gutter as a whole, by dynamic programming: each cover
+Takahashi 2022 keeps notches that have a partner a whole number of lids away (equations 7-4 and
+7-5). Here a row of covers is fitted along the gutter as a whole, by dynamic programming: each cover
 has a length that covers have, each joint is worth what the notches say about its place, so that a
 joint seen weakly or not at all is found by its neighbours, and a stretch without lids is a gap.
 """
@@ -16,7 +16,12 @@ from numpy.typing import NDArray
 from scipy.linalg import solveh_banded
 from scipy.ndimage import gaussian_filter1d, maximum_filter1d, uniform_filter1d
 
-from processing.methods.road.gutters.gutter_kernels import joints_kernel
+from processing.methods.road.gutters.gutter_kernels import (
+    BestRows,
+    GapCost,
+    OpenPlaces,
+    joints_kernel,
+)
 
 _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
@@ -26,22 +31,74 @@ LID, GRATING, GAP = 0, 1, 2
 """What lies between two joints."""
 
 GRATING_LENGTHS_M = {0.5: 1.0, 1.0: 1.0, 0.4: 2.0, 0.6: 2.0}
-"""Lengths of gratings met, with what each costs a row: usual ones less."""
+"""Lengths of gratings met, m, with what each costs a row as a logarithm: usual ones less. By
+trial."""
+
+# "By trial": chosen while the tool was made; no measurement of the single value is recorded.
 
 _POSITION_M, _ROUGHLY_M = 0.005, 0.01
-_HOLE_M = 0.012  # a notch's place along the gutter is so uncertain
-_ABOUT_M = 0.6  # over which notches are everywhere, and say nothing
+"""How finely joints are placed, and where rows are only compared, in half the time: holes are seen
+within some 12 mm."""
+
+_HOLE_M = 0.012
+"""A notch's place along the gutter is so uncertain, standard deviation: holes are 3 to 5 cm long
+(Takahashi 2022, Table 7-2), and of 4 cm that is 12 mm (divided by √12)."""
+
+_ABOUT_M = 0.6
+"""Over which notches are everywhere, and say nothing: one lid."""
+
 _LITTLE = 0.08
+"""Strength of notches, added to both of a ratio, so that nearly none against none says nothing. By
+trial."""
+
 _LEAST, _MOST = -0.8, 2.5
-_UNSEEN = 0.35  # what a joint costs that nothing was seen of
+"""What one joint is worth at least and at most, as logarithms, so that no single joint decides. By
+trial."""
+
+_UNSEEN = 0.35
+"""What a joint costs that nothing was seen of: a third of the joints being seen, rows go on. By
+trial."""
+
 _WIDEST_JOINT_M = 0.04
+"""Widest joint between two lids that are of one row. By trial."""
+
 _WIDE_JOINT_M, _WIDE_COST = 0.015, 60.0
+"""A wider joint costs so much per metre beyond, 1.5 for the widest. By trial."""
+
 _OTHER_LENGTH_COST, _GAP_COST = 2.5, 5.0
-_GAP_M = (0.25, 6.0)
+"""What a lid of another length than most costs, and a stretch without lids: logarithms. By
+trial."""
+
+_LEAST_GAP_M, _MOST_GAP_M = 0.25, 6.0
+"""Length of a stretch without lids within one row, m: longer ones part rows, as entrances do."""
+
 _OCCUPIED_M, _OCCUPIED_WORTH, _GRATING_WORTH = 0.04, 0.04, 0.02
+"""A notch makes so much to either side of it open; each place of `_POSITION_M` that is open is
+worth so much for a grating, and costs a quarter of it on a lid; a place of a grating must be worth
+so much. By trial."""
+
 _SEEN_M = 0.03
+"""Notches so near to a joint are of it: as in `gutter_contrast`."""
+
 _LEAST_STRENGTH = 0.1
+"""As in `gratings`."""
+
 _JOINT_SCATTER_M = 0.003
+"""Standard deviation of joints of one gutter: lids are laid against each other. By trial."""
+
+_UNSEEN_WEIGHT = 1e-3
+"""Of a joint that was not seen, against a notch: it stays where the row put it unless others tie
+it."""
+
+_TIED_M = 0.05
+"""A cover whose measured joints are off its length by more is not tied to it: one of them is
+wrong. By trial."""
+
+_ROUNDING_M = 1e-6
+"""Guard: the widest joint itself is among those that are tried."""
+
+_LEAST_JOINTS = 3
+"""Of a row: two covers (as `_LEAST_COVERS` of `gutter_runs`)."""
 
 
 def lengths_of(usual_m: Sequence[float], others_m: Sequence[float] = ()) -> dict[float, float]:
@@ -112,8 +169,8 @@ def joint_row(
         Lids in a row whose joints may all be unseen.
     """
     best, kinds, lengths = _best(notches, lids, end_m, _POSITION_M)
-    positions, taken = _traced(best)
-    if positions.size < 3:
+    positions, taken = _trace(best)
+    if positions.size < _LEAST_JOINTS:
         return None
     what = np.where(taken < 0, GAP, kinds[taken])
     long = np.where(taken < 0, np.nan, lengths[taken])
@@ -121,7 +178,7 @@ def joint_row(
         notches,
         (positions * _POSITION_M).astype(np.float64),
         (what, long),
-        (float(best[0].max()), most_missed),
+        (float(best.value.max()), most_missed),
     )
 
 
@@ -137,7 +194,7 @@ def joint_worth(
 
 def _best(
     notches: tuple[_Floats, _Floats], lids: Mapping[float, float], end_m: float, position_m: float
-) -> tuple[tuple[_Floats, _Integers, _Integers], _Integers, _Floats]:
+) -> tuple[BestRows, _Integers, _Floats]:
     """For each place the best row that ends there; what steps between joints cover, how long."""
     along_m, strength = notches
     count = int(end_m / position_m) + 1
@@ -148,13 +205,13 @@ def _best(
     occupied = maximum_filter1d(np.minimum(hits, 1.0), 2 * round(_OCCUPIED_M / position_m) + 1)
     worth = position_m / _POSITION_M
     summed = np.concatenate([[0.0], np.cumsum(occupied * _OCCUPIED_WORTH * worth)])
-    best = (np.empty(count), np.empty(count, np.int64), np.empty(count, np.int64))
+    best = BestRows(np.empty(count), np.empty(count, np.int64), np.empty(count, np.int64))
     joints_kernel(
         _evidence(hits, position_m),
         steps,
         costs,
-        (round(_GAP_M[0] / position_m), round(_GAP_M[1] / position_m), _GAP_COST),
-        (summed, (kinds == GRATING).astype(np.int64), _GRATING_WORTH * worth),
+        GapCost(round(_LEAST_GAP_M / position_m), round(_MOST_GAP_M / position_m), _GAP_COST),
+        OpenPlaces(summed, (kinds == GRATING).astype(np.int64), _GRATING_WORTH * worth),
         best,
     )
     return best, kinds, lengths
@@ -178,7 +235,7 @@ def _covers(
     kinds = [(LID, one, cost) for one, cost in lids.items()]
     kinds += [(GRATING, one, cost) for one, cost in GRATING_LENGTHS_M.items()]
     for kind, long, cost in kinds:
-        for joint in np.arange(0.0, _WIDEST_JOINT_M + 1e-6, position_m):
+        for joint in np.arange(0.0, _WIDEST_JOINT_M + _ROUNDING_M, position_m):
             wide = max(0.0, float(joint) - _WIDE_JOINT_M) * _WIDE_COST
             made.append((round((long + joint) / position_m), cost + wide, kind, long))
     steps, costs, what, lengths = zip(*made, strict=True)
@@ -190,7 +247,7 @@ def _covers(
     )
 
 
-def _traced(best: tuple[_Floats, _Integers, _Integers]) -> tuple[_Integers, _Integers]:
+def _trace(best: BestRows) -> tuple[_Integers, _Integers]:
     """Places of the best row's joints, and the step behind each but the last."""
     value, before, taken = best
     at, positions, steps = int(value.argmax()), [], []
@@ -208,23 +265,25 @@ def _row(
     worth: tuple[float, int],
 ) -> JointRow:
     what, long = covers
-    measured, seen = _measured(notches, joints_m)
-    joints = _settled(measured, seen, long)
+    value, most_missed = worth
+    measured, seen = _measure(notches, joints_m)
+    joints = _settle(measured, seen, long)
     middles = (joints[1:] + joints[:-1]) / 2
     is_cover = what != GAP
     half = np.where(is_cover, np.minimum(long, np.diff(joints)), 0.0) / 2
     pairs = np.column_stack([seen[:-1], seen[1:]])
     is_unseen = (pairs == 0).all(axis=1) & (what == LID)
-    kept = is_cover & ~_longer_than(is_unseen, worth[1])
+    kept = is_cover & ~_longer_than(is_unseen, most_missed)
     starts, ends = middles - half, middles + half
-    return JointRow(starts, ends, what, pairs, is_unseen, worth[0]).chosen(kept)
+    return JointRow(starts, ends, what, pairs, is_unseen, value).chosen(kept)
 
 
-def _measured(notches: tuple[_Floats, _Floats], joints_m: _Floats) -> tuple[_Floats, _Integers]:
+def _measure(notches: tuple[_Floats, _Floats], joints_m: _Floats) -> tuple[_Floats, _Integers]:
     """Mean place of the notches at each joint, and how many strong ones they are."""
     measured, seen = joints_m.copy(), np.zeros(joints_m.size, np.int64)
-    order = np.argsort(notches[0], kind="stable")
-    positions, strength = notches[0][order], notches[1][order]
+    along, strengths = notches
+    order = np.argsort(along, kind="stable")
+    positions, strength = along[order], strengths[order]
     first = np.searchsorted(positions, joints_m - _SEEN_M)
     last = np.searchsorted(positions, joints_m + _SEEN_M)
     for number, (low, high) in enumerate(zip(first, last, strict=True)):
@@ -235,14 +294,14 @@ def _measured(notches: tuple[_Floats, _Floats], joints_m: _Floats) -> tuple[_Flo
     return measured, seen
 
 
-def _settled(measured: _Floats, seen: _Integers, long: _Floats) -> _Floats:
+def _settle(measured: _Floats, seen: _Integers, long: _Floats) -> _Floats:
     """Joints at which what was measured and how long covers are agree best (least squares)."""
-    weights = seen / _HOLE_M**2 + 1e-3 / _HOLE_M**2
+    weights = seen / _HOLE_M**2 + _UNSEEN_WEIGHT / _HOLE_M**2
     is_known = np.isfinite(long)
     gaps = np.diff(measured) - np.where(is_known, long, 0.0)
     usual = float(np.median(gaps[is_known])) if is_known.any() else 0.0
     joint = np.clip(usual, 0.0, _WIDEST_JOINT_M)
-    ties = np.where(is_known & (np.abs(gaps - joint) < 0.05), 1 / _JOINT_SCATTER_M**2, 0.0)
+    ties = np.where(is_known & (np.abs(gaps - joint) < _TIED_M), 1 / _JOINT_SCATTER_M**2, 0.0)
     wanted = np.where(is_known, long, 0.0) + joint
     bands = np.zeros((2, measured.size))
     bands[1] = weights

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,19 +13,91 @@ from processing.core.kernels import kernel
 _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
 
+_OPEN_COST = 0.25
+"""What each open place costs on a lid, against what it is worth for a grating: weeds and dirt make
+a lid's surface seem open too. By trial; no measurement is recorded."""
+
+
+class Notched(NamedTuple):
+    """Notches: (n,) along, m, rising; (n,) cells across; (n,) values."""
+
+    along: _Floats
+    cells: _Integers
+    values: _Floats
+
+
+class Nearness(NamedTuple):
+    """What counts as near: so far along, m, and so many cells across."""
+
+    along_m: float
+    cells: int
+
+
+class Votes(NamedTuple):
+    """Weights of notches: (n,) of each, and (n,) of all that lie side by side with it."""
+
+    worth: _Floats
+    abreast: _Floats
+
+
+class Windows(NamedTuple):
+    """Distance between the middles of windows and half their length, m; the first is at 0."""
+
+    step_m: float
+    half_m: float
+
+
+class GapCost(NamedTuple):
+    """Least and most length of a stretch that is no cover, in places, and its cost."""
+
+    least: int
+    most: int
+    cost: float
+
+
+class OpenPlaces(NamedTuple):
+    """Where a gutter is open all over.
+
+    Attributes
+    ----------
+    summed : (n + 1,) float64
+        Evidence of gratings, summed along the line.
+    is_grating : (k,) int64
+        Which of the steps between joints are gratings.
+    worth : float
+        What a place of a grating must be worth to pay for it.
+    """
+
+    summed: _Floats
+    is_grating: _Integers
+    worth: float
+
+
+class BestRows(NamedTuple):
+    """The best row of joints that ends at each place.
+
+    Attributes
+    ----------
+    value : (n,) float64
+    before : (n,) int64
+        Where its last joint before is; −1: none.
+    taken : (n,) int64
+        The step from there; −1: a gap.
+    """
+
+    value: _Floats
+    before: _Integers
+    taken: _Integers
+
 
 @kernel
-def near_kernel(
-    positions: tuple[_Floats, _Integers, _Floats], near: tuple[float, int], summed: _Floats
-) -> None:
+def near_kernel(positions: Notched, near: Nearness, summed: _Floats) -> None:
     """Sum of the values about each place, its own with them.
 
     Parameters
     ----------
-    positions : (n,) float64, (n,) int64 and (n,) float64
-        Along, m, rising; cells across; values.
-    near : (float, int)
-        How far along, m, and how many cells across.
+    positions : Notched
+    near : Nearness
     summed : (n,) float64
         Result.
     """
@@ -47,10 +120,10 @@ def near_kernel(
 def waves_kernel(
     along: _Floats,
     cells: _Integers,
-    worth: tuple[_Floats, _Floats],
+    votes: Votes,
     scales: _Floats,
     pitches: _Floats,
-    window: tuple[float, float],
+    window: Windows,
     waves: NDArray[np.complex128],
     weights: _Floats,
 ) -> None:
@@ -62,21 +135,20 @@ def waves_kernel(
         Stations of the notches, m, rising.
     cells : (n,) int64
         Number of each across the road; −1: left out.
-    worth : (n,) float64 and (n,) float64
-        Weight of each, and of all that are of its joint.
+    votes : Votes
     scales : (w, c) float64
         How much longer than the station a metre is in that cell, at bends.
     pitches : (p,) float64
         Spacings to try, m.
-    window : (float, float)
-        Distance between the middles of windows and half their length, m; the first is at 0.
+    window : Windows
     waves : (w, c, p) complex128
         Result, zeros before.
     weights : (w, c) float64
         Result: sum of the joints' squared weights, which is what chance makes of the squared
         waves; zeros before.
     """
-    step, half = window
+    step, half = window.step_m, window.half_m
+    worth, abreast = votes
     for i in range(along.shape[0]):
         c = cells[i]
         if c < 0:
@@ -85,10 +157,10 @@ def waves_kernel(
         last = min(waves.shape[0] - 1, math.floor((along[i] + half) / step))
         for w in range(first, last + 1):
             away = (along[i] - w * step) * scales[w, c]
-            weights[w, c] += worth[0][i] * worth[1][i]
+            weights[w, c] += worth[i] * abreast[i]
             for p in range(pitches.shape[0]):
                 turn = 2 * math.pi * away / pitches[p]
-                waves[w, c, p] += worth[0][i] * complex(math.cos(turn), math.sin(turn))
+                waves[w, c, p] += worth[i] * complex(math.cos(turn), math.sin(turn))
 
 
 @kernel
@@ -96,9 +168,9 @@ def joints_kernel(
     evidence: _Floats,
     steps: _Integers,
     costs: _Floats,
-    gap: tuple[int, int, float],
-    inside: tuple[_Floats, _Integers, float],
-    best: tuple[_Floats, _Integers, _Integers],
+    gap: GapCost,
+    inside: OpenPlaces,
+    best: BestRows,
 ) -> None:
     """The dearest row of joints up to each place of an evenly divided line.
 
@@ -108,14 +180,10 @@ def joints_kernel(
         What a joint at each place is worth.
     steps, costs : (k,)
         Lengths of covers with their joint, in places, and what each costs.
-    gap : (int, int, float)
-        Least and most length of a stretch that is no cover, in places, and its cost.
-    inside : arrays and float
-        Evidence of gratings summed along the line (n + 1,), which of the steps are gratings (k,),
-        and what a place of a grating must be worth to pay for it.
-    best : arrays
-        Value of the best row that ends at each place, where its last joint before is (−1: none),
-        and the step from there (−1: a gap).
+    gap : GapCost
+    inside : OpenPlaces
+    best : BestRows
+        Filled.
     """
     summed, is_grating, worth = inside
     value, before, taken = best
@@ -127,18 +195,18 @@ def joints_kernel(
             if j < 0:
                 continue
             full = summed[i] - summed[j]
-            gain = full - worth * steps[k] if is_grating[k] else -0.25 * full
+            gain = full - worth * steps[k] if is_grating[k] else -_OPEN_COST * full
             total = value[j] + evidence[i] - costs[k] + gain
             if total > value[i]:
                 value[i], before[i], taken[i] = total, j, k
-        enters = i - gap[0]
-        if enters >= 0 and (lead_at < i - gap[1] or value[enters] > lead):
+        enters = i - gap.least
+        if enters >= 0 and (lead_at < i - gap.most or value[enters] > lead):
             lead, lead_at = -math.inf, -1
-            for j in range(max(0, i - gap[1]), enters + 1):
+            for j in range(max(0, i - gap.most), enters + 1):
                 if value[j] >= lead:
                     lead, lead_at = value[j], j
         if lead_at >= 0:
-            total = lead + evidence[i] - gap[2]
+            total = lead + evidence[i] - gap.cost
             if total > value[i]:
                 value[i], before[i], taken[i] = total, lead_at, -1
 
@@ -146,14 +214,14 @@ def joints_kernel(
 def warm_up() -> None:
     """Compile the kernels."""
     zeros = np.zeros(2)
-    near_kernel((zeros, np.zeros(2, np.int64), zeros), (0.3, 2), np.empty(2))
+    near_kernel(Notched(zeros, np.zeros(2, np.int64), zeros), Nearness(0.3, 2), np.empty(2))
     waves_kernel(
         zeros,
         np.zeros(2, np.int64),
-        (zeros, zeros),
+        Votes(zeros, zeros),
         np.ones((1, 1)),
         np.ones(1),
-        (1.0, 3.0),
+        Windows(1.0, 3.0),
         np.zeros((1, 1, 1), np.complex128),
         np.zeros((1, 1)),
     )
@@ -161,7 +229,7 @@ def warm_up() -> None:
         zeros,
         np.ones(1, np.int64),
         np.zeros(1),
-        (1, 2, 1.0),
-        (np.zeros(3), np.zeros(1, np.int64), 1.0),
-        (np.zeros(2), np.zeros(2, np.int64), np.zeros(2, np.int64)),
+        GapCost(1, 2, 1.0),
+        OpenPlaces(np.zeros(3), np.zeros(1, np.int64), 1.0),
+        BestRows(np.zeros(2), np.zeros(2, np.int64), np.zeros(2, np.int64)),
     )

@@ -18,17 +18,40 @@ _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
 
 POINTS_WITHIN_M = 0.6
-"""How far from a gutter's middle points say something about its lids."""
+"""How far from a gutter's middle points say something about its lids: half of the widest, 33 cm
+(Takahashi 2022, Table 7-2), and as much beside it."""
 
-_RIM_M = 0.03  # left out of the plane: rims, joints
-_ON_M = 0.012  # a point of the top
-_FIRST_ON_M = 0.04
+# "By trial": chosen while the tool was made; no measurement of the single value is recorded.
+
+_RIM_M = 0.03
+"""Left out of the plane: rims, joints. By trial."""
+
+_ON_M, _FIRST_ON_M = 0.012, 0.04
+"""A point so near to the plane is of the top: four times what scanners scatter; at first, when only
+a median is known, so near to it. What lies twice as far below is below. By trial."""
+
 _ROUNDS = 3
+"""Of plane and points in turn; the limit is halved each time."""
+
 _LEAST_POINTS = 6
-_BARRED = 1.25  # how much rougher the top of a grating is than a lid
-_STEEPEST = 0.05  # a lid against its neighbours
-_CORNER_M = 0.10  # a point so near to a corner shows it
-_LEVEL = 1.0  # points' worth of the belief that a lid lies as the gutter does
+"""With fewer points a top has no height of its own: twice a plane's unknowns."""
+
+_BARRED = 1.25
+"""How much rougher the top of a grating is than a lid. By trial."""
+
+_STEEPEST = 0.05
+"""Slope of a lid against its neighbours, m per m: what lies steeper would rock under traffic. By
+trial."""
+
+_CORNER_M = 0.10
+"""A point so near to a corner shows it; as in `gratings`."""
+
+_HEIGHT_WEIGHT, _SLOPE_WEIGHT_M2 = 1e-3, 0.02
+"""Of the belief that a lid lies as the gutter does, in points: hardly any for the height; for the
+slopes one point 14 cm off the middle. By trial."""
+
+_LEAST_M = 1e-9
+"""Guard of a division."""
 
 
 @dataclass(frozen=True)
@@ -76,7 +99,7 @@ def covers_of(run: GutterRun, number: int, about: Sequence[PointsAbout]) -> tupl
     ----------
     run : GutterRun
     number : int
-        Of the run among the guides of ``about``.
+        Of the run among the lines of ``about``.
     about : sequence of PointsAbout
         Of each drive.
     """
@@ -198,8 +221,8 @@ def _least_squares(which: _Integers, design: _Floats, heights: _Floats, usual: _
         right[:, i] = np.bincount(which, design[:, i] * heights, minlength=count)
         for j in range(3):
             normal[:, i, j] = np.bincount(which, design[:, i] * design[:, j], minlength=count)
-    normal += np.diag([1e-3, 0.02 * _LEVEL, 0.02 * _LEVEL])
-    right[:, 0] += 1e-3 * usual
+    normal += np.diag([_HEIGHT_WEIGHT, _SLOPE_WEIGHT_M2, _SLOPE_WEIGHT_M2])
+    right[:, 0] += _HEIGHT_WEIGHT * usual
     planes = np.asarray(np.linalg.solve(normal, right[:, :, None])[:, :, 0], np.float64)
     planes[:, 1:] = np.clip(planes[:, 1:], -_STEEPEST, _STEEPEST)
     return planes
@@ -211,12 +234,12 @@ def _cover(run: GutterRun, k: int, planes: _Planes, *, is_grating: bool) -> Gutt
     middle = (edges[0] + edges[1]) / 2
     ends = run.axis.positions(np.array([start, end]), np.array([middle, middle]))
     ahead = ends[1, :2] - ends[0, :2]
-    ahead /= max(float(np.hypot(*ahead)), 1e-9)
+    ahead /= max(float(np.hypot(*ahead)), _LEAST_M)
     left = np.array([-ahead[1], ahead[0]])
     centre = (ends[0] + ends[1]) / 2
     long, wide = end - start, edges[1] - edges[0]
     height, rise, tilt = planes.planes[k]
-    rise += (ends[1, 2] - ends[0, 2]) / max(long, 1e-9)
+    rise += (ends[1, 2] - ends[0, 2]) / max(long, _LEAST_M)
     corners = np.empty((4, 3))
     for number, (x, y) in enumerate(((-1, -1), (1, -1), (1, 1), (-1, 1))):
         along, aside = x * long / 2, y * wide / 2

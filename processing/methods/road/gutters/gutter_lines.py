@@ -1,8 +1,8 @@
 """Where gutters may run: long smooth lines along which notches come regularly.
 
-The thesis' equal spacing (mms.md, 7.3 c2) asks pairs of notches; here all notches of some metres
-are asked at once, by the sum of the waves of their places (a periodogram), so that notches by
-chance cancel each other and the gutter stands out where most of its holes were missed.
+The equal spacing of Takahashi 2022, section 7.3 c2, asks pairs of notches; here all notches of some
+metres are asked at once, by the sum of the waves of their places (a periodogram), so that notches
+by chance cancel each other and the gutter stands out where most of its holes were missed.
 """
 
 from __future__ import annotations
@@ -16,7 +16,14 @@ from scipy.ndimage import maximum_filter1d, uniform_filter1d
 from scipy.spatial import cKDTree
 
 from processing.methods.road.gutters.gutter_axis import GutterAxis
-from processing.methods.road.gutters.gutter_kernels import near_kernel, waves_kernel
+from processing.methods.road.gutters.gutter_kernels import (
+    Nearness,
+    Notched,
+    Votes,
+    Windows,
+    near_kernel,
+    waves_kernel,
+)
 from processing.methods.road.gutters.notches import Notches
 from processing.recording.passes import Pass
 
@@ -25,28 +32,74 @@ _Integers = NDArray[np.int64]
 _Own = tuple[_Floats, _Floats, _Floats, _Floats]  # stations, across, strengths, heights of notches
 
 LENGTHS_M = (0.6, 0.5, 1.0)
-"""Lids' lengths met in Japan, the usual one first (JIS A 5372; mms.md, Table 7-2)."""
+"""Lids' lengths met in Japan, m, the usual one first (JIS A 5372; Takahashi 2022, Table 7-2)."""
 
 REACH_M = 13.0
-"""How far from the vehicle's path gutters are looked for; the thesis has 6.5 m (Table 7-3)."""
+"""How far from the vehicle's path gutters are looked for. Takahashi 2022 found them within some 4
+to 5 m (section 7.5); here 13 m found 3,537 slots of 45 simulated streets instead of 3,326 at 6.5 m,
+with other changes made at the time."""
+
+# "By trial": chosen while the tool was made; no measurement of the single value is recorded.
 
 _CELL_M = 0.05
-_BAND_CELLS = 5  # holes of one lid lie hardly farther apart, nor do their heights
+"""Cells across the road: a hole's width is two of them."""
+
+_BAND_CELLS = 5
+"""Cells across that are asked together, 25 cm: holes of one lid lie hardly farther apart, nor do
+their heights."""
+
 _WINDOW_STEP_M = 1.0
 _WINDOWS_AT_ONCE = 256
+"""From window to window, of which neighbours share nearly all notches; windows at a time, which
+bounds the memory."""
+
 _LEAST_WEIGHT = 0.3
+"""Weight of notches in a band from which chance is believed: below it one notch would seem regular.
+By trial."""
+
 _LEAST_STRENGTH = 0.1
-_BEYOND_M = 3.0  # how much farther its joints are looked for than a line is regular
-_SAME_M = 0.04  # notches so near to each other are of one opening
-_ABREAST_M = 0.06  # both holes of a joint, in oblique rows
-_ABOUT_M = 0.34  # no two joints are nearer, but bars and weeds are
-_LEAST_VOTE = 0.5  # notches that are weaker together have less than a vote
-_ASIDE_CELLS = 2  # how far a gutter moves across the road from window to window
+"""As in `gratings`."""
+
+_BEYOND_M = 3.0
+"""How much farther its joints are looked for than a line is regular. By trial."""
+
+_SAME_M, _KEY = 0.04, 100_000
+"""Notches so near to each other are of one opening, as in equation 7-4 of Takahashi 2022 (hole
+length s, Table 7-3); more than there are cells, for the key of both."""
+
+_ABREAST_M = 0.06
+"""Both holes of a joint, in oblique rows, lie within so much along the road. By trial."""
+
+_ABOUT_M = 0.34
+"""No two joints are nearer, but bars and weeds are: the shortest lid is 0.5 m. By trial."""
+
+_LEAST_VOTE = 0.5
+"""Notches that are weaker together have less than a vote. By trial."""
+
+_ASIDE_CELLS = 2
+"""How far a gutter moves across the road from window to window, 10 cm: 6°. By trial."""
+
 _CLEAR_M = 0.4
+"""To either side of a line no other is looked for: the widest lid's edge."""
+
 _LEAST_WINDOWS = 2
-_LINE_WIDE_M = 0.25  # to each side, in which a line's height is looked for
-_LAYER_M, _LAYERS = 0.02, 101  # a metre up and down
-_LEVEL_M = 10.0  # over which a gutter's height above the way changes little
+"""Of a line."""
+
+_LINE_WIDE_M = 0.25
+"""To each side, in which a line's height is looked for: as far as holes lie."""
+
+_LAYER_M, _LAYERS = 0.02, 101
+"""Heights are looked through in layers of this thickness, so many: a metre up and down."""
+
+_LEVEL_M = 10.0
+"""Over which a gutter's height above the path changes little. By trial."""
+
+_MORE_REACH_M = 2.0
+"""A place may lie nearer to a smoothed path than to the path itself; and so far beyond the reach it
+is still told along it."""
+
+_SMOOTHED = 5
+"""Windows of a running median and mean: 5 m."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +112,7 @@ class Search:
         Half the length of the windows in which waves are summed.
     joints_m : (k,) float64
         Widths of joints between lids to try.
-    pooled_m : float
+    averaged_m : float
         Half the length over which a line's windows are averaged.
     seed, followed : float
         How regular a line is at its most regular place at least, and elsewhere.
@@ -69,7 +122,7 @@ class Search:
 
     half_m: float
     joints_m: _Floats
-    pooled_m: float
+    averaged_m: float
     seed: float
     followed: float
     reach_m: float = REACH_M
@@ -80,11 +133,18 @@ class Search:
         return round(2 * self.reach_m / _CELL_M) + 1
 
 
-LONG = Search(6.0, np.arange(0.0, 0.021, 0.004), 10.0, 3.3, 2.2)
+_JOINTS_M = np.arange(0.0, 0.021, 0.004)
+"""Widths of joints tried: up to 2 cm. Over 12 m, 20 lids, a step of 4 mm moves a lid by 8 cm, an
+eighth of a wave."""
+
+LONG = Search(half_m=6.0, joints_m=_JOINTS_M, averaged_m=10.0, seed=3.3, followed=2.2)
 """Long lines, of which far and sparse scanners miss most holes: gratings and other lids put waves
-out of step, so that windows are short and their powers averaged."""
-SHORT = Search(6.0, np.arange(0.0, 0.021, 0.004), 0.0, 6.5, 3.0)
-"""Short lines, which average out among what is beyond their ends."""
+out of step, so that windows are short and their powers averaged. How regular a line must be, in
+terms of chance, was set by trial; what passes is tested against chance once more
+(`gutter_runs`)."""
+
+SHORT = Search(half_m=6.0, joints_m=_JOINTS_M, averaged_m=0.0, seed=6.5, followed=3.0)
+"""Short lines, which average out among what is beyond their ends. By trial, as `LONG`."""
 
 
 @dataclass(frozen=True)
@@ -111,7 +171,7 @@ def gutter_lines(
     Parameters
     ----------
     passes : sequence of Pass
-        Of all drives; each notch is told along the longest that it lies beside.
+        Of all drives; each notch is counted along the longest that it lies beside.
     notches : Notches
         Of all drives.
     search : Search
@@ -123,7 +183,7 @@ def gutter_lines(
     for one in sorted(passes, key=lambda one: -one.length_m):
         if not is_free.any():
             return
-        station, across = _told(one, xyz[is_free], search.reach_m)
+        station, across = _stations_of(one, xyz[is_free], search.reach_m)
         is_beside = np.isfinite(station) & (np.abs(across) <= search.reach_m)
         chosen = np.flatnonzero(is_free)[is_beside]
         is_free[chosen] = False
@@ -132,10 +192,12 @@ def gutter_lines(
             yield from _lines_beside(one, own, search, bridge_m)
 
 
-def _told(one: Pass, xyz: _Floats, reach_m: float) -> tuple[_Floats, _Floats]:
-    """Station and across of places by the nearest part of the way, whoever measured them."""
+def _stations_of(one: Pass, xyz: _Floats, reach_m: float) -> tuple[_Floats, _Floats]:
+    """Station and across of places by the nearest part of the path, whoever measured them."""
     vehicle_path = one.vehicle_path.positions[:, :2] + one.origin[:2]
-    away, nearest = cKDTree(vehicle_path).query(xyz[:, :2], distance_upper_bound=reach_m + 2.0)
+    away, nearest = cKDTree(vehicle_path).query(
+        xyz[:, :2], distance_upper_bound=reach_m + _MORE_REACH_M
+    )
     station, across = np.full(len(xyz), np.nan), np.full(len(xyz), np.nan)
     near = np.flatnonzero(np.isfinite(away))
     if near.size:
@@ -182,7 +244,7 @@ def _raised(
     own: _Own,
     search: Search,
 ) -> _Floats:
-    """How far above the way notches near a line come most regularly, about each place of it, m.
+    """How far above the path notches near a line come most regularly, about each place of it, m.
 
     A walk beside a gutter lies a curb higher, a field lower, each with notches of its own.
     """
@@ -213,26 +275,21 @@ def _one_of_each(station: _Floats, cells: _Integers, strength: _Floats) -> _Inte
     """The strongest notch of each opening in each cell, by rising station."""
     rough = np.floor(station / _SAME_M).astype(np.int64)
     order = np.lexsort((-strength, cells, rough))
-    keys = rough[order] * 100_000 + cells[order]
+    keys = rough[order] * _KEY + cells[order]
     chosen: _Integers = order[np.concatenate([[True], np.diff(keys) > 0])]
     return chosen[np.argsort(station[chosen], kind="stable")]
 
 
-def _votes(station: _Floats, cells: _Integers, strength: _Floats) -> tuple[_Floats, _Floats]:
+def _votes(station: _Floats, cells: _Integers, strength: _Floats) -> Votes:
     """Weights by which all notches about a place have one vote together, where they are strong.
 
     So the many bars of a grating, or weeds, count no more than a joint that lies alone.
-
-    Returns
-    -------
-    worth, abreast : (n,) float64
-        Of each, and of all that lie side by side with it: of the two holes of a joint.
     """
     about, abreast = np.empty(station.size), np.empty(station.size)
-    near_kernel((station, cells, strength), (_ABOUT_M, _BAND_CELLS // 2), about)
+    near_kernel(Notched(station, cells, strength), Nearness(_ABOUT_M, _BAND_CELLS // 2), about)
     worth = strength / np.maximum(about, _LEAST_VOTE)
-    near_kernel((station, cells, worth), (_ABREAST_M, _BAND_CELLS // 2), abreast)
-    return worth, abreast
+    near_kernel(Notched(station, cells, worth), Nearness(_ABREAST_M, _BAND_CELLS // 2), abreast)
+    return Votes(worth, abreast)
 
 
 def _map_of(one: Pass, own: tuple[_Floats, _Integers, _Floats], search: Search) -> _Floats:
@@ -248,16 +305,16 @@ def _map_of(one: Pass, own: tuple[_Floats, _Integers, _Floats], search: Search) 
         votes = _votes(station[near], inside[near], strength[near])
         part = (station[near] - first * _WINDOW_STEP_M, inside[near], votes)
         regularity[first:stop] = _power(part, _scales(one, (first, stop), search), search)
-    if search.pooled_m == 0.0:
+    if search.averaged_m == 0.0:
         return regularity
-    size = 2 * round(search.pooled_m / _WINDOW_STEP_M) + 1
+    size = 2 * round(search.averaged_m / _WINDOW_STEP_M) + 1
     beside = maximum_filter1d(regularity, 3, axis=1)
     pooled: _Floats = uniform_filter1d(beside, size, axis=0, mode="nearest")
     return pooled
 
 
 def _scales(one: Pass, windows: tuple[int, int], search: Search) -> _Floats:
-    """(w, c) how long a metre of the way is in each cell: more or less in bends."""
+    """(w, c) how long a metre of the path is in each cell: more or less in bends."""
     at = np.arange(windows[0], windows[1] + 1) * _WINDOW_STEP_M
     sides = []
     for aside in (-search.reach_m, search.reach_m):
@@ -268,14 +325,12 @@ def _scales(one: Pass, windows: tuple[int, int], search: Search) -> _Floats:
     return scales
 
 
-def _power(
-    own: tuple[_Floats, _Integers, tuple[_Floats, _Floats]], scales: _Floats, search: Search
-) -> _Floats:
+def _power(own: tuple[_Floats, _Integers, Votes], scales: _Floats, search: Search) -> _Floats:
     """(w, c) the most of the periodogram, 1 on average where joints lie by chance."""
     pitches = (np.array(LENGTHS_M)[:, None] + search.joints_m[None, :]).ravel()
     waves = np.zeros((*scales.shape, pitches.size), np.complex128)
     weights = np.zeros(scales.shape)
-    waves_kernel(*own, scales, pitches, (_WINDOW_STEP_M, search.half_m), waves, weights)
+    waves_kernel(*own, scales, pitches, Windows(_WINDOW_STEP_M, search.half_m), waves, weights)
     band = uniform_filter1d(waves, _BAND_CELLS, axis=1, mode="constant") * _BAND_CELLS
     chance = uniform_filter1d(weights, _BAND_CELLS, axis=1, mode="constant") * _BAND_CELLS
     power = (np.abs(band) ** 2).max(axis=2) / np.maximum(chance, _LEAST_WEIGHT)
@@ -304,9 +359,10 @@ def _ridges(
 
 
 def _followed(
-    left: _Floats, start: tuple[int, int], vehicle_path: tuple[int, int], least: float
+    left: _Floats, start: tuple[int, int], stride: tuple[int, int], least: float
 ) -> list[tuple[int, int]]:
-    step, bridge = vehicle_path
+    """Windows and cells from a start on; the stride: step from window to window, longest bridge."""
+    step, bridge = stride
     path, missed, last = [start], 0, 1
     window, cell = start
     while 0 <= window + step < len(left) and missed < bridge:
@@ -323,6 +379,6 @@ def _followed(
 
 
 def _smoothed(values: _Floats) -> _Floats:
-    padded = np.pad(values, 2, mode="edge")
-    middle = np.median(np.lib.stride_tricks.sliding_window_view(padded, 5), axis=1)
-    return uniform_filter1d(middle, 5, mode="nearest")
+    padded = np.pad(values, _SMOOTHED // 2, mode="edge")
+    middle = np.median(np.lib.stride_tricks.sliding_window_view(padded, _SMOOTHED), axis=1)
+    return uniform_filter1d(middle, _SMOOTHED, mode="nearest")

@@ -1,8 +1,9 @@
-"""Notches of a recording: every row followed along the road, its openings weighed (mms.md, 7.3).
+"""Notches of a recording: every row followed along the road, its openings weighed.
 
-Nothing but the row itself is asked for the surface: beside an opening it must be as smooth as the
-scanner measures, and bend by no more than Table 7-3's 1.8° across it. So neither slope nor cross
-fall matter, and a row costs one look at each of its points.
+The feature points of Takahashi 2022, section 7.3. Nothing but the row itself is asked for the
+surface: beside an opening it must be as smooth as the scanner measures, and bend by no more than
+1.8° across it (Table 7-3). So neither slope nor cross fall matter, and a row costs one look at each
+of its points.
 """
 
 from __future__ import annotations
@@ -15,7 +16,17 @@ from numpy.typing import NDArray
 
 from processing.core.monitor import Monitor
 from processing.core.worked_ahead import in_order
-from processing.methods.road.gutters.notch_kernels import FOUND, Limits, notches_kernel
+from processing.methods.road.gutters.notch_kernels import (
+    DEPTH,
+    FOUND,
+    LOST_PULSES,
+    PATTERN,
+    SURFACE_Z,
+    WIDTH,
+    Limits,
+    Sweeps,
+    notches_kernel,
+)
 from processing.methods.road.gutters.notches import (
     DENT,
     OPENING,
@@ -30,18 +41,69 @@ from processing.recording.revolutions.revolutions import Revolutions
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
+# "By trial": chosen while the tool was made; no measurement of the single value is recorded.
+
 _POINTS_AT_ONCE = 1 << 19
+"""Some 40 MB with all that is worked out, and short enough for a cancel to be felt at once."""
+
 _LEAST_ADVANCE_M = 0.01
-_BEYOND_ANY_PASS = 1e9  # steps
+"""Rows of a waiting vehicle are left out: a fifth of the shortest hole apart they show nothing
+new."""
+
+_BEYOND_ANY_PASS = 1e9
+"""Steps of `_LEAST_ADVANCE_M`: 10,000 km."""
+
 _NEAR_M = 3.0
+"""So near to the vehicle's path ground is road: a lane and its edge."""
+
 _SAMPLED_ROWS = 40
+"""Rows of a block whose noise is measured: some thousand points."""
+
 _LEAST_NOISE_M, _MOST_NOISE_M = 0.0005, 0.02
-_ROOM = 8  # points for one notch that is kept
+"""Bounds of noise: that of the best phase scanners; what would hide every hole. By trial."""
+
+_ROOM, _LEAST_ROOM = 8, 64
+"""Points for one notch that is kept, and room for notches at least; beyond it the kernel notes no
+more."""
+
 _NOISE_FLOOR_M = 0.0025
 """Least noise that depths are counted in: no lid is flatter, so that z_t is four times of it."""
+
+_TIMES_NOISE = 4.0
+"""Depths are counted in so many times the noise, which noise alone does once in 30,000 points."""
+
+_FROM, _STEEP, _FLAT = 0.7, 1.2, 0.3
+"""Strength begins at this share of that depth, and rises with it: by the second for openings of the
+thesis' patterns, by the third for narrow dips. By trial."""
+
+_LEAST_OPENING, _MOST_OPENING, _LEAST_DIP, _MOST_DIP = 0.05, 0.95, 0.02, 0.2
+"""Bounds of strengths, of openings and of dips. By trial."""
+
+_WIDE_SPACINGS, _WIDE_GAIN = 2.5, 1.5
+"""A dip wider than so many spacings has two points and more, and is so many times as sure. By
+trial."""
+
 _LOST_STRENGTH = 0.05
-_SEEN_WHOLE = 3.5  # spacings of points, across openings whose both rims are seen
+"""Of pulses without return alone: wet spots and dark stones lose them too. By trial."""
+
+_SEEN_WHOLE = 3.5
+"""Spacings of points, across openings whose both rims are seen: fewer are one or two points. By
+trial."""
+
 _LONGEST_HOLE_M, _WIDEST_HOLE_M = 0.05, 0.20
+"""Along and across the gutter: Takahashi 2022, Table 7-2 (50 mm, 190 mm)."""
+
+_SPACINGS_OF_RIMS, _TOO_LONG, _HALF, _LEAST_FIT = 2.0, 1.5, 0.5, 0.05
+"""An opening is seen so many spacings wider than it is. The strength is multiplied with the square
+of 1.5 − half of how many times as long as a hole it is, 1 for a hole's own length, at least the
+last. By trial."""
+
+_OF_MEDIAN, _OF_SECOND_DIFFERENCE = 0.6745, 6.0
+"""Normal noise: median of its absolute value in standard deviations; variance of its second
+difference in variances (1 + 4 + 1)."""
+
+_LEAST_M, _LEAST_COSINE = 1e-9, 1e-6
+"""Guards of divisions."""
 
 
 def notches_of(
@@ -89,22 +151,22 @@ def notches_about(drive: Drive, position: Floats, parameters: NotchParameters) -
     parts: list[Notches] = []
     if drive.revolutions is not None and passes:
         sweeps = _Sweeps(drive, drive.revolutions, passes)
-        # A beam that is turned by 45 degrees meets the road as far ahead as aside.
+        # A beam that leaves at 45 degrees meets the road as far ahead as aside.
         reach = 2.0 * parameters.reach_m
         for one in passes:
             at = float(one.station_at(one.time_nearest(position)))
-            near = (sweeps.stretch == one.number) & (np.abs(sweeps.stations - at) <= reach)
+            near = (sweeps.pass_number == one.number) & (np.abs(sweeps.stations - at) <= reach)
             about = sweeps.chosen(np.flatnonzero(near))
             for first, stop in about.blocks():
                 parts.extend(_found_in(about, first, stop, parameters))
     return join_notches(parts)
 
 
-_OF_SWEEPS = ("rows", "times", "stretch", "stations", "advances", "starts", "stops", "below")
+_OF_SWEEPS = ("rows", "times", "pass_number", "stations", "advances", "starts", "stops", "below")
 
 
 class _Sweeps:
-    """Rows of a drive from half a turn before the point below the scanner to half a turn after."""
+    """Rows of a drive: half a revolution to either side of the point below the scanner."""
 
     def __init__(self, drive: Drive, revolutions: Revolutions, passes: tuple[Pass, ...]) -> None:
         self.drive = drive
@@ -123,7 +185,7 @@ class _Sweeps:
         self.advances = _advances(stations[kept], number[kept])
         pulse = drive.columns["pulse"]
         self.rows = kept
-        self.times, self.stretch, self.stations = times[kept], number[kept], stations[kept]
+        self.times, self.pass_number, self.stations = times[kept], number[kept], stations[kept]
         self.starts = np.searchsorted(pulse, folds[kept] - half)
         self.stops = np.searchsorted(pulse, folds[kept] + half)
         self.below = np.searchsorted(pulse, folds[kept])
@@ -145,7 +207,7 @@ class _Sweeps:
         first = 0
         while first < self.count:
             most = np.searchsorted(self.stops, self.starts[first] + points_at_once)
-            other = np.flatnonzero(self.stretch[first:] != self.stretch[first])
+            other = np.flatnonzero(self.pass_number[first:] != self.pass_number[first])
             stop = first + int(other[0]) if other.size else self.count
             stop = max(first + 1, min(stop, int(most)))
             yield first, stop
@@ -181,57 +243,57 @@ def _found_in(
     if end - start < 3:
         return
     drive = sweeps.drive
-    vehicle_path = next(one for one in sweeps.passes if one.number == sweeps.stretch[first])
-    xyz = drive.xyz(slice(start, end)) - vehicle_path.origin
+    own_pass = next(one for one in sweeps.passes if one.number == sweeps.pass_number[first])
+    xyz = drive.xyz(slice(start, end)) - own_pass.origin
     pulse = np.asarray(drive.columns["pulse"][start:end], np.int64)
     stations = sweeps.stations[first:stop]
-    positions = vehicle_path.positions_at(stations) - vehicle_path.origin
+    positions = own_pass.positions_at(stations) - own_pass.origin
     below = np.clip(sweeps.below[first:stop] - start, 1, len(xyz) - 2)
     height_m = _height_above_road(xyz, below, positions, parameters)
     positions[:, 2] -= height_m
     spans = np.column_stack([sweeps.starts[first:stop], sweeps.stops[first:stop]]) - start
-    rights = vehicle_path.rights_at(stations)
+    rights = own_pass.rights_at(stations)
     noise = _noise(xyz, pulse, spans, positions)
     limits = _limits(parameters, noise)
-    room = max(len(xyz) // _ROOM, 64)
+    room = max(len(xyz) // _ROOM, _LEAST_ROOM)
     found, origin = np.empty((room, FOUND)), np.empty((room, 3), np.int64)
-    count = notches_kernel(xyz, pulse, (spans, positions, rights), limits, (found, origin))
+    count = notches_kernel(xyz, pulse, Sweeps(spans, positions, rights), limits, (found, origin))
     found, origin = found[:count], origin[:count]
     time = np.asarray(drive.columns["time"])[origin[:, 1] + start]
     between = xyz[origin[:, 2], :2] - xyz[origin[:, 1], :2]
-    length = np.maximum(np.hypot(between[:, 0], between[:, 1]), 1e-9)
-    spacing = length / np.maximum(origin[:, 2] - origin[:, 1] + found[:, 7], 1)
+    length = np.maximum(np.hypot(between[:, 0], between[:, 1]), _LEAST_M)
+    spacing = length / np.maximum(origin[:, 2] - origin[:, 1] + found[:, LOST_PULSES], 1)
     beyond = _beyond(found, positions[origin[:, 0]], spacing, parameters)
-    placed = found[:, :3] + vehicle_path.origin
+    placed = found[:, : SURFACE_Z + 1] + own_pass.origin
     placed[:, :2] += beyond
-    station, across = vehicle_path.stations_of(placed, time)
+    station, across = own_pass.stations_of(placed, time)
     is_known = np.isfinite(station)
     beside = np.where(is_known, station, 0.0)
-    ahead = vehicle_path.directions_at(beside)
+    ahead = own_pass.directions_at(beside)
     along = (between * ahead).sum(axis=1) / length
     apart = sweeps.advances[first:stop][origin[:, 0]] * np.sqrt(np.maximum(1.0 - along**2, 0.0))
     whole = Notches(
         placed,
         time_s=time,
-        depth_m=found[:, 3],
-        width_m=found[:, 4],
-        pattern=found[:, 8].astype(np.uint8),
+        depth_m=found[:, DEPTH],
+        width_m=found[:, WIDTH],
+        pattern=found[:, PATTERN].astype(np.uint8),
         strength=_strength(found, noise, along, spacing),
         row=sweeps.rows[first:stop][origin[:, 0]],
         point=origin[:, 1] + start,
         station_m=station,
         across_m=across,
-        stretch=np.full(count, vehicle_path.number, np.int64),
+        pass_number=np.full(count, own_pass.number, np.int64),
         direction=between / length[:, None],
-        area_m2=found[:, 4] * apart,
-        raised_m=placed[:, 2] - vehicle_path.positions_at(beside)[:, 2] + height_m,
+        area_m2=found[:, WIDTH] * apart,
+        raised_m=placed[:, 2] - own_pass.positions_at(beside)[:, 2] + height_m,
     )
     yield whole.chosen(is_known)
 
 
 def _limits(parameters: NotchParameters, noise: float) -> Limits:
     """As the kernel takes them."""
-    return (
+    return Limits(
         parameters.reach_m,
         parameters.height_range_m,
         noise,
@@ -250,7 +312,7 @@ def _beyond(found: Floats, vehicle: Floats, spacing: Floats, parameters: NotchPa
     """
     beam = found[:, :2] - vehicle[:, :2]
     blind = parameters.down_m / parameters.height_m * beam
-    is_missed = (found[:, 4] < _SEEN_WHOLE * spacing) & (found[:, 3] > 0.0)
+    is_missed = (found[:, WIDTH] < _SEEN_WHOLE * spacing) & (found[:, DEPTH] > 0.0)
     return np.asarray(np.where(is_missed[:, None], blind / 2, 0.0), np.float64)
 
 
@@ -259,7 +321,7 @@ def _height_above_road(
 ) -> float:
     """How far the trajectory is above the road: measured below the scanner where there are points.
 
-    A trajectory may be that of the scanner, the antenna or the wheels (trap 25).
+    A trajectory may be that of the scanner, the antenna or the wheels.
     """
     aside = np.hypot(*(xyz[below, :2] - positions[:, :2]).T)
     heights = (positions[:, 2] - xyz[below, 2])[aside <= _NEAR_M]
@@ -282,7 +344,7 @@ def _noise(xyz: Floats, pulse: Integers, spans: Integers, positions: Floats) -> 
     if not every.size:
         return _LEAST_NOISE_M
     # The second difference of white noise has √6 times its spread.
-    spread = float(np.median(every)) / (0.6745 * np.sqrt(6.0))
+    spread = float(np.median(every)) / (_OF_MEDIAN * np.sqrt(_OF_SECOND_DIFFERENCE))
     return float(np.clip(spread, _LEAST_NOISE_M, _MOST_NOISE_M))
 
 
@@ -296,29 +358,32 @@ def _strength(found: Floats, noise: float, along: Floats, spacing: Floats) -> Fl
     noise : float
         Height noise, m.
     along : (n,)
-        Cosine between row and way.
+        Cosine between row and path.
     spacing : (n,)
         Between points of the row, m.
 
     Notes
     -----
-    Depth is counted in noise: four times is what noise alone does once in 30,000 points. Holes are
-    at most 50 mm by 200 mm (Table 7-2), so the row's direction says how wide they may be.
+    Depth is counted in noise. Holes are at most 50 mm by 200 mm, so the row's direction says how
+    wide they may be.
     """
-    depth, width, lost = found[:, 3], found[:, 4], found[:, 7]
-    pattern = found[:, 8].astype(np.uint8)
+    depth, width, lost = found[:, DEPTH], found[:, WIDTH], found[:, LOST_PULSES]
+    pattern = found[:, PATTERN].astype(np.uint8)
     is_thesis = (pattern & (OPENING | DENT)) > 0
-    times = depth / (4.0 * max(noise, _NOISE_FLOOR_M))
+    times = depth / (_TIMES_NOISE * max(noise, _NOISE_FLOOR_M)) - _FROM
     by_depth = np.where(
-        is_thesis, np.clip(1.2 * (times - 0.7), 0.05, 0.95), np.clip(0.3 * (times - 0.7), 0.02, 0.2)
+        is_thesis,
+        np.clip(_STEEP * times, _LEAST_OPENING, _MOST_OPENING),
+        np.clip(_FLAT * times, _LEAST_DIP, _MOST_DIP),
     )
     # A single low point is noise more often than two.
-    by_depth = np.where(~is_thesis & (width > 2.5 * spacing), 1.5 * by_depth, by_depth)
+    is_wide = ~is_thesis & (width > _WIDE_SPACINGS * spacing)
+    by_depth = np.where(is_wide, _WIDE_GAIN * by_depth, by_depth)
     by_depth = np.where((lost > 0) & (depth < _NOISE_FLOOR_M), _LOST_STRENGTH, by_depth)
     aside = np.sqrt(np.maximum(1.0 - along**2, 0.0))
     longest = np.minimum(
-        _LONGEST_HOLE_M / np.maximum(np.abs(along), 1e-6),
-        _WIDEST_HOLE_M / np.maximum(aside, 1e-6),
+        _LONGEST_HOLE_M / np.maximum(np.abs(along), _LEAST_COSINE),
+        _WIDEST_HOLE_M / np.maximum(aside, _LEAST_COSINE),
     )
-    over = (width - 2.0 * spacing) / longest
-    return np.asarray(by_depth * np.clip(1.5 - 0.5 * over, 0.05, 1.0) ** 2)
+    over = (width - _SPACINGS_OF_RIMS * spacing) / longest
+    return np.asarray(by_depth * np.clip(_TOO_LONG - _HALF * over, _LEAST_FIT, 1.0) ** 2)

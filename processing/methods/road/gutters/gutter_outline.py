@@ -13,6 +13,7 @@ from processing.methods.road.gutters.gutter_lids import GutterCover
 _Floats = NDArray[np.float64]
 
 _OFF_M = 0.01
+"""A vertex that moves the outline by less is left out: lids are laid no more exactly. By trial."""
 
 
 def edge_lines(covers: Sequence[GutterCover], longest_gap_m: float) -> Iterator[_Floats]:
@@ -20,7 +21,7 @@ def edge_lines(covers: Sequence[GutterCover], longest_gap_m: float) -> Iterator[
 
     Parameters
     ----------
-    covers : sequence of Cover
+    covers : sequence of GutterCover
         Of one gutter, in order.
     longest_gap_m : float
         Between covers of one stretch.

@@ -31,17 +31,51 @@ from processing.recording.passes import Pass
 
 _Floats = NDArray[np.float64]
 
-_BAND_M = 0.45
-_MOVED_M = 1.5  # farther no axis is moved to the middle of its lids
+# "By trial": chosen while the tool was made; no measurement of the single value is recorded.
+
+_BAND_M, _LEVEL_M = 0.45, 0.15
+"""Notches so far from a line may be of its lids, half of the widest and its offset; and so far
+above or below, a curb's height."""
+
+_MOVED_M = 1.5
+"""Farther no axis is moved to the middle of its lids. By trial."""
+
 _JOINT_M = 0.04
-_WINDOW_M = (1.0, 4.0)  # over which the middle of a gutter is found, by how many notches there are
-_NOTCHES = 12.0
+"""A notch so near to a joint is of it: s of Takahashi 2022, Table 7-3."""
+
+_NARROWEST_WINDOW_M, _WIDEST_WINDOW_M, _NOTCHES = 1.0, 4.0, 12.0
+"""Bounds of the window (standard deviation) over which the middle of a gutter is found: as long as
+so many notches take. By trial."""
+
+_MOST_AT_ONE_PLACE = 4.0
+"""Notches at one place that count, so that many holes in one place do not outweigh those about
+it."""
+
+_LEAST_DENSITY, _LEAST_WINDOW_WEIGHT = 0.1, 0.05
+"""Notches a metre from which the window follows; weight of a window that says anything: guards."""
+
+_SPREAD_M2, _LEAST_DETERMINANT = 1e-3, 1e-9
+"""Guards of a local line whose notches lie in one place."""
+
 _ASIDE_M = 0.04
+"""A notch may lie so far beside its hole, or beyond the lid's edge: two spacings of points."""
+
 _WEAK, _STRONG = 0.03, 0.1
-_CLEAR_M = 0.6
-_END_M = 0.1
+"""Weaker notches are left out; those from the second on tell the lids' type (see `gratings`). By
+trial."""
+
+_CLEAR_M, _END_M = 0.6, 0.1
+"""Notches so near to a gutter's axis, and so far beyond its ends, are no other gutter's. By
+trial."""
+
 _ROUNDS = 3
+"""Of joints, holes and the axis in turn: each is known better by the others."""
+
 _LEAST_COVERS = 2
+"""Of a gutter: one lid may be of anything."""
+
+_MORE_BRIDGE_M = 1.0
+"""A line goes on over as many lids as may be missed, and so much: a window more."""
 
 _LIDS = (
     lengths_of((0.6,), (0.5, 1.0)),
@@ -59,12 +93,24 @@ _BY_CHANCE = (
     lengths_of((0.67, 0.86), (0.455,)),
 )
 """The same of lengths that are made nowhere, with their joints apart from those that are."""
+
 _LEAST_WORTH, _MORE_WORTH, _SURE_WORTH = 6.0, 2.5, 50.0
-_CHANGES_M = 1.0  # lids change their type most where they end: at mouths and junctions
-_ASKED_M, _USUAL_M = 4.0, 0.6  # how often else it is asked; the length of most lids
+"""Logarithms: a row must be worth so much, and so much more than any row of lengths made nowhere;
+what is worth the last is not held against chance, which saves the time. By trial."""
+
+_CHANGES_M = 1.0
+"""Lids change their type most where they end, at mouths and junctions: at gaps as long as this."""
+
+_ASKED_M, _USUAL_M = 4.0, 0.6
+"""How often else it is asked; the length of most lids (Takahashi 2022, Table 7-2)."""
+
 _LEAST_OF_TYPE, _OTHER_TYPE, _OTHER_WITHOUT_GAP = 6, 3.0, 12.0
-"""Notches that tell a type, and how much likelier two types must be than one: as logarithms."""
-_LEAST_GAIN = 0.1  # notches that lie anywhere across a line are not those of holes and joints
+"""Notches that tell a type, and how much likelier two types must be than one, at a gap and
+anywhere: as logarithms. By trial."""
+
+_LEAST_GAIN = 0.1
+"""Notches that lie anywhere across a line are not those of holes and joints: what each of them
+gains at least by the holes' places, a logarithm. By trial."""
 
 
 @dataclass(frozen=True)
@@ -133,7 +179,7 @@ def gutter_runs(
     found: list[GutterRun] = []
     for search in (LONG, SHORT):
         wide = replace(search, reach_m=reach_m)
-        for line in gutter_lines(passes, left, wide, most_missed * _USUAL_M + 1.0):
+        for line in gutter_lines(passes, left, wide, most_missed * _USUAL_M + _MORE_BRIDGE_M):
             if monitor is not None:
                 monitor.check()
             for run in _runs_of(line, left, most_missed):
@@ -167,17 +213,18 @@ def _change(run: GutterRun, notches: Notches) -> float | None:
     near = _about(run.axis, notches)
     along, _, is_on = _on_lids(run.axis, near, None)
     worth = _worths(along, is_on & (near.strength >= _STRONG), row)
-    told = np.flatnonzero(worth)
+    counting = np.flatnonzero(worth)
     if (worth > 0).sum() < 2 * _LEAST_OF_TYPE:
         return None
 
     def fit(some: NDArray[np.int64]) -> HoleFit:
         return hole_fit(_joint_notches(run.axis, near.chosen(some), worth[some]))
 
-    whole = fit(told)
+    whole = fit(counting)
 
     def more(cut_m: float) -> float:
-        parts = [fit(told[along[told] < cut_m]), fit(told[along[told] >= cut_m])]
+        at = along[counting]
+        parts = [fit(counting[at < cut_m]), fit(counting[at >= cut_m])]
         if min(one.count for one in parts) < _LEAST_OF_TYPE or parts[0].type == parts[1].type:
             return -np.inf
         return sum(one.gain * one.count for one in parts) - whole.gain * whole.count
@@ -200,13 +247,13 @@ def _change(run: GutterRun, notches: Notches) -> float | None:
 
 def _about(axis: GutterAxis, notches: Notches) -> Notches:
     """The notches near an axis, wherever it may be moved to."""
-    along, _, above = axis.told(notches.xyz, _MOVED_M)
+    along, _, above = axis.coordinates_of(notches.xyz, _MOVED_M)
     return notches.chosen(np.isfinite(along) & (np.abs(above) <= _MOVED_M))
 
 
 def _is_covered(run: GutterRun, xyz: _Floats) -> NDArray[np.bool_]:
     """Which notches lie on the covers of a run or close beside them."""
-    along, _, _ = run.axis.told(xyz, _CLEAR_M)
+    along, _, _ = run.axis.coordinates_of(xyz, _CLEAR_M)
     first, last = float(run.row.starts_m.min()), float(run.row.ends_m.max())
     return np.asarray((along > first - _END_M) & (along < last + _END_M))
 
@@ -233,8 +280,8 @@ def _run_of(line: GutterLine, notches: Notches, most_missed: int) -> GutterRun |
             off = holes.type.off(across[at_joint])
             of_hole = np.abs(off) <= holes.type.hole_wide_m / 2 + _ASIDE_M
             axis = _moved(axis, along[at_joint][of_hole], off[of_hole])
-        told = worth != 0.0
-        holes = hole_fit(_joint_notches(axis, near.chosen(told), worth[told]))
+        counts = worth != 0.0
+        holes = hole_fit(_joint_notches(axis, near.chosen(counts), worth[counts]))
         axis = _aside(axis, holes.middle_m)
     if holes is None or holes.gain < _LEAST_GAIN:
         return None
@@ -250,7 +297,7 @@ def _run_of(line: GutterLine, notches: Notches, most_missed: int) -> GutterRun |
 
 
 def _joint_notches(axis: GutterAxis, notches: Notches, worth: _Floats) -> JointNotches:
-    along, across, _ = axis.told(notches.xyz, _BAND_M)
+    along, across, _ = axis.coordinates_of(notches.xyz, _BAND_M)
     known = np.isfinite(across)
     at = np.clip((along[known] / STEP_M).astype(np.int64), 0, len(axis.outwards) - 1)
     square = np.abs((notches.direction[known] * axis.outwards[at]).sum(axis=1))
@@ -261,9 +308,9 @@ def _on_lids(
     axis: GutterAxis, notches: Notches, holes: HoleFit | None
 ) -> tuple[_Floats, _Floats, NDArray[np.bool_]]:
     """Along and across of notches, and which may be of the lids, as far as their width is known."""
-    along, across, above = axis.told(notches.xyz, _BAND_M)
+    along, across, above = axis.coordinates_of(notches.xyz, _BAND_M)
     wide = _BAND_M if holes is None else holes.type.width_m / 2 + _ASIDE_M
-    is_on = np.isfinite(along) & (np.abs(above) < 0.15)
+    is_on = np.isfinite(along) & (np.abs(above) < _LEVEL_M)
     is_on[is_on] = np.abs(across[is_on]) <= wide
     return along, across, is_on
 
@@ -271,7 +318,7 @@ def _on_lids(
 def _lids_along(axis: GutterAxis, notches: Notches) -> dict[float, float] | None:
     """The lengths of lids that explain the notches best; None if no better than by chance.
 
-    What chance does is asked of the same notches: rows of lengths that no lid has are laid too.
+    What chance does is asked of the same notches: rows of lengths that no lid has are fitted too.
     """
     along, _, is_on = _on_lids(axis, notches, None)
     those = along[is_on], notches.strength[is_on]
@@ -325,10 +372,10 @@ def _moved(axis: GutterAxis, along: _Floats, across: _Floats) -> GutterAxis:
     weight = np.bincount(bins, minlength=at.size).astype(np.float64)
     # So that many holes in one place do not outweigh those about it.
     one = 1.0 / np.maximum(weight, 1.0)
-    share = np.minimum(weight, 4.0) * one
+    share = np.minimum(weight, _MOST_AT_ONE_PLACE) * one
     sums = [np.bincount(bins, across**power, minlength=at.size) * share for power in range(2)]
-    density = max(float(sums[0].sum()) / axis.length_m, 0.1)
-    sigma = float(np.clip(_NOTCHES / density, *_WINDOW_M))
+    density = max(float(sums[0].sum()) / axis.length_m, _LEAST_DENSITY)
+    sigma = float(np.clip(_NOTCHES / density, _NARROWEST_WINDOW_M, _WIDEST_WINDOW_M))
     aside = _local_lines(at, sums[0], sums[1], sigma)
     return _aside(axis, aside)
 
@@ -345,9 +392,10 @@ def _local_lines(at: _Floats, weight: _Floats, total: _Floats, sigma_m: float) -
 
     w0, w1, w2 = (summed(weight, power) for power in range(3))
     t0, t1 = (summed(total, power) for power in range(2))
-    bottom = w0 * (w2 + 1e-3) - w1**2
-    value = (t0 * (w2 + 1e-3) - t1 * w1) / np.where(np.abs(bottom) < 1e-9, np.inf, bottom)
-    known = w0 > 0.05
+    bottom = w0 * (w2 + _SPREAD_M2) - w1**2
+    is_none = np.abs(bottom) < _LEAST_DETERMINANT
+    value = (t0 * (w2 + _SPREAD_M2) - t1 * w1) / np.where(is_none, np.inf, bottom)
+    known = w0 > _LEAST_WINDOW_WEIGHT
     if not known.any():
         return np.zeros(at.size)
     filled: _Floats = np.interp(at, at[known], value[known])

@@ -11,10 +11,13 @@ from processing.methods.road.gutters.notches import DENT, OPENING, Notches, Notc
 from processing.methods.road.requested_position import RequestedPosition
 
 ABOUT_M = 1.0
-"""Notches further from the asked place are none of its business."""
+"""Notches farther from the requested place are none of its business."""
+
 LEAST_STRENGTH = 0.5
+"""Shown as what speaks for a hole: likelier than not. The tool itself weighs weaker ones too."""
 
 _WIDEST_M = 0.20
+"""Widest hole of a lid, 19 cm (Takahashi 2022, Table 7-2), rounded up."""
 _DEPTH = Text("Depth below the surface", "路面からの深さ")
 _WIDTH = Text("Width along the row", "走査線方向の幅")
 _SHAPE = Text("Jump as in equations 7-2 and 7-3", "式(7-2)・(7-3)の変化")
@@ -36,10 +39,10 @@ def notch_diagnostics(
     away = np.hypot(*(notches.xyz[:, :2] - position[:2]).T)
     near = np.flatnonzero(away <= ABOUT_M)
     near = near[np.argsort(notches.station_m[near], kind="stable")]
-    return tuple(_trial(notches, int(one), parameters) for one in near)
+    return tuple(_diagnostic_of(notches, int(one), parameters) for one in near)
 
 
-def _trial(notches: Notches, one: int, parameters: NotchParameters) -> Diagnostic:
+def _diagnostic_of(notches: Notches, one: int, parameters: NotchParameters) -> Diagnostic:
     depth, width = float(notches.depth_m[one]), float(notches.width_m[one])
     strength = float(notches.strength[one])
     is_jump = bool(notches.pattern[one] & (OPENING | DENT))

@@ -7,6 +7,8 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.methods.road.gutters.notch_kernels import Sweeps
+
 Floats = NDArray[np.float64]
 Openings = Callable[[Floats, Floats], NDArray[np.bool_]]
 
@@ -74,4 +76,4 @@ class NotchRows:
         self.xyz = np.concatenate(parts)
         self.pulse = np.concatenate(pulses).astype(np.int64)
         spans = np.column_stack([starts[:-1], starts[1:]])
-        self.sweeps = (spans, np.array(positions), np.array(rights))
+        self.sweeps = Sweeps(spans, np.array(positions), np.array(rights))

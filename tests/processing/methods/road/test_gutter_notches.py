@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from processing.methods.road.gutters import notch_kernels
-from processing.methods.road.gutters.notch_kernels import FOUND, notches_kernel
+from processing.methods.road.gutters.notch_kernels import FOUND, Limits, notches_kernel
 from processing.methods.road.gutters.notches import LOST, OPENING
 from tests.processing.methods.road.notch_rows import (
     DEEP_M,
@@ -32,7 +32,7 @@ def nothing_open(along: Floats, across: Floats) -> NDArray[np.bool_]:
 def found_in(rows: NotchRows, noise_m: float = 0.002) -> tuple[Floats, NDArray[np.int64]]:
     """What the kernel notes."""
     out = (np.empty((5_000, FOUND)), np.empty((5_000, 3), np.int64))
-    limits = (6.5, 1.5, noise_m, 0.02, 0.01, 0.10, 3.0)
+    limits = Limits(6.5, 1.5, noise_m, 0.02, 0.01, 0.10, 3.0)
     count = notches_kernel(rows.xyz, rows.pulse, rows.sweeps, limits, out)
     return out[0][:count], out[1][:count]
 

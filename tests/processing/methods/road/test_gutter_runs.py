@@ -156,7 +156,7 @@ def test_a_walk_with_joints_of_its_own_lifts_no_gutter() -> None:
     walk = notches_at(one, along, across, 0.15)
     raised = replace(walk, xyz=walk.xyz + np.array([0.0, 0.0, 0.2]))
     run, *_ = gutter_runs([one], [gutter, raised], 5)
-    _, _, above = run.axis.told(gutter.xyz, 0.5)
+    _, _, above = run.axis.coordinates_of(gutter.xyz, 0.5)
     np.testing.assert_allclose(above, 0.0, atol=0.05)
     assert run.row.starts_m.size >= COUNT - 2
 
@@ -232,9 +232,9 @@ def test_lids_lie_on_their_own_tops_at_their_true_size() -> None:
     cover = covers[20]
     sides = np.linalg.norm(np.diff(cover.corners[:, :2], axis=0), axis=1)
     np.testing.assert_allclose(sides, [LID_M, WIDTH_M, LID_M], atol=0.003)
-    _, across, above = run.axis.told(cover.corners, 0.5)
+    _, across, above = run.axis.coordinates_of(cover.corners, 0.5)
     np.testing.assert_allclose(above, 0.02 * across, atol=0.004)
-    _, across, above = run.axis.told(covers[10].corners, 0.5)
+    _, across, above = run.axis.coordinates_of(covers[10].corners, 0.5)
     np.testing.assert_allclose(above, 0.02 * across - 0.025, atol=0.004)
     assert not cover.is_grating
     (ahead_x, ahead_y), (left_x, left_y) = np.diff(cover.corners[:3, :2], axis=0)
@@ -256,7 +256,7 @@ def test_an_axis_tells_places_as_it_gives_them() -> None:
     turn = np.linspace(0, 1, 60)
     axis = GutterAxis.through(np.column_stack([30 * np.sin(turn), 30 * np.cos(turn), turn]))
     along, across = np.linspace(1, 25, 40), np.linspace(-0.4, 0.4, 40)
-    told = axis.told(axis.positions(along, across), 0.5)
+    told = axis.coordinates_of(axis.positions(along, across), 0.5)
     np.testing.assert_allclose(told[0], along, atol=0.01)
     np.testing.assert_allclose(told[1], across, atol=0.003)
     np.testing.assert_allclose(told[2], 0.0, atol=0.003)
