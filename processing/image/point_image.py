@@ -36,6 +36,8 @@ from processing.recording.kinds import ImageKind
 _Integers = NDArray[np.int64]
 
 _MOST_ROWS_ASIDE = 8
+"""Rows of a top view above and below in which the nearest filled cell is looked for."""
+
 _Number = TypeVar("_Number", bound=np.generic)
 
 

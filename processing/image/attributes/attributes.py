@@ -37,7 +37,8 @@ if TYPE_CHECKING:  # Drive makes its images, so importing it here would be a cir
     from processing.recording.drive import Drive
 
 SHOWN_RADIUS_M = 0.2
-"""Neighbourhood of normals and shapes that are made for the screen."""
+"""Neighbourhood of normals and shapes that are made for the screen: wider than rows are apart,
+narrower than a kerb is wide."""
 
 _UNLABELLED_GREYS = 64, 191
 """The darkest and the brightest point without a label: black and white are left to classes."""
@@ -164,8 +165,14 @@ def most_telling_attribute(drive: Drive, wanted: str) -> str:
 
 _TELLING = ("intensity", "color", "height")
 _PIECES, _PIECE_POINTS = 16, 512
-_STRETCH_POINTS = 8_000_000
+"""Pieces of a column that are looked at for whether it says anything: spread over the drive, read
+in a moment."""
+
+_CHUNK_POINTS = 8_000_000
+"""Points read at a time: 8 MB of codes."""
+
 _UNCLASSIFIED = 1
+"""Codes up to this say nothing: 0 never classified, 1 unclassified (LAS 1.4)."""
 
 
 def _varies(drive: Drive, attribute: str) -> bool:
@@ -201,7 +208,7 @@ def _has_classes(folder: Path, count: int) -> bool:
     """Whether a delivered class is above 1; as delivered, a column never changes."""
     return any(
         (read_chunk(folder, "classification", start, stop) > _UNCLASSIFIED).any()
-        for start, stop in chunk_ranges(count, _STRETCH_POINTS)
+        for start, stop in chunk_ranges(count, _CHUNK_POINTS)
     )
 
 

@@ -18,6 +18,8 @@ from processing.recording.columns.error_map import ErrorMapValue
 Colours = NDArray[np.uint8]
 
 EMPTY_COLOUR = (8, 24, 88)
+"""Pixels without a point: a dark blue, which no attribute has."""
+
 UNKNOWN_COLOUR = (96, 96, 96)
 """Points whose attribute isn't known: too few neighbours, in no camera image."""
 
@@ -30,15 +32,26 @@ ERROR_MAP_COLOURS: Mapping[ErrorMapValue, str] = {
 """Of Okabe and Ito (2008), and a grey: told apart by every eye, the two mistakes also in print."""
 
 _NOT_JUDGED = (64, 64, 64)
+"""Points of which no truth is known: darker than what is right."""
 
 HEIGHT_STEPS = 24
+"""Bands of heights that are told apart by eye, as on a layer-tinted map."""
+
 SEGMENT_COLOURS = 1024
+"""Colours before they repeat: more than a screen shows segments."""
 
 # Low to high: stops of a hypsometric tint whose lightness (CIE L*) rises in even steps.
 _HEIGHT_STOPS = ((0, 84, 74), (30, 118, 66), (92, 148, 50), (160, 172, 60), (214, 192, 108),
                  (240, 218, 172), (255, 250, 240))  # fmt: skip
 _WALL, _SLOPE, _FLOOR = (70, 140, 255), (225, 225, 225), (225, 60, 30)
+"""By how upright a surface stands: blue to red, which colour-blind eyes tell apart, through
+grey."""
+
 _GOLDEN = 0.6180339887498949
+"""The golden section: hues so many turns apart never fall together."""
+
+_LIGHTNESSES, _CHROMAS = (0.72, 0.56, 0.86), (0.13, 0.14, 0.09)
+"""Of segments in turn, in Oklab: chroma as much as sRGB holds at that lightness in every hue."""
 
 
 @lru_cache(maxsize=1)
@@ -115,8 +128,8 @@ def _distinct_colours() -> Colours:
     """Hues a golden angle apart, in three lightnesses: numbers next to each other differ most."""
     numbers = np.arange(SEGMENT_COLOURS)
     hue = 2 * np.pi * (numbers * _GOLDEN % 1)
-    lightness = np.array([0.72, 0.56, 0.86])[numbers % 3]
-    chroma = np.array([0.13, 0.14, 0.09])[numbers % 3]
+    lightness = np.array(_LIGHTNESSES)[numbers % 3]
+    chroma = np.array(_CHROMAS)[numbers % 3]
     return _from_oklab(lightness, chroma * np.cos(hue), chroma * np.sin(hue))
 
 

@@ -23,7 +23,10 @@ from processing.recording.drive import Drive
 from processing.recording.kinds import ImageKind
 
 LIMIT_BYTES = 256 * 2**20
+"""Of coloured tiles that are kept, 256 MiB: some 1,300, several screens of each view."""
+
 _LOADERS = 2
+"""Threads that load tiles: one reads while the other colours."""
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,7 @@
 """The laser's line of sight through a pixel, whether something came back from there or not.
 
-Within a turn the beam sweeps at a steady rate about one centre, so the points that did come back
-say where the centre is and which way every pulse went.
+Within a revolution the beam sweeps at a steady rate about one centre, so the points that did come
+back say where the centre is and which way every pulse went.
 """
 
 from __future__ import annotations
@@ -19,12 +19,19 @@ BeamPoint = tuple[float, float, float]
 
 _FEWEST_POINTS = 30
 _FEWEST_DEGREES = 40.0
+"""Points, and an arc of directions, from which a centre follows: over less it is a small difference
+of nearly parallel beams. By trial; no measurement is recorded."""
+
 _MOST_POINTS = 1_500
+"""More take longer and make the centre hardly surer."""
+
+_LEAST_LENGTH = 1e-9
+"""Guard of a division: all beams alike."""
 
 
 @dataclass(frozen=True)
 class _Sweep:
-    """One turn in the frame in which its points are given.
+    """One revolution in the frame in which its points are given.
 
     Attributes
     ----------
@@ -63,7 +70,7 @@ def beam_at(
     -------
     tuple of two (3,) tuples, or None
         Origin (m, project CRS) and unit direction. None without revolutions, outside the image, and
-        where a turn has too few points to say.
+        where a revolution has too few points to say.
     """
     revolutions = drive.revolutions
     if revolutions is None or not (0 <= row < image.rows and 0 <= column < image.width):
@@ -133,7 +140,7 @@ def _turned_centre(flat: Floats, angles: Floats) -> tuple[Floats, float, float] 
     _, values, basis = np.linalg.svd(rows, full_matrices=False)
     cos_p, sin_p, a, b = basis[-1]
     length = float(np.hypot(cos_p, sin_p))
-    if length < 1e-9:
+    if length < _LEAST_LENGTH:
         return None
     cos_p, sin_p, a, b = (value / length for value in (cos_p, sin_p, a * scale, b * scale))
     centre = np.array([a * cos_p + b * sin_p, a * sin_p - b * cos_p])

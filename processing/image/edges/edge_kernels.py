@@ -1,4 +1,4 @@
-"""Loops over the cross-section of a stretch of surface: where it bends, and which way it runs.
+"""Loops over the cross-section of a piece of surface: where it bends, and which way it runs.
 
 Points around a place are looked at along an edge: *along* it a (horizontal), *across* it u (to the
 left), and their height v less the grade of the edge, so the points of several rows fall on one
@@ -8,6 +8,7 @@ profile. A profile is cut into straight pieces; where two meet, their crossing i
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,37 +21,112 @@ ACROSS, HEIGHT, BEND, STRENGTH, BEFORE, AFTER, ORDER = range(7)
 """Columns of a corner: its place in the section, m; the bend, rad, positive where the surface is
 hollow; the strength, m; directions of the pieces before and after it, rad; 1 where the profile
 rises to the left of the direction of the edge, −1 where it falls."""
+
 CORNER_COLUMNS = 7
 MOST_CORNERS = 16
+"""Of a profile: far more than a curb with its gutter has."""
 
 _MEAN_U, _MEAN_V, _ANGLE, _LENGTH, _SPREAD, _NUMBER, _FIRST, _LAST, _MEAN_A, _MEAN_AA = range(10)
+"""Columns of a piece: middle, m; direction, rad; length, RMS off it, m; points; first and last of
+them along it, m; mean place along the edge and its mean square, m, m²."""
+
 _PIECE_COLUMNS = 10
-_MOST_PIECES = 24
-_FEWEST_POINTS = 8
-_MOST_BINS = 200
-_PIECE_PRICE = (
-    10.0  # in squares of the noise: about ln(points) for each of a piece's three unknowns
-)
+
+_HEADING, _GRADE, _CURVATURE = range(3)
+"""Of a frame: rad, rise per metre, 1/m."""
+
+_N, _U, _V, _UU, _UV, _VV = range(6)
+_SUMS = 6
+"""Sums over points of 1, u, v, u², uv, v²."""
+
+# "By trial": chosen while the tool was made; no measurement of the single value is recorded.
+
+_MOST_PIECES, _FEWEST_POINTS, _MOST_BINS = 24, 8, 200
+"""Of a profile: more pieces than one can have corners; fewer points are no two pieces; bins that
+bound the time, which grows with their square."""
+
+_PIECE_PRICE = 10.0
+"""What a piece costs, in squares of the noise: about ln(points) for each of its three unknowns (two
+of a line and where it ends), as in Schwarz' criterion (1978)."""
+
 _LEAST_BEND = math.radians(15.0)
-_LEAST_JUMP = 3.0  # in noises
-_SIGNIFICANT = 4.0  # in standard deviations of where a piece ends that so few points show
+"""Less is unevenness of a surface: slopes of ramps are below it. By trial."""
+
+_LEAST_JUMP, _STEEPEST_JUMP = 3.0, 3.0
+"""Height of a jump between two surfaces in noises; and how many times as wide as high it may be: a
+gap that wide may as well be missing points. By trial."""
+
+_SIGNIFICANT, _OF_SPAN = 4.0, 12.0
+"""A crossing must be off the straight by so many standard deviations of where a piece ends that so
+few points show; evenly spread over a length they scatter by that length / √12."""
+
 _SHORTEST_M = 0.008
-_ROUNDING_M = 0.035  # a piece this short between two bends of one sign is a rounded edge
+"""Two spacings of near points: a shorter piece has no direction."""
+
+_ROUNDING_M = 0.035
+"""A piece this short between two bends of one sign is a rounded edge: arrises of kerb stones have
+radii of 2 to 3 cm."""
+
 LONGEST_ARM_M = 0.10
 """No edge counts as stronger: what is farther away doesn't matter to it."""
-# No piece runs steeper than this against the order of the profile; upright and level are at 45°.
+
 _STEEP_SINE, _STEEP_COSINE = math.sin(math.radians(65.0)), math.cos(math.radians(65.0))
 _STEEPEST_COSINE = math.cos(math.radians(130.0))
-_LEAST_ALONG = 0.2  # standard deviation along the edge, in half lengths; evenly spread: 0.58
-_ROUGHEST = 2.5  # in noises: rougher pieces are plants, not surfaces
+"""No piece runs steeper than 65° against the order of the profile; upright and level are at 45°, so
+that faces leaning 20° backwards are still found. Directions count double in a scatter matrix."""
+
+_LEAST_ALONG = 0.2
+"""Standard deviation of a piece's points along the edge, in half lengths; evenly spread they have
+0.58, one row hardly any: a surface is seen by several rows."""
+
+_LEAST_OF_PIECE, _ROUGHEST = 3, 2.5
+"""Points of a surface: three, that it has a spread; rougher pieces, in noises, are plants. By
+trial."""
+
 _COARSENESS = (6.0, 3.0, 1.5, 1.0, 1.0)
+"""Noise is taken so many times as large at first, so that a slightly wrong frame doesn't break the
+profile to splinters."""
+
 _FEWEST_TO_TURN = 6
-_SURE = (0.1, 0.1, 0.1)  # how well heading, grade and curvature are known: rad, 1, 1/m
+"""Points of a piece that may turn the frame."""
+
+_SURE = (0.1, 0.1, 0.1)
+"""How well heading, grade and curvature are known before, rad, 1, 1/m: 6°, 10 %, a radius of 10 m.
+Nor does one step change them by more. By trial."""
+
+_ON_PIECE, _FAR = 4.0, 2.0
+"""Points within so many noises are of a piece; at the second a point weighs half (Cauchy)."""
+
+_LEAST_SINE = 0.1
+"""Of the angle of two pieces: flatter ones cross anywhere."""
+
+_BEYOND_M, _BEYOND_SHARE = 0.03, 0.3
+"""Two pieces may cross so far beyond their ends, m and a share of their lengths: the spacing of
+points, not a missing surface. By trial."""
+
+
+class SectionLimits(NamedTuple):
+    """What is looked at about a place.
+
+    Attributes
+    ----------
+    along_m, across_m, height_m : float
+        Half length along the edge and across it, half height.
+    noise_m : float
+    order : int
+        Of the profile: 1 rising, −1 falling, 0 whichever fits better.
+    """
+
+    along_m: float
+    across_m: float
+    height_m: float
+    noise_m: float
+    order: int
 
 
 @kernel
 def corners_kernel(
-    local: _Floats, limits: _Floats, frame: _Floats, corners: _Floats
+    local: _Floats, limits: SectionLimits, frame: _Floats, corners: _Floats
 ) -> tuple[int, float, float]:
     """Corners of the profile of points about a place.
 
@@ -58,9 +134,7 @@ def corners_kernel(
     ----------
     local : (n, 3)
         m, about the place.
-    limits : (5,)
-        Half length along and across the edge, half height, noise, m; order of the profile (1, −1;
-        0: whichever fits better).
+    limits : SectionLimits
     frame : (3,)
         Heading of the edge, rad, counter-clockwise from the first axis; its grade; its curvature,
         1/m, left positive; made better.
@@ -75,17 +149,16 @@ def corners_kernel(
     profile = np.empty((local.shape[0], 3))
     pieces = np.empty((_MOST_PIECES, _PIECE_COLUMNS))
     best_pieces = np.empty((_MOST_PIECES, _PIECE_COLUMNS))
-    wanted = int(limits[4])
     found, least, order, number = 0, math.inf, 0, 0
     for turn in range(len(_COARSENESS)):
         # Coarse first, so that a slightly wrong frame doesn't break the profile to splinters.
-        noise = limits[3] * _COARSENESS[turn]
+        noise = limits.noise_m * _COARSENESS[turn]
         number = _project(local, limits, frame, profile)
         if number < _FEWEST_POINTS:
             return 0, math.inf, math.inf
         least = math.inf
         for candidate in (1, -1):
-            if wanted not in (0, candidate):
+            if limits.order not in (0, candidate):
                 continue
             count, cost = _cut(profile[:number], candidate, noise, pieces)
             if cost < least:
@@ -94,21 +167,22 @@ def corners_kernel(
         order = wanted_order
         if turn < len(_COARSENESS) - 1:
             _turn_frame(profile[:number], noise, best_pieces[:found], frame)
-    count = _corners_of(best_pieces[:found], order, noise, limits[0], corners)
+    count = _corners_of(best_pieces[:found], order, noise, limits.along_m, corners)
     largest = int(best_pieces[:found, _NUMBER].argmax())
     return count, least / number, best_pieces[largest, _SPREAD]
 
 
 @kernel
-def _project(local: _Floats, limits: _Floats, frame: _Floats, profile: _Floats) -> int:
-    cos, sin, grade = math.cos(frame[0]), math.sin(frame[0]), frame[1]
+def _project(local: _Floats, limits: SectionLimits, frame: _Floats, profile: _Floats) -> int:
+    cos, sin, grade = math.cos(frame[_HEADING]), math.sin(frame[_HEADING]), frame[_GRADE]
     number = 0
     for i in range(local.shape[0]):
         a = local[i, 0] * cos + local[i, 1] * sin
         u = local[i, 1] * cos - local[i, 0] * sin
-        u -= frame[2] * a * a / 2
+        u -= frame[_CURVATURE] * a * a / 2
         v = local[i, 2] - grade * a
-        if abs(a) <= limits[0] and abs(u) <= limits[1] and abs(v) <= limits[2]:
+        is_level = abs(v) <= limits.height_m
+        if abs(a) <= limits.along_m and abs(u) <= limits.across_m and is_level:
             profile[number, 0] = u
             profile[number, 1] = v
             profile[number, 2] = a
@@ -118,21 +192,21 @@ def _project(local: _Floats, limits: _Floats, frame: _Floats, profile: _Floats) 
 
 @kernel
 def _add(sums: _Floats, u: float, v: float) -> None:
-    sums[0] += 1
-    sums[1] += u
-    sums[2] += v
-    sums[3] += u * u
-    sums[4] += u * v
-    sums[5] += v * v
+    sums[_N] += 1
+    sums[_U] += u
+    sums[_V] += v
+    sums[_UU] += u * u
+    sums[_UV] += u * v
+    sums[_VV] += v * v
 
 
 @kernel
 def _least_squares(sums: _Floats, order: int) -> float:
     """Sum of squared distances from the best line that doesn't run across the profile's order."""
-    n = sums[0]
-    uu = sums[3] - sums[1] * sums[1] / n
-    uv = sums[4] - sums[1] * sums[2] / n
-    vv = sums[5] - sums[2] * sums[2] / n
+    n = sums[_N]
+    uu = sums[_UU] - sums[_U] * sums[_U] / n
+    uv = sums[_UV] - sums[_U] * sums[_V] / n
+    vv = sums[_VV] - sums[_V] * sums[_V] / n
     # Turned by 45°: along the order of the profile, and square to it.
     total, difference, sw = uu + vv, 2 * order * uv, order * (vv - uu) / 2
     root = math.sqrt(difference * difference + 4 * sw * sw)
@@ -153,7 +227,7 @@ def _cut(profile: _Floats, order: int, noise: float, pieces: _Floats) -> tuple[i
     starts = np.empty(_MOST_BINS + 1, np.int64)
     by_order = np.argsort(profile[:, 0] + order * profile[:, 1])
     bins = _bins_of(profile, by_order, order, noise, starts)
-    sums = np.zeros((bins + 1, 6))
+    sums = np.zeros((bins + 1, _SUMS))
     for k in range(bins):
         sums[k + 1] = sums[k]
         for i in range(starts[k], starts[k + 1]):
@@ -178,12 +252,12 @@ def _cheapest(sums: _Floats, order: int, noise: float, cut: NDArray[np.int64]) -
     """Where the last piece of the cheapest cut of the first bins begins; the price of them all."""
     price = np.full(cut.size, math.inf)
     price[0] = 0.0
-    between = np.empty(6)
+    between = np.empty(_SUMS)
     for end in range(1, cut.size):
         for start in range(end - 1, -1, -1):
             if price[start] + _PIECE_PRICE >= price[end]:
                 continue
-            for j in range(6):
+            for j in range(_SUMS):
                 between[j] = sums[end, j] - sums[start, j]
             squares = _least_squares(between, order) / (noise * noise)
             if price[start] + _PIECE_PRICE + squares < price[end]:
@@ -217,15 +291,16 @@ def _bins_of(
 
 @kernel
 def _describe(profile: _Floats, chosen: NDArray[np.int64], order: int, piece: _Floats) -> None:
-    sums = np.zeros(6)
+    sums = np.zeros(_SUMS)
     mean_a, mean_aa = 0.0, 0.0
     for i in chosen:
         _add(sums, profile[i, 0], profile[i, 1])
         mean_a += profile[i, 2]
         mean_aa += profile[i, 2] ** 2
-    n = sums[0]
-    mean_u, mean_v = sums[1] / n, sums[2] / n
-    uu, uv, vv = sums[3] / n - mean_u**2, sums[4] / n - mean_u * mean_v, sums[5] / n - mean_v**2
+    n = sums[_N]
+    mean_u, mean_v = sums[_U] / n, sums[_V] / n
+    uu, vv = sums[_UU] / n - mean_u**2, sums[_VV] / n - mean_v**2
+    uv = sums[_UV] / n - mean_u * mean_v
     angle = 0.5 * math.atan2(2 * uv, uu - vv)
     if math.cos(angle) + order * math.sin(angle) < 0:
         angle += math.pi if angle < 0 else -math.pi
@@ -249,9 +324,9 @@ def _turn_frame(profile: _Floats, noise: float, pieces: _Floats, frame: _Floats)
     lever = np.empty(3)
     for j in range(3):
         matrix[j, j] = (noise / _SURE[j]) ** 2
-    right[2] = -matrix[2, 2] * frame[2]
+    right[_CURVATURE] = -matrix[_CURVATURE, _CURVATURE] * frame[_CURVATURE]
     for i in range(profile.shape[0]):
-        nearest, distance, lever_u, lever_v = -1, 4 * noise, 0.0, 0.0
+        nearest, distance, lever_u, lever_v = -1, _ON_PIECE * noise, 0.0, 0.0
         for k in range(pieces.shape[0]):
             if pieces[k, _NUMBER] < _FEWEST_TO_TURN:
                 continue
@@ -264,10 +339,10 @@ def _turn_frame(profile: _Floats, noise: float, pieces: _Floats, frame: _Floats)
         if nearest < 0:
             continue
         a, mean_a = profile[i, 2], pieces[nearest, _MEAN_A]
-        lever[0] = lever_u * (a - mean_a)
-        lever[1] = lever_v * (a - mean_a)
-        lever[2] = lever_u * (a * a - pieces[nearest, _MEAN_AA]) / 2
-        weight = 1 / (1 + (distance / (2 * noise)) ** 2)
+        lever[_HEADING] = lever_u * (a - mean_a)
+        lever[_GRADE] = lever_v * (a - mean_a)
+        lever[_CURVATURE] = lever_u * (a * a - pieces[nearest, _MEAN_AA]) / 2
+        weight = 1 / (1 + (distance / (_FAR * noise)) ** 2)
         for j in range(3):
             right[j] += weight * lever[j] * distance
             for k in range(3):
@@ -306,7 +381,7 @@ def _next_piece(pieces: _Floats, k: int, noise: float, along: float) -> int:
     for other in range(k + 1, pieces.shape[0]):
         piece = pieces[other]
         if (
-            piece[_NUMBER] >= 3
+            piece[_NUMBER] >= _LEAST_OF_PIECE
             and piece[_LENGTH] >= _SHORTEST_M
             and piece[_SPREAD] <= _ROUGHEST * noise
             and piece[_MEAN_AA] - piece[_MEAN_A] ** 2 >= (_LEAST_ALONG * along) ** 2
@@ -328,17 +403,18 @@ def _crossing(before: _Floats, after: _Floats, order: int, corner: _Floats) -> i
     c2, s2 = math.cos(after[_ANGLE]), math.sin(after[_ANGLE])
     du, dv = after[_MEAN_U] - before[_MEAN_U], after[_MEAN_V] - before[_MEAN_V]
     sine = c1 * s2 - s1 * c2
-    if abs(sine) < 0.1:
+    if abs(sine) < _LEAST_SINE:
         return 0
     along = (du * s2 - dv * c2) / sine
     back = (du * s1 - dv * c1) / sine
     # Beyond a piece's end there may be the spacing of the points, not a missing surface.
-    reach_before = before[_LAST] + 0.03 + 0.3 * before[_LENGTH]
-    reach_after = after[_FIRST] - 0.03 - 0.3 * after[_LENGTH]
+    reach_before = before[_LAST] + _BEYOND_M + _BEYOND_SHARE * before[_LENGTH]
+    reach_after = after[_FIRST] - _BEYOND_M - _BEYOND_SHARE * after[_LENGTH]
     if along > reach_before or back < reach_after:
         return 0
     short, long = (before, after) if before[_LENGTH] < after[_LENGTH] else (after, before)
-    if abs(sine) * short[_LENGTH] < _SIGNIFICANT * long[_SPREAD] * math.sqrt(12 / short[_NUMBER]):
+    unsure = long[_SPREAD] * math.sqrt(_OF_SPAN / short[_NUMBER])
+    if abs(sine) * short[_LENGTH] < _SIGNIFICANT * unsure:
         return 0
     arm = min(min(before[_LENGTH], after[_LENGTH]), LONGEST_ARM_M)
     if arm < _ROUNDING_M:
@@ -366,7 +442,7 @@ def _jump(before: _Floats, after: _Floats, order: int, noise: float, corners: _F
     cos, sin = math.cos(after[_ANGLE]), math.sin(after[_ANGLE])
     start_u, start_v = after[_MEAN_U] + after[_FIRST] * cos, after[_MEAN_V] + after[_FIRST] * sin
     height = (end_u - start_u) * sin - (end_v - start_v) * cos
-    if abs(height) < _LEAST_JUMP * noise or abs(end_u - start_u) > 3 * abs(height):
+    if abs(height) < _LEAST_JUMP * noise or abs(end_u - start_u) > _STEEPEST_JUMP * abs(height):
         return 0
     if end_u > start_u:
         # The surfaces overlap a little: an upright face between them.

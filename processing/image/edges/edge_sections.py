@@ -14,6 +14,7 @@ from processing.image.edges.edge_kernels import (
     CORNER_COLUMNS,
     HEIGHT,
     MOST_CORNERS,
+    SectionLimits,
     corners_kernel,
 )
 
@@ -27,17 +28,56 @@ LEAST_STRENGTH_M = 0.010
 """An edge bends the surface at least so far from the straight: sine of the bend times the shorter
 of the two surfaces (10 cm at most). Steps of 2 cm and more are well above it, joints below."""
 
-_FEWEST = 30  # points from which a direction and a profile can be told
+# "By trial": chosen while the tool was made; no measurement of the single value is recorded.
+
+_FEWEST = 30
+"""Points from which a direction and a profile follow. By trial."""
+
 _ENOUGH, _MOST = 160, 300
+"""Points that are enough for a profile, of which the nearest along the edge are taken; more make it
+slower, not better. By trial."""
+
 _LEAST_ALONG_M = 0.2
-_NEIGHBOURS = 20  # points in the circle from which a normal is found
-_NOISE_M = 0.004  # how far points of a line scanner lie off a smooth surface
+"""Half the shortest length of edge: several rows of any drive. By trial."""
+
+_NEIGHBOURS, _LEAST_RADIUS_M = 20, 0.08
+"""Points in the circle from which a normal is found, and its least radius: a normal of 20 points
+with 4 mm of noise over 8 cm is sure to about a degree."""
+
+_THINNEST, _STEEPEST_LEVEL = 0.02, 0.7
+"""Second to first eigenvalue from which neighbours are a surface and no row; an edge whose
+direction is less level than this share is taken as level: 45°. By trial."""
+
+_NOISE_M = 0.004
+"""How far points of a line scanner lie off a smooth surface, usually: 3 to 5 mm."""
+
 _NOISE_MARGIN, _MOST_NOISE_M = 1.1, 0.008
-_MOST_SPREAD_M = 0.020  # beyond: plants, parts of several things
+"""Where they lie farther off the noise is taken so much larger than found, at most the second. By
+trial."""
+
+_MOST_SPREAD_M = 0.020
+"""Beyond: plants, parts of several things. By trial."""
+
+_MOST_HEIGHT_M = 0.5
+"""Half the height that is looked at, as the radius."""
+
 _TRIED_HEADINGS = np.radians(np.arange(-15.0, 15.1, 2.5))
-_ROUGH_BINS = 160
+"""About the direction of the normals, which is sure to some degrees; the frame settles within
+6°."""
+
+_ROUGH_BINS, _ROUGH_SPAN, _MOST_OFF = 160, 3.0, 6.0
+"""Bins along the profile, over so many radii (2 √2 at most): 9 mm; points weigh no more than at so
+many noises off it."""
+
 _DENSE_M, _EVENLY_FILLED = 0.015, 0.5
-_FOLDED = math.radians(110.0)  # sharper bends come from rows that don't fit on one profile
+"""Points are expected on all places of this width across the edge; where fewer than this share of
+those that chance would fill are, rows run along it. By trial."""
+
+_FOLDED = math.radians(110.0)
+"""Sharper bends come from rows that don't fit on one profile. By trial."""
+
+_LEAST_SQUARE = 1e-9
+"""Guard of a division."""
 
 
 @dataclass(frozen=True)
@@ -90,7 +130,7 @@ def section_at(xyz: _Floats, center: _Floats) -> EdgeProfile | None:
 
     Returns
     -------
-    Section or None
+    EdgeProfile or None
         None where there are too few points or they are no surfaces.
     """
     local = xyz - center
@@ -121,10 +161,11 @@ def section_along(
 ) -> EdgeProfile | None:
     """The profile of points about the origin when the direction of the edge is nearly known."""
     corners = np.empty((MOST_CORNERS, CORNER_COLUMNS))
+    along, across = reach
     noise = _NOISE_M
     for _ in range(2):
         turned = frame.copy()
-        limits = np.array([reach[0], reach[1], min(0.5, reach[1]), noise, order])
+        limits = SectionLimits(along, across, min(_MOST_HEIGHT_M, across), noise, order)
         count, price, spread = corners_kernel(local, limits, turned, corners)
         if not math.isfinite(price):
             return None
@@ -164,15 +205,15 @@ def _first_frame(local: _Floats) -> _Floats:
     step = max(1, local.shape[0] // _ENOUGH)
     thinned = local[::step]
     spacing = math.sqrt(math.pi * float((thinned[:, :2] ** 2).sum(axis=1).max()) / len(thinned))
-    scatters = _scatters(thinned, max(0.08, spacing * math.sqrt(_NEIGHBOURS / math.pi)))
+    scatters = _scatters(thinned, max(_LEAST_RADIUS_M, spacing * math.sqrt(_NEIGHBOURS / math.pi)))
     values, vectors = np.linalg.eigh(scatters)
-    is_surface = values[:, 1] > 0.02 * values[:, 2]
+    is_surface = values[:, 1] > _THINNEST * values[:, 2]
     if not is_surface.any():
         return np.zeros(3)
     normals = vectors[is_surface, :, 0]
     along = np.linalg.eigh(normals.T @ normals)[1][:, 0]
     level = math.hypot(along[0], along[1])
-    grade = float(along[2]) / level if level > 0.7 else 0.0
+    grade = float(along[2]) / level if level > _STEEPEST_LEVEL else 0.0
     heading = math.atan2(along[1], along[0])
     return np.array([heading, grade, 0.0])
 
@@ -200,7 +241,7 @@ def _roughness(local: _Floats, frames: _Floats) -> _Floats:
     for order in (1, -1):
         # Along the order of the profile, and square to it.
         s, w = (u + order * v) / math.sqrt(2), (v - order * u) / math.sqrt(2)
-        position = ((s / PATCH_M + 1.5) / 3.0 * _ROUGH_BINS).astype(np.int64)
+        position = ((s / PATCH_M + _ROUGH_SPAN / 2) / _ROUGH_SPAN * _ROUGH_BINS).astype(np.int64)
         flat = (
             np.clip(position, 0, _ROUGH_BINS - 1) + np.arange(len(s))[:, None] * _ROUGH_BINS
         ).ravel()
@@ -216,9 +257,9 @@ def _roughness(local: _Floats, frames: _Floats) -> _Floats:
         sw = three[4] - three[1] * three[2] / count
         ww = three[5] - three[2] ** 2 / count
         # Straight pieces as functions of s: none can run across the order.
-        left = ww - sw**2 / np.maximum(ss, 1e-9)
+        left = ww - sw**2 / np.maximum(ss, _LEAST_SQUARE)
         usable = np.where(three[0] > 2, sums[0, :, 1:-1], 0.0)
-        squares = np.minimum(left / np.maximum(three[0] - 2, 1.0), (6 * _NOISE_M) ** 2)
+        squares = np.minimum(left / np.maximum(three[0] - 2, 1.0), (_MOST_OFF * _NOISE_M) ** 2)
         costs.append((usable * squares).sum(axis=1) / np.maximum(usable.sum(axis=1), 1.0))
     return np.asarray(np.minimum(costs[0], costs[1]))
 

@@ -1,6 +1,6 @@
 """Edges of the cloud near a measured point: what snapping asks of the image.
 
-Neighbours come from the pulses: a few pulses before and after, in this turn and in the turns
+Neighbours come from the pulses: a few pulses before and after, in this revolution and in those
 around it (cells and rows of cells in a top view). All else is measured in metres.
 """
 
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,19 +33,47 @@ _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
 
 _NONE = -1
-_TRUSTED_M = 0.25  # edges farther from the middle of a patch are left to the next patch
-_MOST_REACH_M = 2.0
-_APART_M = 0.24
-_ACROSS_AGAIN_M = (0.25, 0.15)  # half widths of the second look
+"""No point."""
+
+# "By trial": chosen while the tool was made; no measurement of the single value is recorded.
+
+_TRUSTED_M = 0.25
+"""Edges farther from the middle of a patch are left to the next patch: half of its radius."""
+
+_MOST_REACH_M, _APART_M = 2.0, 0.24
+"""How far a row is followed to either side, and how far apart patches are along it: half a patch,
+so that each place is near the middle of one."""
+
+_FARTHER = 1.2
+"""Points are read again where a step needs so many times the radius of a patch."""
+
+_ACROSS_AGAIN_M = (0.25, 0.15)
+"""Half widths of the second look, m: with one edge only, and closer. By trial."""
+
 _SAME_M = 0.05
-# Of fewer points a patch is cut to splinters now and then, which only look like low edges; real
-# ones are found as steps.
+"""An edge seen again lies within so much of where it was: less than half a face. By trial."""
+
 _DENSE, _LEAST_WHERE_SPARSE_M = 90, 0.06
+"""Of fewer points a patch is cut to splinters now and then, which only look like low edges; real
+ones are found as steps, and only edges at least so strong, m, as profiles. By trial."""
+
 _COMPARABLE = 0.5
-_AS_NEAR = 0.05  # a metre along the row counts like so much off an edge
+"""Edges at least so strong, as a share of the strongest, are alike: of them the nearest is
+taken."""
+
+_AS_NEAR = 0.05
+"""A metre along the row counts like so much off an edge."""
+
 _ON_EDGE_M = 0.05
-_LEAST_CUT = 0.2  # sine of the angle at which a row must cut an edge
-_COMPANY, _COMPANY_M = 3, 0.05  # others that lie so near a point bear it out
+"""A row that runs along an edge is on it within so much. By trial."""
+
+_LEAST_CUT, _TANGENT_POINTS = 0.2, 3
+"""Sine of the angle at which a row must cut an edge (12°), its direction being taken over so many
+points to either side. By trial."""
+
+_COMPANY, _COMPANY_M, _COMPANY_SPACINGS = 3, 0.05, 2.0
+"""So many others that lie within this, or within so many spacings, bear a point out: returns from
+below the surface come alone."""
 
 
 @dataclass(frozen=True)
@@ -167,7 +195,7 @@ def _extreme_point(drive: Drive, point: int, radius_m: float, sign: float) -> in
     inside = np.flatnonzero(np.hypot(away[:, 0], away[:, 1]) <= radius_m)
     inside = inside[np.abs(away[inside, 2]) <= radius_m]
     spacing = math.sqrt(math.pi / max(1, inside.size)) * radius_m
-    company = max(_COMPANY_M, 2.0 * spacing)
+    company = max(_COMPANY_M, _COMPANY_SPACINGS * spacing)
     for candidate in inside[np.argsort(-sign * away[inside, 2], kind="stable")]:
         distances = np.linalg.norm(away - away[candidate], axis=1)
         if int((distances <= company).sum()) > _COMPANY:
@@ -204,7 +232,7 @@ def _edges_beside(xyz: _Floats, row: _Row, center: _Floats, within_px: int) -> l
     edges = []
     for k, seen in again.items():
         if seen is None and strengths[k] >= _COMPARABLE * LONGEST_ARM_M:
-            seen = section.positions[k], section.direction, float(strengths[k])
+            seen = _SeenEdge(section.positions[k], section.direction, float(strengths[k]))
         if seen is not None and (edge := _passing(row, seen, within_px)) is not None:
             edges.append(edge)
     return edges
@@ -215,7 +243,7 @@ def _around_row(drive: Drive, point: int, reach_m: float) -> tuple[_Integers, _F
     around = neighbours(drive, point, reach_m + PATCH_M)
     xyz = drive.xyz(around)
     needed = reach_needed(xyz, xyz[np.searchsorted(around, point)])
-    if needed > 1.2 * PATCH_M:
+    if needed > _FARTHER * PATCH_M:
         around = neighbours(drive, point, reach_m + needed)
         xyz = drive.xyz(around)
     return around, xyz
@@ -226,16 +254,24 @@ def _edges_of_step(xyz: _Floats, row: _Row, step: EdgeStep, within_px: int) -> l
     again = step_at(xyz, row.nearest_on(*step.edges[0]))
     step = again if isinstance(again, EdgeStep) else step
     strength = max(step.height_m, _COMPARABLE * LONGEST_ARM_M)
-    passing = [_passing(row, (*edge, strength), within_px) for edge in step.edges]
+    passing = [_passing(row, _SeenEdge(*edge, strength), within_px) for edge in step.edges]
     return [edge for edge in passing if edge is not None]
 
 
-def _passing(row: _Row, seen: tuple[_Floats, _Floats, float], within_px: int) -> _Edge | None:
+class _SeenEdge(NamedTuple):
+    """An edge: a place of it, m, its direction, its strength, m."""
+
+    position: _Floats
+    direction: _Floats
+    strength_m: float
+
+
+def _passing(row: _Row, seen: _SeenEdge, within_px: int) -> _Edge | None:
     """The edge, if the row cuts it within the pixels; a row that runs along it doesn't."""
     position, direction, strength = seen
     off = _off_line(row.xyz, position, direction)
     nearest = row.nearest_to(position, direction)
-    first, last = max(0, nearest - 3), min(off.size - 1, nearest + 3)
+    first, last = max(0, nearest - _TANGENT_POINTS), min(off.size - 1, nearest + _TANGENT_POINTS)
     tangent = row.xyz[last, :2] - row.xyz[first, :2]
     sine = abs(tangent[0] * direction[1] - tangent[1] * direction[0])
     is_cut = sine >= _LEAST_CUT * float(np.linalg.norm(row.xyz[last] - row.xyz[first]))
@@ -244,9 +280,7 @@ def _passing(row: _Row, seen: tuple[_Floats, _Floats, float], within_px: int) ->
     return _Edge(position, direction, strength, float(off[row.middle]))
 
 
-def _seen_again(
-    xyz: _Floats, row: _Row, section: EdgeProfile, corner: int
-) -> tuple[_Floats, _Floats, float] | None:
+def _seen_again(xyz: _Floats, row: _Row, section: EdgeProfile, corner: int) -> _SeenEdge | None:
     """The same corner in a narrow profile where the row cuts it; None where it isn't there."""
     position = row.nearest_on(section.positions[corner], section.direction)
     local = xyz - position
@@ -265,7 +299,7 @@ def _seen_again(
         if strengths.max(initial=0.0) > 0:
             k = int(strengths.argmax())
             strength = max(float(strengths[k]), float(section.corners[corner, STRENGTH]))
-            return position + again.positions[k], again.direction, strength
+            return _SeenEdge(position + again.positions[k], again.direction, strength)
     return None
 
 

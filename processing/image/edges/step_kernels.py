@@ -9,6 +9,7 @@ the ends of a dropped curb, where the upper edge falls by 13 cm within 0.7 m.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,32 +25,114 @@ BASE, GRADE, LEFT, RIGHT, JUMP, TWIST, POSITION, WIDTH, HEADING = range(9)
 """The unknowns of a step: height at the lower end, m; grade along; slopes before and beyond;
 height of the face, m, and its rise along; where the face begins across, and how wide it is, m;
 heading, rad."""
+
 UNKNOWNS = 9
 _LINEAR = 6
+"""Unknowns, and those in which a sharp step is linear: all but place, width and heading."""
+
+_OFF, _SURE, _WEIGHT = range(3)
+"""Of a fit: see `fit_step`."""
+
+_N, _U, _V, _A, _UU, _UV, _UA, _VA, _AA = range(9)
+_SUMS = 9
+"""Sums over points of 1, u, v, a, u², uv, ua, va, a²."""
+
+_POINTS, _WEIGHTS, _SQUARES, _FACE_POINTS, _FACE_WEIGHTS = range(5)
+"""Sums over the points of a fit: number, weights, squares, number and weights at the face."""
+
+# "By trial": chosen while the tool was made; no measurement of the single value is recorded.
 
 LEAST_STEP_M = 0.012
 """Lower steps aren't told from joints of slabs."""
+
 MOST_STEP_M = 0.25
+"""Higher ones have faces of many points, and are found as profiles."""
+
 ACROSS_M = 0.30
-"""Half the width of what is looked at."""
+"""Half the width of what is looked at: gutters and narrow tops of 12 cm lie within."""
 
 _FEWEST, _FEWEST_BESIDE = 18, 7
+"""Points of a patch, twice its unknowns, and on either side of a step. By trial."""
+
 _HEADINGS, _FINER = 36, math.radians(2.5)
+"""Tried over half a circle, 5° apart, then half as far: over half a metre 2.5° moves an end by 2
+cm, a face's width."""
+
 _BIN_M, _BINS = 0.01, 60
-_MOST_CUTS = 18  # bins between face and place: a surface of 12 cm is left on either side
+"""Places tried across, m: 60 cm in all."""
+
+_MOST_CUTS = 18
+"""Bins between face and place: a surface of 12 cm is left on either side."""
+
 _NOISE_M, _LEAST_NOISE_M, _MOST_NOISE_M = 0.004, 0.003, 0.008
+"""How far points of a line scanner lie off a surface, usually, at least and at most: as in
+`edge_sections`, where smooth surfaces and single scanners scatter less."""
+
 _OFF_PLANE_M, _MOST_OFF_PLANE = 0.20, 0.25
-_TRIED = 0.5  # steps so much lower and less sure in the scan are fitted: a face isn't sharp
-_LEAST_WEIGHT = 0.7  # mean weight of the points in the fit; with normal noise it is 0.8
-_FLAT_NOISES, _PLAIN = 1.6, 0.97  # noises off the surface; share of the points on it
-_LEAST_KINK = 0.2  # what bends more is left to the profile
-_LEAST_JUMP, _LEAST_SURE = 2.5, 5.5  # in noises; in standard deviations of the jump
-_FACE_M, _FACE_SURE_M = 0.025, 0.015  # widths of low faces in plan
+"""Points farther from the plane of most are of other things; where so many are, it is none. By
+trial."""
+
+_PLANE_ROUNDS, _FIRST_SCALE_M, _SCALE_M = 6, 0.1, 0.02
+"""Of the robust plane, and the distance at which a point weighs half (Cauchy), at first and
+then."""
+
+_LEAST_WEIGHTS, _LEAST_INFORMATION, _LEAST_SQUARE = 1e-6, 1e-3, 1e-9
+"""Guards of equations and divisions: of the plane, of the fit, of weights and squares, m²."""
+
+_LEAST_PIVOT = 1e-12
+"""Guard of elimination, as a share of the diagonal."""
+
+_TRIED = 0.5
+"""Steps so much lower and less sure in the scan are fitted: a face isn't sharp."""
+
+_VARIANCE = 16.0
+"""Of a jump in the middle of two sloping surfaces of n points: 16 σ²/n."""
+
+_LEAST_WEIGHT = 0.7
+"""Mean weight of the points in the fit; with normal noise it is 0.8."""
+
+_FLAT_NOISES, _PLAIN = 1.6, 0.97
+"""A patch is flat within so many noises, if this share of its points is on it. By trial."""
+
+_LEAST_KINK = 0.2
+"""Difference of slopes: what bends more is left to the profile. By trial."""
+
+_LEAST_JUMP, _LEAST_SURE = 2.5, 5.5
+"""Of a jump in noises, and in its standard deviations: over 2,000 places and headings are tried, so
+that three would be passed by chance. With these at most 0.3 % of the clicks on the carriageway away
+from edges find one."""
+
+_FACE_M, _FACE_SURE_M = 0.025, 0.015
+"""Width of low faces in plan and its standard deviation, before their points are asked. By
+trial."""
+
 _NARROWEST_M, _WIDEST_M, _BESIDE_FACE_M = 0.003, 0.15, 0.05
+"""Bounds of the width in a fit; points so near to the face are asked for their weight too. By
+trial."""
+
 _POSITION_SURE_M, _HEADING_SURE, _TWIST_SURE = 0.03, 0.10, 0.3
+"""Standard deviations of what the scan gives: place, heading, rad, and of the twist about none: of
+ramps it is 13 cm within 0.7 m, 0.19. By trial."""
+
 _COARSENESS = (3.0, 2.0, 1.5, 1.0, 1.0, 1.0, 1.0, 1.0)
-_STEEPEST = 0.30  # of the surfaces beside a step
-_LEAST_FACE = 0.35  # rise per metre of a face beyond that of its surfaces
+"""Noise is taken so many times as large in each round, so that the fit is led in."""
+
+_FAR = 2.0
+"""A point off by so many noises weighs half (Cauchy)."""
+
+_STEEPEST = 0.30
+"""Slope of the surfaces beside a step: steeper ones are no ground. By trial."""
+
+_LEAST_FACE = 0.35
+"""Rise per metre of a face beyond that of its surfaces. By trial."""
+
+
+class _FitLimits(NamedTuple):
+    """Half the length looked at, noise, m; by how much it is taken larger."""
+
+    along: float
+    noise: float
+    coarseness: float
 
 
 @kernel
@@ -96,10 +179,10 @@ def is_step(step: _Floats, fit: _Floats) -> bool:
     """Whether a fitted step is one: high, steep and sure enough, between gentle surfaces."""
     beside = max(abs(step[LEFT]), abs(step[RIGHT]))
     return bool(
-        max(LEAST_STEP_M, _LEAST_JUMP * fit[0]) <= step[JUMP] <= MOST_STEP_M
-        and fit[0] <= _MOST_NOISE_M
-        and fit[1] >= _LEAST_SURE
-        and fit[2] >= _LEAST_WEIGHT
+        max(LEAST_STEP_M, _LEAST_JUMP * fit[_OFF]) <= step[JUMP] <= MOST_STEP_M
+        and fit[_OFF] <= _MOST_NOISE_M
+        and fit[_SURE] >= _LEAST_SURE
+        and fit[_WEIGHT] >= _LEAST_WEIGHT
         and beside <= _STEEPEST
         and step[JUMP] >= (_LEAST_FACE + beside) * step[WIDTH]
     )
@@ -112,17 +195,17 @@ def _near_plane(local: _Floats, surface: _Floats) -> int:
     matrix, right = np.zeros((3, 3)), np.zeros(3)
     row = np.empty(3)
     count = 0
-    for turn in range(6):
+    for number in range(_PLANE_ROUNDS):
         matrix[:] = 0.0
         right[:] = 0.0
-        scale = 0.02 if turn else 0.1
+        scale = _SCALE_M if number else _FIRST_SCALE_M
         for i in range(local.shape[0]):
             row[0], row[1], row[2] = 1.0, local[i, 0], local[i, 1]
             off = local[i, 2] - plane[0] - plane[1] * row[1] - plane[2] * row[2]
             weight = 1 / (1 + (off / scale) ** 2)
             _add(matrix, right, row, weight, local[i, 2])
         for j in range(3):
-            matrix[j, j] += 1e-6
+            matrix[j, j] += _LEAST_WEIGHTS
         if not _solve(matrix, right, plane, 3):
             return 0
     for i in range(local.shape[0]):
@@ -140,7 +223,7 @@ def _scan(surface: _Floats, along: float, step: _Floats) -> float:
     The unknown of the width holds how sure the jump is, in its standard deviations. −1 where too
     few points lie beside any place.
     """
-    sums, system = np.empty((_BINS + 1, 9)), np.empty((_LINEAR + 1, _LINEAR))
+    sums, system = np.empty((_BINS + 1, _SUMS)), np.empty((_LINEAR + 1, _LINEAR))
     unknowns = np.empty(_LINEAR)
     least, best_cut, best_heading, count = math.inf, _BINS // 2, 0.0, 0.0
     for turn in range(2):
@@ -154,9 +237,9 @@ def _scan(surface: _Floats, along: float, step: _Floats) -> float:
         for k in range(headings):
             heading = k * math.pi / _HEADINGS if turn == 0 else middle + (k - 1) * _FINER
             total = _sum_up(surface, along, heading, sums)
-            n = sums[_BINS, 0]
+            n = sums[_BINS, _N]
             for cut in range(first, last + 1, stride):
-                if min(sums[cut, 0], n - sums[cut, 0]) < _FEWEST_BESIDE:
+                if min(sums[cut, _N], n - sums[cut, _N]) < _FEWEST_BESIDE:
                     continue
                 squares = _try_cut(sums, total, cut, system, unknowns)
                 if squares < least:
@@ -165,8 +248,7 @@ def _scan(surface: _Floats, along: float, step: _Floats) -> float:
     if count == 0:
         return -1.0
     step[POSITION], step[HEADING] = best_cut * _BIN_M - ACROSS_M, best_heading
-    # For a jump in the middle of two sloping surfaces: variance 16 σ²/n.
-    step[WIDTH] = abs(step[JUMP]) * math.sqrt(count / (16 * least))
+    step[WIDTH] = abs(step[JUMP]) * math.sqrt(count / (_VARIANCE * least))
     if step[JUMP] < 0:
         _turn_round(step)
     return math.sqrt(least)
@@ -182,7 +264,7 @@ def _try_cut(sums: _Floats, total: float, cut: int, system: _Floats, unknowns: _
     for j in range(_LINEAR):
         total -= unknowns[j] * right[j]
     # Per point: other headings take in other points.
-    return float(max(total, 1e-9) / max(1.0, sums[_BINS, 0] - _LINEAR - 1))
+    return float(max(total, _LEAST_SQUARE) / max(1.0, sums[_BINS, _N] - _LINEAR - 1))
 
 
 @kernel
@@ -209,18 +291,18 @@ def _sum_up(surface: _Floats, along: float, heading: float, sums: _Floats) -> fl
             continue
         v = surface[i, 2]
         bin_sums = sums[int((u + ACROSS_M) / _BIN_M) + 1]
-        bin_sums[0] += 1
-        bin_sums[1] += u
-        bin_sums[2] += v
-        bin_sums[3] += a
-        bin_sums[4] += u * u
-        bin_sums[5] += u * v
-        bin_sums[6] += u * a
-        bin_sums[7] += v * a
-        bin_sums[8] += a * a
+        bin_sums[_N] += 1
+        bin_sums[_U] += u
+        bin_sums[_V] += v
+        bin_sums[_A] += a
+        bin_sums[_UU] += u * u
+        bin_sums[_UV] += u * v
+        bin_sums[_UA] += u * a
+        bin_sums[_VA] += v * a
+        bin_sums[_AA] += a * a
         total += v * v
     for k in range(_BINS):
-        for j in range(9):
+        for j in range(_SUMS):
             sums[k + 1, j] += sums[k, j]
     return total
 
@@ -230,13 +312,13 @@ def _normal_equations(sums: _Floats, cut: int, matrix: _Floats, right: _Floats) 
     """Of height over 1, a, u before the cut, u beyond it, 1 beyond it, a beyond it."""
     c = cut * _BIN_M - ACROSS_M
     whole, before = sums[_BINS], sums[cut]
-    n, u, a, uu, ua = before[0], before[1], before[3], before[4], before[6]
-    m, w, b = whole[0] - n, whole[1] - u, whole[3] - a
-    ww, wb, bb = whole[4] - uu, whole[6] - ua, whole[8] - before[8]
+    n, u, a, uu, ua = before[_N], before[_U], before[_A], before[_UU], before[_UA]
+    m, w, b = whole[_N] - n, whole[_U] - u, whole[_A] - a
+    ww, wb, bb = whole[_UU] - uu, whole[_UA] - ua, whole[_AA] - before[_AA]
     matrix[:] = 0.0
-    matrix[0, 0], matrix[0, 1], matrix[0, 2] = whole[0], whole[3], u - c * n
+    matrix[0, 0], matrix[0, 1], matrix[0, 2] = whole[_N], whole[_A], u - c * n
     matrix[0, 3], matrix[0, 4], matrix[0, 5] = w - c * m, m, b
-    matrix[1, 1], matrix[1, 2] = whole[8], ua - c * a
+    matrix[1, 1], matrix[1, 2] = whole[_AA], ua - c * a
     matrix[1, 3], matrix[1, 4], matrix[1, 5] = wb - c * b, b, bb
     matrix[2, 2] = uu - 2 * c * u + c * c * n
     matrix[3, 3] = ww - 2 * c * w + c * c * m
@@ -245,10 +327,10 @@ def _normal_equations(sums: _Floats, cut: int, matrix: _Floats, right: _Floats) 
     for j in range(_LINEAR):
         for k in range(j):
             matrix[j, k] = matrix[k, j]
-    right[0], right[1] = whole[2], whole[7]
-    right[2] = before[5] - c * before[2]
-    right[4], right[5] = whole[2] - before[2], whole[7] - before[7]
-    right[3] = whole[5] - before[5] - c * right[4]
+    right[0], right[1] = whole[_V], whole[_VA]
+    right[2] = before[_UV] - c * before[_V]
+    right[4], right[5] = whole[_V] - before[_V], whole[_VA] - before[_VA]
+    right[3] = whole[_UV] - before[_UV] - c * right[4]
 
 
 @kernel
@@ -269,33 +351,34 @@ def fit_step(surface: _Floats, along: float, step: _Floats, fit: _Floats) -> Non
     system, change, sums = np.zeros((UNKNOWNS + 1, UNKNOWNS)), np.zeros(UNKNOWNS), np.zeros(5)
     matrix, right = system[:UNKNOWNS], system[UNKNOWNS]
     for coarseness in _COARSENESS:
-        _sum_rows(surface, (along, noise, coarseness), step, system, sums)
+        _sum_rows(surface, _FitLimits(along, noise, coarseness), step, system, sums)
         _hold(matrix, right, POSITION, begin - step[POSITION], _POSITION_SURE_M)
         _hold(matrix, right, WIDTH, _FACE_M - step[WIDTH], max(_FACE_SURE_M, step[JUMP] / 2))
         _hold(matrix, right, HEADING, heading - step[HEADING], _HEADING_SURE)
         _hold(matrix, right, TWIST, -step[TWIST], _TWIST_SURE)
         for j in range(UNKNOWNS):
-            matrix[j, j] += 1e-3
+            matrix[j, j] += _LEAST_INFORMATION
         if not _solve(matrix, right, change, UNKNOWNS):
-            fit[0], fit[1], fit[2] = math.inf, 0.0, 0.0
+            fit[_OFF], fit[_SURE], fit[_WEIGHT] = math.inf, 0.0, 0.0
             return
         for j in range(UNKNOWNS):
             step[j] += change[j]
         step[WIDTH] = min(_WIDEST_M, max(_NARROWEST_M, step[WIDTH]))
-        fit[0] = math.sqrt(sums[2] / (sums[1] + 1e-9))
-        noise = max(_LEAST_NOISE_M, min(_MOST_NOISE_M, fit[0]))
+        fit[_OFF] = math.sqrt(sums[_SQUARES] / (sums[_WEIGHTS] + _LEAST_SQUARE))
+        noise = max(_LEAST_NOISE_M, min(_MOST_NOISE_M, fit[_OFF]))
     right[:] = 0.0
     right[JUMP] = 1.0
     _solve(matrix, right, change, UNKNOWNS)
-    fit[1], fit[2] = step[JUMP] / math.sqrt(change[JUMP]), sums[1] / max(sums[0], 1.0)
-    if sums[3] >= _FEWEST_BESIDE:
-        fit[2] = min(fit[2], sums[4] / sums[3])
+    fit[_SURE] = step[JUMP] / math.sqrt(change[JUMP])
+    fit[_WEIGHT] = sums[_WEIGHTS] / max(sums[_POINTS], 1.0)
+    if sums[_FACE_POINTS] >= _FEWEST_BESIDE:
+        fit[_WEIGHT] = min(fit[_WEIGHT], sums[_FACE_WEIGHTS] / sums[_FACE_POINTS])
 
 
 @kernel
 def _sum_rows(
     surface: _Floats,
-    limits: tuple[float, float, float],
+    limits: _FitLimits,
     step: _Floats,
     system: _Floats,
     sums: _Floats,
@@ -314,13 +397,13 @@ def _sum_rows(
         slope = _row_of(step, a, u, surface[i, 2], row)
         off, steepness = surface[i, 2] - row[POSITION], 1 + slope * slope
         row[POSITION] = -slope
-        weight = 1 / (1 + off * off / (steepness * (2 * noise * coarseness) ** 2))
-        sums[0] += 1
-        sums[1] += weight
-        sums[2] += weight * off * off / steepness
+        weight = 1 / (1 + off * off / (steepness * (_FAR * noise * coarseness) ** 2))
+        sums[_POINTS] += 1
+        sums[_WEIGHTS] += weight
+        sums[_SQUARES] += weight * off * off / steepness
         if -_BESIDE_FACE_M < u - step[POSITION] < step[WIDTH] + _BESIDE_FACE_M:
-            sums[3] += 1
-            sums[4] += weight
+            sums[_FACE_POINTS] += 1
+            sums[_FACE_WEIGHTS] += weight
         factor = weight / (noise * noise * steepness)
         _add(system[:UNKNOWNS], system[UNKNOWNS], row, factor, off)
 
@@ -379,7 +462,7 @@ def _solve(matrix: _Floats, right: _Floats, unknowns: _Floats, size: int) -> boo
         left = matrix[j, j]
         for k in range(j):
             left -= lower[j, k] * lower[j, k]
-        if left <= 1e-12 * matrix[j, j] or left <= 0:
+        if left <= _LEAST_PIVOT * matrix[j, j] or left <= 0:
             return False
         lower[j, j] = math.sqrt(left)
         for i in range(j + 1, size):

@@ -13,12 +13,28 @@ from processing.recording.kinds import ImageKind
 Floats = NDArray[np.float64]
 
 _POINTS_A_ROW = 8
+"""Points below the vehicle that stand for a row: their median passes over a single stray. By trial;
+no measurement is recorded."""
+
 _MOST_ROWS = 4_000
+"""Rows that are asked, over a whole drive: one every 2.5 m of 10 km, read in a moment."""
+
 _BESIDE_M = 3.0
+"""What lies so near to the vehicle's path in plan is road: a lane."""
+
 _SMOOTHED = 9
+"""Rows of a running median: a parked car beside the path stands out of it. By trial; no measurement
+is recorded."""
+
 _SAMPLES = 24
+"""Places along a path at which its height above the ground is asked; their median counts."""
+
 _USUAL_DROP_M = 2.0
+"""Of a vehicle's reference point above the road, where nothing was measured below it: on a car's
+roof."""
+
 _FARTHEST_M = 100.0
+"""Farther from the path no height of the ground is known, and nothing is cut off above it."""
 
 
 def ground_along(drive: Drive) -> Floats:

@@ -20,8 +20,11 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 _MOST_REMEMBERED = 48
+"""Tiles whose points are kept: more than a view shows at a time."""
+
 _SURFACE_M = 0.1
-"""What lies no deeper below the highest point is the same surface, which scatters."""
+"""What lies no deeper below the highest point, m, is the same surface, which scatters. As in
+`ray_hits`."""
 
 
 @dataclass(frozen=True)

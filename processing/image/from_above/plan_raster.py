@@ -16,10 +16,17 @@ from processing.core.kernels import kernel
 Floats = NDArray[np.float64]
 
 CEILING_PX = 16
-"""Side of the squares of pixels that have one ceiling."""
+"""Side of the squares of pixels that have one ceiling: heights of ground change little over it on
+the screen, and asking for each pixel would take 256 times as long."""
 
 NO_POINT = -1
+"""Of a pixel without a point."""
+
+_HALF_PX, _HALF_DIAGONAL_PX = 0.5, 0.75
+"""Of a pixel: half its side, and half its diagonal (0.71) rounded up."""
+
 _OPAQUE = 255
+"""Alpha of a filled pixel, 8 bits."""
 
 
 @dataclass(frozen=True)
@@ -85,7 +92,7 @@ class PlanSnapshot:
         frame = self.frame
         x = (easting - frame.west) * frame.px_per_m
         y = (frame.north - northing) * frame.px_per_m
-        reach = max(reach_m * frame.px_per_m, 0.5)
+        reach = max(reach_m * frame.px_per_m, _HALF_PX)
         columns = _within(x, reach, frame.width)
         rows = _within(y, reach, frame.height)
         window = self.points[rows, columns]
@@ -96,7 +103,7 @@ class PlanSnapshot:
         away = np.where(window == NO_POINT, np.inf, np.hypot(down[:, None], right[None, :]))
         best = int(away.argmin())
         # A pixel is there as soon as the place lies in it.
-        if away.flat[best] > reach + 0.75:
+        if away.flat[best] > reach + _HALF_DIAGONAL_PX:
             return None
         return int(self.drives[rows, columns].flat[best]), int(window.flat[best])
 

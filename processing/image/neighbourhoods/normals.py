@@ -18,9 +18,11 @@ from processing.image.neighbourhoods.neighbourhood_kernels import (
 from processing.image.rows.grid import PixelGrid
 
 VOTING_ROWS = 8
-"""Rows on either side that have a say in which side of a surface the scanner saw."""
+"""Rows on either side that have a say in which side of a surface the scanner saw: as many as
+neighbours come from."""
 
 _POINTS_AT_ONCE = 65_536
+"""Some 30 MB with all that is worked out, and short enough for a cancel to be felt at once."""
 
 OVERLAP_ROWS = VOTING_ROWS + MOST_ROWS_ASIDE + 1
 """Rows beyond its own that a block needs to give the same normals as the whole recording."""

@@ -17,7 +17,17 @@ if TYPE_CHECKING:  # processing.recording.drive makes images, so importing it he
 _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
 
+_SPAN_PART, _NEAR_PART, _LEAST_SPAN = 4, 8, 2
+"""In a row beside, points are looked for within a quarter of a revolution to either side of the
+same direction, and rows are told apart by an eighth: beyond it beams look elsewhere. Two pulses at
+least."""
+
+_MOST_STRIDE = 256
+"""Rows are taken no farther apart: a vehicle that waits longer is looked at no closer."""
+
 _ROWS_ASIDE = 16
+"""Rows to either side that are taken; where more lie within the radius, as where a vehicle waits,
+every second, fourth … row is."""
 
 
 def neighbours(drive: Drive, point: int, radius_m: float) -> _Integers:
@@ -32,7 +42,7 @@ def neighbours(drive: Drive, point: int, radius_m: float) -> _Integers:
     """
     pulses = drive.columns["pulse"]
     period = _pulses_per_row(drive)
-    here, span = int(pulses[point]), max(2, int(period / 4))
+    here, span = int(pulses[point]), max(_LEAST_SPAN, int(period / _SPAN_PART))
     stride, aside = rows_to_take(drive, point, radius_m)
     middles = here + np.rint(period * stride * np.arange(-aside, aside + 1)).astype(np.int64)
     edges = np.searchsorted(pulses, np.concatenate([middles - span, middles + span + 1]))
@@ -54,9 +64,9 @@ def rows_to_take(drive: Drive, point: int, radius_m: float) -> tuple[int, int]:
     pulses = drive.columns["pulse"]
     period = _pulses_per_row(drive)
     here, position = int(pulses[point]), drive.xyz(np.array([point]))[0]
-    span = max(2, int(period / 8))
+    span = max(_LEAST_SPAN, int(period / _NEAR_PART))
     stride = 1
-    while stride < 256:
+    while stride < _MOST_STRIDE:
         for side in (1, -1):
             middle = here + round(side * stride * period)
             start, stop = np.searchsorted(pulses, [middle - span, middle + span + 1])

@@ -14,12 +14,26 @@ _Integers = NDArray[np.int64]
 _Floats = NDArray[np.float64]
 
 _COLUMNS_ASIDE = 3
+"""A neighbour in the next row is looked for so many columns to either side: rows are shifted by a
+pixel or two. By trial; no measurement is recorded."""
+
 _POINTS_AHEAD = 2
-_SAMPLED = 4  # every fourth point of a row tells how far the next row lies
+"""Next points of a row that are tried: one stray may lie between two of a surface."""
+
+_SAMPLED = 4
+"""Every fourth point of a row tells how far the next row lies: a median needs no more."""
+
 _FEWEST = 8
+"""Points that must tell it. By trial; no measurement is recorded."""
+
 _FAR = 1e30
-_CHORD_M = 0.15  # length over which the direction of a row is taken
+"""m; stands for: there is no neighbour."""
+
+_CHORD_M = 0.15
+"""Length over which the direction of a row is taken: noise of 4 mm turns it by 2 degrees."""
+
 _CHORD_POINTS = 40
+"""Points at most for it, which bounds the time where they are dense."""
 
 
 class JoiningRows(NamedTuple):

@@ -22,6 +22,7 @@ OVERLAP_ROWS = 1
 """Rows beyond its own that a block needs so that no join between rows is missed."""
 
 _POINTS_AT_ONCE = 200_000
+"""Some tens of MB with all that is worked out, and short enough for a cancel to be felt at once."""
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from processing.image.rows.rows_of_kind import RowPlan
 
 STOP_S = 1.0
-"""A longer time without a point is a stop, a shorter one missing returns."""
+"""A longer time without a point is a stop, a shorter one missing returns: open sky lasts a fraction
+of a revolution. As `LONGEST_MISSING_S` of `pulse_clock`."""
 
 
 def close_gaps(

@@ -33,8 +33,10 @@ from processing.recording.kinds import ImageKind
 _Integers = NDArray[np.int64]
 
 _POINTS_AT_ONCE = 4_000_000
+"""Pulses read at a time: 32 MB."""
+
 _FEW_POINTS = 100_000
-"""Found anew sooner than read."""
+"""Rows of a recording with fewer points are found anew sooner than read."""
 
 _MADE_OF = "made_of"
 

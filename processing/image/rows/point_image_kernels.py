@@ -11,9 +11,16 @@ from processing.core.kernels import kernel
 from processing.recording.columns.counted_classes import NOISE_CODES, ClassColumns
 
 _Integers = NDArray[np.int64]
+_FIRST_ROW, _STEP, _FIRST_COLUMN, _END_COLUMN, _WIDTH = range(5)
+"""Of a window: first row, step of rows, first column, end of columns, width of the image."""
+
 _LINEAR_STEPS = 4
+"""Pulses looked through one by one before the search halves what is left: the next point mostly is
+one of them."""
+
 _LOW_NOISE, _HIGH_NOISE = NOISE_CODES
 _NONE = -1
+"""No point."""
 
 
 class PixelLayout(NamedTuple):
@@ -72,17 +79,17 @@ def raster_kernel(layout: PixelLayout, window: _Integers, raster: _Integers) -> 
     ``window``: first row, step, first column, end of columns, width of the image. False, and
     half a raster, where columns fall within a row or lie outside of the image.
     """
-    step, first_column = window[1], window[2]
+    step, first_column = window[_STEP], window[_FIRST_COLUMN]
     for i in range(raster.shape[0]):
-        row = window[0] + i * step
+        row = window[_FIRST_ROW] + i * step
         stop = layout.row_starts[row + 1]
         raster[i, :] = -1
         point, least = first_at_column(layout, row, first_column), first_column
         while point < stop:
             column = _column(layout, row, point)
-            if column < least or column >= window[4]:
+            if column < least or column >= window[_WIDTH]:
                 return False
-            if column >= window[3]:
+            if column >= window[_END_COLUMN]:
                 break
             least = column
             end = point + 1
@@ -101,17 +108,17 @@ def noiseless_raster_kernel(
     layout: PixelLayout, classes: ClassColumns, window: _Integers, raster: _Integers
 ) -> bool:
     """As :func:`raster_kernel`, but points of noise are not there."""
-    step, first_column = window[1], window[2]
+    step, first_column = window[_STEP], window[_FIRST_COLUMN]
     for i in range(raster.shape[0]):
-        row = window[0] + i * step
+        row = window[_FIRST_ROW] + i * step
         stop = layout.row_starts[row + 1]
         raster[i, :] = -1
         point, least = first_at_column(layout, row, first_column), first_column
         while point < stop:
             column = _column(layout, row, point)
-            if column < least or column >= window[4]:
+            if column < least or column >= window[_WIDTH]:
                 return False
-            if column >= window[3]:
+            if column >= window[_END_COLUMN]:
                 break
             least = column
             end = point + 1

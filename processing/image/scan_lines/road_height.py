@@ -1,7 +1,7 @@
 """How high above the road the reference point of a trajectory was carried.
 
 A trajectory may be that of the scanner, the inertial unit, an antenna or of the ground itself, so
-the points below it are asked (specification, trap 25).
+the points below it are asked.
 """
 
 from __future__ import annotations
@@ -12,15 +12,23 @@ from processing.image.scan_lines.scanline_rows import read_rows, scan_rows
 from processing.recording.drive import Drive
 from processing.recording.passes import Pass
 
-THESIS_HEIGHT_M = 2.6
+USUAL_HEIGHT_M = 2.6
 """Of the scanner above the road in Takahashi 2022, Table 6-1: taken where no point tells it."""
 
 _ROWS = 40
+"""Rows over a pass that are asked; their median counts."""
+
 _ASIDE_M = 1.5
+"""What lies so near to the path is road: under the vehicle and half a lane beside it."""
+
 _ABOVE_M = 0.5
-"""Points that are higher above the way are no road, wherever the reference point is."""
+"""Points that are higher above the path are no road, wherever the reference point is."""
+
+_LEAST_ADVANCE_M = 0.02
+"""Rows of a waiting vehicle are left out: as `ScanlineSettings.least_advance_m`."""
 
 _FEWEST = 5
+"""Points of a row below the vehicle, for a median. By trial; no measurement is recorded."""
 
 
 def height_above_road(drive: Drive, vehicle_path: Pass) -> float:
@@ -30,8 +38,10 @@ def height_above_road(drive: Drive, vehicle_path: Pass) -> float:
     most 1.5 m beside the vehicle's path.
     """
     if drive.revolutions is None:
-        return THESIS_HEIGHT_M
-    rows = scan_rows(drive.revolutions, vehicle_path, max(vehicle_path.length_m / _ROWS, 0.02))
+        return USUAL_HEIGHT_M
+    rows = scan_rows(
+        drive.revolutions, vehicle_path, max(vehicle_path.length_m / _ROWS, _LEAST_ADVANCE_M)
+    )
     heights = []
     for row in range(len(rows)):
         points = read_rows(drive, vehicle_path, rows.part(row, row + 1), rows.half_width)
@@ -39,4 +49,4 @@ def height_above_road(drive: Drive, vehicle_path: Pass) -> float:
         is_below = (np.abs(across) <= _ASIDE_M) & (above < _ABOVE_M) & ~points.arrays[5]
         if np.count_nonzero(is_below) >= _FEWEST:
             heights.append(-float(np.median(above[is_below])))
-    return float(np.median(heights)) if heights else THESIS_HEIGHT_M
+    return float(np.median(heights)) if heights else USUAL_HEIGHT_M

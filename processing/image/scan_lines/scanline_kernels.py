@@ -14,6 +14,23 @@ MeshRule = tuple[float, float, int]
 CrossingLevels = tuple[int, int, int, int]
 
 
+_BEGIN, _END, _FIRST_POINT, _FIRST_PULSE, _IS_BREAK = range(5)
+"""Columns of the ends of a row: its points, the number of the first point, the pulse of the first
+column, and whether the mesh breaks before it."""
+
+_NEXT_ROW, _OLD, _CROSSINGS, _IS_FILLED = range(4)
+"""Of the state: next row, which of the pixels' rows holds the last one, number of crossings,
+whether the next row is filled already."""
+
+_ADVANCES = 1.5
+"""Where rows are farther apart than two thirds of the longest edge, edges may be one and a half
+advances long: a triangle's diagonal over a row and a half of pulses."""
+
+_EDGES = 4.0
+"""Sections crossed by a strip between two pixels: four edges of two triangles, each at most as long
+as the longest."""
+
+
 @kernel
 def fill_row(
     pixels: Pixels,
@@ -35,18 +52,18 @@ def fill_row(
         pixel = pixels[column]
         pixel.point, pixel.crossing, pixel.is_short = -1, -1, False
     low, high = pixels.shape[0], 0
-    for i in range(ends[0], ends[1]):
+    for i in range(ends[_BEGIN], ends[_END]):
         station, across, above = found[i, 0], found[i, 1], found[i, 2]
         # Comparisons with NaN are false.
         if not (abs(station - row_station) <= band.reach_m and abs(across) <= band.half_width_m):
             continue
         if not (band.lowest_m <= above <= band.highest_m) or is_noise[i]:
             continue
-        column = pulse[i] - ends[3]
+        column = pulse[i] - ends[_FIRST_PULSE]
         if not 0 <= column < pixels.shape[0]:
             continue
         pixel = pixels[column]
-        pixel.point = i + ends[2]
+        pixel.point = i + ends[_FIRST_POINT]
         pixel.east, pixel.north, pixel.up = position[i, 0], position[i, 1], position[i, 2]
         pixel.station, pixel.across = station, across
         pixel.time, pixel.intensity = time[i], intensity[i]
@@ -311,7 +328,7 @@ def mesh_rows(
     band: MeshLimits,
     crossings: Crossings,
 ) -> None:
-    """Mesh rows from ``state[0]`` on, as long as there is room for crossings.
+    """Mesh rows from the next on, as long as there is room for crossings.
 
     ``image`` are the pixels of two rows, (2, w), and the first filled column and the one behind the
     last of each, (2, 2). ``state`` is the next row, which of the pixels' rows holds the last one,
@@ -321,22 +338,22 @@ def mesh_rows(
     """
     pixels, extents = image
     ends, stations = rows
-    for row in range(state[0], ends.shape[0]):
-        old = state[1]
+    for row in range(state[_NEXT_ROW], ends.shape[0]):
+        old = state[_OLD]
         new = 1 - old
-        state[0] = row
-        if state[3] == 0:
+        state[_NEXT_ROW] = row
+        if state[_IS_FILLED] == 0:
             fill_row(pixels[new], extents[new], points, ends[row], stations[row + 1], band)
             _join_row(pixels, extents, new, band.longest_m * band.longest_m)
-            state[3] = 1
-        if ends[row, 4] == 0:
-            longest = max(band.longest_m, 1.5 * (stations[row + 1] - stations[row]))
-            most = int(4.0 * longest / band.spacing_m) + 1
-            room = crossings.shape[0] - state[2]
+            state[_IS_FILLED] = 1
+        if ends[row, _IS_BREAK] == 0:
+            longest = max(band.longest_m, _ADVANCES * (stations[row + 1] - stations[row]))
+            most = int(_EDGES * longest / band.spacing_m) + 1
+            room = crossings.shape[0] - state[_CROSSINGS]
             if room < 4 * most * pixels.shape[1] and room < strip_bound(pixels, extents, old):
                 return
             rule = (band.spacing_m, longest * longest, most)
-            state[2] = mesh_strip(pixels, extents, old, rule, crossings, state[2])
-        state[1] = new
-        state[3] = 0
-    state[0] = ends.shape[0]
+            state[_CROSSINGS] = mesh_strip(pixels, extents, old, rule, crossings, state[_CROSSINGS])
+        state[_OLD] = new
+        state[_IS_FILLED] = 0
+    state[_NEXT_ROW] = ends.shape[0]

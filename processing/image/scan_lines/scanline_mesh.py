@@ -25,6 +25,7 @@ _ROOM, _MOST_ROOM = 1 << 13, 1 << 20
 """For crossings: so many for each section at first, and no more in all before they are needed."""
 
 _ROW, _OLD, _COUNT = 0, 1, 2
+"""Of the state: see `scanline_kernels`."""
 
 
 @dataclass(frozen=True)

@@ -26,6 +26,7 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 PULSES_AT_ONCE = 600_000
+"""Rows of one to some seconds, some 30 MB, and short enough for a cancel to be felt."""
 
 _SHARE_OF_REVOLUTION = 1 / 3
 """To either side: what is nearer to the zenith hangs above the vehicle."""

@@ -1,7 +1,7 @@
 """Normalised scanlines: sections square to the vehicle's path at a constant spacing.
 
 They are the iso-lines of the station on the triangle mesh of neighbouring pixels, so their spacing
-does not depend on speed, turn rate or mounting angle (Takahashi 2022, section 6.2).
+does not depend on speed, rotation rate or mounting angle (Takahashi 2022, section 6.2).
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ class ScanlineSettings:
         Between sections along the vehicle's path; they lie at its multiples. The thesis doesn't say
         its own.
     half_width_m : float
-        How far to either side of the way.
+        How far to either side of the path: two lanes and a walk beyond.
     longest_edge_m : float
         Triangles with a longer edge are left out; where the vehicle advances more than two thirds
         of it between two rows, those with an edge longer than one and a half advances.
@@ -73,9 +73,9 @@ class Scanlines:
     stations_m : (s,) float64
         Along the pass, rising.
     positions : (s, 3) float64
-        The way there at the height of the road, m, project CRS.
+        The path there at the height of the road, m, project CRS.
     rights : (s, 2) float64
-        Unit vector in plan to the right of the way.
+        Unit vector in plan to the right of the path.
     starts : (s + 1,) int64
     across_m : (n,) float64
         To the right of the way.

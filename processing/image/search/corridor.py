@@ -20,12 +20,27 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 _CELLS_PER_REACH = 4.0
+"""Cells of the search across a corridor: finer ones save no time. By trial; no measurement is
+recorded."""
+
 _LEAST_CELL_M = 1.0
+"""Cells are no smaller: a path has a place every metre or so."""
+
 _SEGMENTS_ASIDE = 3
+"""To either side of the nearest place of the path segments are asked: in bends the nearest place
+isn't always of the nearest segment."""
+
 _PROBES = 24
+"""Places along a path at which its height above the ground is asked; their median counts."""
+
 _LOWERED_M = 2.5
+"""The ground is looked for so far below the path: of a trajectory on a car's roof."""
+
 _PROBE_REACH_M = 4.0
-_USUAL_HEIGHT_M = 2.0  # of a vehicle's reference point, where nothing was measured below it
+"""So near to that place: a path on the road itself finds it too."""
+
+_USUAL_HEIGHT_M = 2.0
+"""Of a vehicle's reference point, where nothing was measured below it."""
 
 
 @dataclass(frozen=True)

@@ -19,7 +19,10 @@ from processing.recording.drive import Drive
 Floats = NDArray[np.float64]
 
 _POINTS_AT_ONCE = 2_000_000
+"""24 MB of coordinates, and short enough for a cancel to be felt at once."""
+
 _MOST_BANDS = 8192
+"""Bands of a drawn outline, by pixel rows of the screen: more than any screen has."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -16,7 +16,12 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 NONE = -1
+"""No point."""
+
 _FEW_POSITIONS = 8
+"""So few places are looked for one by one; a tree of the points about more is made once. By trial;
+no measurement is recorded."""
+
 _POSITIONS_TOGETHER = 128
 """So few that the points about them are looked through while a window waits."""
 _SLACK_M = 2.0

@@ -7,6 +7,7 @@ are kept that may be the one in the end.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,10 +23,50 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 TOLERANCE_PX = 6.0
+"""How near to a pixel a point must be drawn to be meant: about what a hand misses by. By trial; no
+measurement is recorded."""
+
 CLOSE_PX = 2.0
+"""Points so near are preferred, and hide what lies behind: a drawn point is 2 to 4 pixels wide. By
+trial; no measurement is recorded."""
+
 _DEPTH, _OFFSET, _POINT, _CLOUD = range(4)
+"""Columns of what is found: depth, m; offset, px; index of the point; number of its cloud."""
+
 _SURFACE_M = 0.1
+"""So far behind its front-most point a surface still is the same one: what scatters on rough ground
+and grass. By trial; no measurement is recorded."""
+
 _SURFACE_SHARE = 0.02
+"""The same as a share of the depth, where points lie farther apart. By trial; no measurement is
+recorded."""
+
+
+class _HitLimits(NamedTuple):
+    """What counts as a hit.
+
+    Attributes
+    ----------
+    x, y : float
+        The pixel.
+    nearest : float
+        What has a smaller w isn't seen.
+    tolerance_px, close_px : float
+        How near to the pixel points must be, and from where on they hide others.
+    front_m : float
+        Depth of the deepest point that counts.
+    surface_m, surface_share : float
+        How thick a surface is: at least, and as a share of the depth.
+    """
+
+    x: float
+    y: float
+    nearest: float
+    tolerance_px: float
+    close_px: float
+    front_m: float
+    surface_m: float
+    surface_share: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -166,11 +207,20 @@ class RayHits:
         if len(close):
             self.front_m = _behind(float(close[0, _DEPTH]))
 
-    def _limits(self, *, is_clipped: bool) -> Floats:
+    def _limits(self, *, is_clipped: bool) -> _HitLimits:
         # What is clipped off must not hide what lies behind.
         close_px = -1.0 if is_clipped else CLOSE_PX
-        ends = [self._sight.nearest, TOLERANCE_PX, close_px, self.front_m]
-        return np.array([*self._sight.pixel, *ends, _SURFACE_M, _SURFACE_SHARE])
+        x, y = self._sight.pixel
+        return _HitLimits(
+            float(x),
+            float(y),
+            float(self._sight.nearest),
+            TOLERANCE_PX,
+            close_px,
+            float(self.front_m),
+            _SURFACE_M,
+            _SURFACE_SHARE,
+        )
 
 
 def _behind(depth_m: float) -> float:
@@ -183,17 +233,15 @@ def hits_kernel(
     xyz: NDArray[np.int32] | NDArray[np.float32],
     stretches: NDArray[np.int64],
     matrix: NDArray[np.float64],
-    limits: NDArray[np.float64],
+    limits: _HitLimits,
     found: NDArray[np.float64],
 ) -> int:
     """Points of stretches of a recording, or of places in memory, near a pixel; says how many.
 
-    ``limits``: pixel, least w, tolerance, what is close, deepest point that counts, and how thick
-    a surface is. Each close point brings the deepest that counts nearer. ``found``: depth,
-    offset, point.
+    Each close point brings the deepest that counts nearer. ``found``: depth, offset, point.
     """
-    x, y, nearest, tolerance = limits[0], limits[1], limits[2], limits[3]
-    front, count = limits[5], 0
+    x, y, nearest, tolerance = limits.x, limits.y, limits.nearest, limits.tolerance_px
+    front, count = limits.front_m, 0
     for k in range(stretches.shape[0]):
         for i in range(stretches[k, 0], stretches[k, 1]):
             a, b, c = float(xyz[i, 0]), float(xyz[i, 1]), float(xyz[i, 2])
@@ -209,10 +257,11 @@ def hits_kernel(
             offset = np.sqrt(across * across + down * down) / w
             depth = matrix[3, 0] * a + matrix[3, 1] * b + matrix[3, 2] * c + matrix[3, 3]
             if offset <= tolerance and depth <= front:
-                found[count, 0], found[count, 1], found[count, 2] = depth, offset, i
+                found[count, _DEPTH], found[count, _OFFSET], found[count, _POINT] = depth, offset, i
                 count += 1
-                if offset <= limits[4]:
-                    front = min(front, depth + max(limits[6], limits[7] * depth))
+                if offset <= limits.close_px:
+                    thick = max(limits.surface_m, limits.surface_share * depth)
+                    front = min(front, depth + thick)
     return count
 
 
@@ -223,20 +272,20 @@ def merge_kernel(found: NDArray[np.float64], kept: NDArray[np.float64], kept_cou
     What is neither nearer to the eye nor to the pixel than another is dropped.
     """
     for i in range(found.shape[0]):
-        depth, offset = found[i, 0], found[i, 1]
+        depth, offset = found[i, _DEPTH], found[i, _OFFSET]
         low, high = 0, kept_count
         while low < high:
             middle = (low + high) // 2
-            if kept[middle, 0] <= depth:
+            if kept[middle, _DEPTH] <= depth:
                 low = middle + 1
             else:
                 high = middle
-        if low > 0 and kept[low - 1, 1] <= offset:
+        if low > 0 and kept[low - 1, _OFFSET] <= offset:
             continue
-        if low > 0 and kept[low - 1, 0] == depth:
+        if low > 0 and kept[low - 1, _DEPTH] == depth:
             low -= 1
         end = low
-        while end < kept_count and kept[end, 1] >= offset:
+        while end < kept_count and kept[end, _OFFSET] >= offset:
             end += 1
         moved = low + 1 - end
         _move(kept, end, kept_count, moved)
@@ -257,7 +306,7 @@ def warm_up() -> None:
     """Compile the kernels for mapped columns, which are read-only."""
     xyz, found = np.zeros((1, 3), np.int32), np.zeros((1, 4))
     xyz.flags.writeable = False
-    matrix, limits = np.eye(4), np.zeros(8)
+    matrix, limits = np.eye(4), _HitLimits(*[0.0] * 8)
     hits_kernel(xyz, np.array([[0, 1]]), matrix, limits, found)
     hits_kernel(np.zeros((1, 3), np.float32), np.array([[0, 1]]), matrix, limits, found)
     merge_kernel(found, np.zeros((2, 4)), 0)

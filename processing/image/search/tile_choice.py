@@ -18,6 +18,7 @@ from processing.image.tiles.tile_descent import (
     LINE,
     MET_VALUES,
     ROW,
+    SpendingLimits,
     choice_kernel,
     descent_kernel,
 )
@@ -28,7 +29,8 @@ Floats = NDArray[np.float64]
 Triple = tuple[float, float, float]
 
 FINE_ENOUGH_PX = 1.0
-"""Tiles whose points are closer than this on the screen need no finer ones."""
+"""Tiles whose points are closer than this on the screen need no finer ones: no pixel would show
+more."""
 
 
 @dataclass(frozen=True)
@@ -138,7 +140,7 @@ def tiles_in_view(
             is_shown[own] = clip.corridor.may_hold(facts[:, LOWEST], facts[:, HIGHEST])
     is_chosen = np.zeros(len(tiles), np.bool_)
     roots = ends[:-1][np.diff(ends) > 0].astype(np.int64)
-    limits = np.array([FINE_ENOUGH_PX, float(budget_points)])
+    limits = SpendingLimits(FINE_ENOUGH_PX, float(budget_points))
     choice_kernel(tiles, roots, is_shown, limits, is_chosen)
     chosen = np.flatnonzero(is_chosen)
     chosen = chosen[np.argsort(-tiles[chosen, LEVEL], kind="stable")]

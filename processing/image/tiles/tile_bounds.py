@@ -31,12 +31,27 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 PORTION_POINTS = 1_000_000
-_ROWS_TOGETHER = 8  # the pass takes distances in every so manyth row, to the row that follows
+"""Points that one step of the pass reads: 12 MB, short enough for views to wait."""
+
+_ROWS_TOGETHER = 8
+"""The pass takes distances in every so manyth row, to the row that follows: as `_SAMPLED_ROWS` of
+`tile_kernels`."""
+
 _KEPT_EVERY_S = 3.0
-_SMALL_POINTS = 500_000  # known exactly sooner than it would be told twice
+"""What is known is written so often: lost at most that much of a pass."""
+
+_SMALL_POINTS = 500_000
+"""A recording with fewer points is known exactly sooner than it would be sketched first."""
+
 _MOST_SAMPLES = 4096
+"""Tiles for which a sketch reads points, so that it takes the same time for any length."""
+
 _ROOM = 0.15
+"""Share of its diagonal by which the box of a sketched tile is made larger. By trial; no
+measurement is recorded."""
+
 _LEAST_ROOM_M = 0.5
+"""The same at least: what stands up between two samples. By trial; no measurement is recorded."""
 
 
 class TileBounds:

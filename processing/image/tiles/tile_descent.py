@@ -7,6 +7,7 @@ lead on to finer ones.
 from __future__ import annotations
 
 import heapq
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,12 +16,36 @@ from processing.core.kernels import kernel
 from processing.image.tiles.tile_kernels import TILE
 
 LINE, LEVEL, ROW, COLUMN, GAP_PX, PIXELS, FIRST, END = range(8)
-"""Columns of what was met on the way: its line in the pyramid's facts, the tile, how far its
-points are apart on the screen, how many it has, and the stretch of its children in the same list.
-"""
+"""Columns of what was met on the way down: its line in the pyramid's facts, the tile, how far its
+points are apart on the screen, how many it has, and where its children begin and end in the same
+list."""
 
 MET_VALUES = 8
+
+_SCALE, _IS_PARALLEL, _FINE_ENOUGH_PX, _WANTS_ALL = range(3, 7)
+"""Of an eye, behind its place: pixels per metre one metre in front of it; whether it sees in
+parallel; the gap that is fine enough; whether it wants points that no pixel shows."""
+
+_DIRECTION, _RADIUS, _WIDENING, _LEAST_DEPTH = 3, 6, 7, 8
+"""Of a ray, behind its beginning: where its direction begins; radius of the cone about it at its
+beginning, m, and how much wider it gets with each metre; the least depth."""
+
+_HIGHEST, _COUNT, _ROW_STEP, _COLUMN_STEP, _POINTS = 3, 6, 7, 8, 9
+"""Of a box: where its highest corner begins, and its counts, as in `tile_kernels`."""
+
 _MORE = 1.02
+"""A tile has more points than pixels if there are so many times as many: for less a finer level is
+not worth its loading. By trial; no measurement is recorded."""
+
+_NEAREST_M, _LEAST_SLOPE = 1e-3, 1e-12
+"""Guards of divisions: of an eye within a box, of a ray square to an axis."""
+
+
+class SpendingLimits(NamedTuple):
+    """The gap that is fine enough, px, and how many points may be spent on wider ones."""
+
+    fine_enough_px: float
+    most_points: float
 
 
 @kernel
@@ -47,14 +72,14 @@ def descent_kernel(
     while at < count:
         level, row, column = int(met[at, LEVEL]), int(met[at, ROW]), int(met[at, COLUMN])
         met[at, FIRST] = count
-        if level > 0 and met[at, GAP_PX] > eye[5]:
+        if level > 0 and met[at, GAP_PX] > eye[_FINE_ENOUGH_PX]:
             for i in range(2 * row, min(2 * row + 2, shapes[level - 1, 0])):
                 for j in range(2 * column, min(2 * column + 2, shapes[level - 1, 1])):
                     line = shapes[level - 1, 2] + i * shapes[level - 1, 1] + j
                     if _is_seen(facts[line], planes):
                         _put(facts, shapes, eye, (level - 1, i, j), met[count])
                         count += 1
-        if level == 0 and eye[6] and met[at, GAP_PX] > eye[5]:
+        if level == 0 and eye[_WANTS_ALL] and met[at, GAP_PX] > eye[_FINE_ENOUGH_PX]:
             count = _put_all(facts[int(met[at, LINE])], met, at, count)
         met[at, END] = count
         at += 1
@@ -66,13 +91,10 @@ def choice_kernel(
     met: NDArray[np.float64],
     roots: NDArray[np.int64],
     is_shown: NDArray[np.bool_],
-    limits: NDArray[np.float64],
+    limits: SpendingLimits,
     is_chosen: NDArray[np.bool_],
 ) -> None:
-    """Choose tiles among those met: the widest gaps are filled first, until points run out.
-
-    ``limits``: the gap that is fine enough, and how many points may be spent.
-    """
+    """Choose tiles among those met: the widest gaps are filled first, until points run out."""
     spent = 0.0
     waiting = [(0.0, 0)]
     waiting.clear()
@@ -87,7 +109,8 @@ def choice_kernel(
             if is_shown[child]:
                 more += met[child, PIXELS]
                 children += 1
-        if -gap <= limits[0] or children == 0 or spent + more > limits[1]:
+        is_over = spent + more > limits.most_points
+        if -gap <= limits.fine_enough_px or children == 0 or is_over:
             is_chosen[tile] = True
             continue
         spent += more
@@ -107,7 +130,7 @@ def ray_kernel(
 
     ``ray``: where it begins, its direction so long that it goes one metre deep, the cone's radius
     at its beginning and how much wider it gets with each metre. ``met``: row, column, depth of
-    the entry, which is never less than ``ray[8]``; each (tiles of the finest level).
+    the entry, which is never less than the least depth; each (tiles of the finest level).
     """
     waiting = [(shapes.shape[0] - 1, 0, 0)]
     count = 0
@@ -130,35 +153,35 @@ def ray_kernel(
 @kernel
 def entry_depth(box: NDArray[np.float64], ray: NDArray[np.float64]) -> float:
     """Where a cone enters a box (lowest, highest corner); infinite where it misses it."""
-    if box[0] > box[3]:
+    if box[0] > box[_HIGHEST]:
         return np.inf
     reach = 0.0
     for axis in range(3):
-        reach += max(abs(box[axis] - ray[axis]), abs(box[3 + axis] - ray[axis])) ** 2
-    margin = ray[6] + ray[7] * np.sqrt(reach)
+        reach += max(abs(box[axis] - ray[axis]), abs(box[_HIGHEST + axis] - ray[axis])) ** 2
+    margin = ray[_RADIUS] + ray[_WIDENING] * np.sqrt(reach)
     enter, leave = -np.inf, np.inf
     for axis in range(3):
-        direction = ray[3 + axis]
-        if abs(direction) < 1e-12:
-            direction = 1e-12
+        direction = ray[_DIRECTION + axis]
+        if abs(direction) < _LEAST_SLOPE:
+            direction = _LEAST_SLOPE
         first = (box[axis] - margin - ray[axis]) / direction
-        second = (box[3 + axis] + margin - ray[axis]) / direction
+        second = (box[_HIGHEST + axis] + margin - ray[axis]) / direction
         enter, leave = max(enter, min(first, second)), min(leave, max(first, second))
-    if leave < enter or leave <= ray[8]:
+    if leave < enter or leave <= ray[_LEAST_DEPTH]:
         return np.inf
-    return float(max(enter, ray[8]))
+    return float(max(enter, ray[_LEAST_DEPTH]))
 
 
 @kernel
 def _is_seen(box: NDArray[np.float64], planes: NDArray[np.float64]) -> bool:
     """Whether a box that isn't empty has its most inward corner within each of the planes."""
-    if box[0] > box[3]:
+    if box[0] > box[_HIGHEST]:
         return False
     for plane in range(planes.shape[0]):
         reached = 0.0
         for axis in range(3):
             normal = planes[plane, axis]
-            reached += normal * (box[axis] if normal > 0 else box[3 + axis])
+            reached += normal * (box[axis] if normal > 0 else box[_HIGHEST + axis])
         if reached > planes[plane, 3]:
             return False
     return True
@@ -178,29 +201,29 @@ def _put(
     box = facts[line]
     away, size = 0.0, 0.0
     for axis in range(3):
-        away += max(0.0, box[axis] - eye[axis], eye[axis] - box[3 + axis]) ** 2
-        size += (box[3 + axis] - box[axis]) ** 2
+        away += max(0.0, box[axis] - eye[axis], eye[axis] - box[_HIGHEST + axis]) ** 2
+        size += (box[_HIGHEST + axis] - box[axis]) ** 2
     # Gaps across rows are the wider ones nearly everywhere, and the ones that show.
-    spacing = max(box[7], box[8]) * 2.0**level
+    spacing = max(box[_ROW_STEP], box[_COLUMN_STEP]) * 2.0**level
     if spacing == 0.0:
         spacing = np.sqrt(size) / TILE
-    divisor = 1.0 if eye[4] else max(np.sqrt(away), 1e-3)
+    divisor = 1.0 if eye[_IS_PARALLEL] else max(np.sqrt(away), _NEAREST_M)
     met[LINE], met[LEVEL], met[ROW], met[COLUMN] = line, level, row, column
-    met[PIXELS] = box[6]
+    met[PIXELS] = box[_COUNT]
     # A tile without points of its own may stand above some that have points.
-    met[GAP_PX] = spacing * eye[3] / divisor if box[6] > 0 else np.inf
-    if level == 0 and eye[6] and box[6] > 0:
+    met[GAP_PX] = spacing * eye[_SCALE] / divisor if box[_COUNT] > 0 else np.inf
+    if level == 0 and eye[_WANTS_ALL] and box[_COUNT] > 0:
         # Points stacked in a pixel are a surface on edge, whose gaps its neighbours don't tell.
-        met[GAP_PX] *= box[9] / box[6]
+        met[GAP_PX] *= box[_POINTS] / box[_COUNT]
 
 
 @kernel
 def _put_all(box: NDArray[np.float64], met: NDArray[np.float64], tile: int, count: int) -> int:
     """Below a tile itself with all its points, if those are more; says how many are met now."""
-    if box[9] <= _MORE * box[6]:
+    if box[_POINTS] <= _MORE * box[_COUNT]:
         return count
     met[count] = met[tile]
-    met[count, LEVEL], met[count, GAP_PX], met[count, PIXELS] = -1.0, 0.0, box[9]
+    met[count, LEVEL], met[count, GAP_PX], met[count, PIXELS] = -1.0, 0.0, box[_POINTS]
     return count + 1
 
 
@@ -211,5 +234,5 @@ def warm_up() -> None:
     met = np.zeros((2, MET_VALUES))
     count = descent_kernel(facts, shapes, np.ones(7), np.zeros((1, 4)), met)
     flags = np.ones(count, np.bool_)
-    choice_kernel(met, np.zeros(1, np.int64), flags, np.ones(2), flags)
+    choice_kernel(met, np.zeros(1, np.int64), flags, SpendingLimits(1.0, 1.0), flags)
     ray_kernel(facts, shapes, np.ones(9), met)

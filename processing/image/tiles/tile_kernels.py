@@ -15,11 +15,16 @@ POINTS = 9
 VALUES = 10
 """Columns of the table of tiles; behind them lie the weights of the two distances."""
 
+_ALONG_ROWS, _ACROSS_ROWS, _ALONG_WEIGHT, _ACROSS_WEIGHT = 7, 8, 10, 11
+"""Columns of the two steps, along rows and across, and of their weights."""
+
 _TILE_BITS = 8
+"""256 pixels: a picture of 200 kB, loaded in some milliseconds."""
 TILE = 1 << _TILE_BITS
 """Rows and columns of a tile."""
 
-_SAMPLED_ROWS = 8  # distances are taken in every eighth row: a mean needs no more
+_SAMPLED_ROWS = 8
+"""Distances are taken in every eighth row: a mean needs no more."""
 
 
 @kernel
@@ -48,7 +53,7 @@ def tile_kernel(
                 value = xyz[point, axis]
                 values[axis] = min(values[axis], value)
                 values[3 + axis] = max(values[3 + axis], value)
-            values[9] += 1
+            values[POINTS] += 1
         for level in range(tile_columns.size):
             if row & ((1 << level) - 1):
                 break
@@ -74,7 +79,7 @@ def _count_pixels(
     for point in range(start, stop):
         column = columns[point] >> level
         if column != last:
-            table[tiles + (column >> _TILE_BITS), 6] += 1
+            table[tiles + (column >> _TILE_BITS), COUNT] += 1
             last = column
 
 
@@ -95,13 +100,13 @@ def _sum_steps(
         values = table[tiles + (columns[point] >> _TILE_BITS)]
         right = point + 1
         if right < stop and columns[right] == columns[point] + 1:
-            values[7] += _root_distance(xyz, scale, point, right)
-            values[10] += 1
+            values[_ALONG_ROWS] += _root_distance(xyz, scale, point, right)
+            values[_ALONG_WEIGHT] += 1
         while below < after and columns[below] < columns[point]:
             below += 1
         if below < after and columns[below] == columns[point]:
-            values[8] += _root_distance(xyz, scale, point, below)
-            values[11] += 1
+            values[_ACROSS_ROWS] += _root_distance(xyz, scale, point, below)
+            values[_ACROSS_WEIGHT] += 1
 
 
 @kernel

@@ -22,6 +22,7 @@ from processing.recording.columns.coordinates import Coordinates
 from processing.recording.columns.counted_classes import ClassColumns
 
 _FEW_PIXELS = 4096
+"""The coarsest level has no more pixels, so that a hundred drives can be drawn together."""
 
 
 @dataclass(frozen=True, order=True)

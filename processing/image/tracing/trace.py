@@ -37,10 +37,21 @@ _NO_LINE = Text(
 )
 _SPARSE = Text("The points become sparse here.", "ここで点がまばらになっています。")
 _LOST = Text("The edge can't be made out here.", "ここで縁を判別できなくなりました。")
+_AHEAD_REACH_M = 0.4
+"""About a place ahead of where a line was lost points are counted."""
+
 _FEW_POINTS = 12
+"""Of fewer there no profile could be made: points are sparse, else the line is lost."""
+
 _REACHED_M, _LOOKED_AHEAD_M = 1.0, 0.75
+"""An end is reached within the first; why a line was lost is looked for so far ahead: three steps.
+By trial; no measurement is recorded."""
+
 _MOST_STARTS = 4
-_UNSEEN_M = 0.10  # a line that isn't found at one click passes it by so much, maybe
+"""Lines near the first click that are tried: both edges of a curb and two more."""
+
+_UNSEEN_M = 0.10
+"""A line that isn't found at one click passes it by so much, maybe."""
 
 
 @dataclass(frozen=True)
@@ -224,4 +235,4 @@ def _thinned(xyz: _Floats) -> _Integers:
 
 
 def _reason(cloud: PointsBetween, ahead: _Floats) -> Text:
-    return _SPARSE if cloud.near(ahead, 0.4).size < _FEW_POINTS else _LOST
+    return _SPARSE if cloud.near(ahead, _AHEAD_REACH_M).size < _FEW_POINTS else _LOST

@@ -24,14 +24,36 @@ from processing.image.tracing.trace_search import TracePoint, off_line
 
 _Floats = NDArray[np.float64]
 
-_BESIDE_M = 0.12  # lines this near to a click are meant
+_BESIDE_M = 0.12
+"""Lines this near to a click are meant: less than half the height of a curb beside its other edge.
+By trial; no measurement is recorded."""
+
 _LOOKED_AROUND_M = (0.0, 0.3, 0.6)
+"""Where nothing is found at a click sections are made so far around it, m. By trial; no measurement
+is recorded."""
+
 _ACROSS_M = (0.25, 0.12)
+"""Half widths of the section, m: as `_ACROSS_AGAIN_M` of `edges`, somewhat closer. By trial; no
+measurement is recorded."""
+
 _UNLIKE = math.radians(30.0)
+"""Directions before and after an edge that differ by this much together are as unlike as one
+standard deviation. By trial; no measurement is recorded."""
+
 _MOST_UNLIKE = 3.0
+"""In half squares of that: two and a half standard deviations."""
+
 _ALIKE = 0.3
+"""Where an edge so like is found, the closer section is not made. By trial; no measurement is
+recorded."""
+
 _SEEN_M = 0.2
+"""A place of an edge has a measured point so near, else it is made up. By trial; no measurement is
+recorded."""
+
 _MOST_POINTS, _FEW_POINTS = 400, 90
+"""Points of a section at most, for the time; from so few on points are looked for farther around:
+as `_DENSE` of `edges`."""
 
 
 class EdgeFollower:

@@ -15,17 +15,42 @@ from processing.image.tracing.trace_search import TracePoint
 _Floats = NDArray[np.float64]
 
 MIDDLE, LEFT, RIGHT = 0.0, 1.0, -1.0
-"""Which line of the stripe is followed; left and right in the direction of the way."""
+"""Which line of the stripe is followed; left and right in the direction of the trace."""
 
 _REACH_M = 0.5
+"""A stripe is looked for so far around a click: half of the widest and some road. By trial; no
+measurement is recorded."""
+
 _ALONG_M = 0.3
-_NARROWEST_M, _WIDEST_M = 0.05, 0.60  # markings are 10 to 45 cm wide
+"""Half the length of line that is looked at: several rows. By trial; no measurement is recorded."""
+
+_NARROWEST_M, _WIDEST_M = 0.05, 0.60
+"""Markings are 10 to 45 cm wide."""
+
 _FEWEST, _FEWEST_BRIGHT = 20, 5
-_LEAST_CONTRAST = 2.5  # difference of the means in standard deviations
+"""Points of a profile, and bright and dark ones among them. By trial; no measurement is
+recorded."""
+
+_LEAST_CONTRAST = 2.5
+"""Difference of the means of bright and dark points, in standard deviations. By trial; no
+measurement is recorded."""
+
 _FLATTEST_M = 0.02
-_WIDTH_M = 0.06  # a stripe may change its width so much from place to place
+"""Points lie within so much of a plane, standard deviation: a marking is on the road. By trial; no
+measurement is recorded."""
+
+_ROAD_M, _LEAST_SPREAD = 0.15, 1e-9
+"""Road beside a stripe that is looked at too, m; guard where all are equally bright."""
+
+_WIDTH_M = 0.06
+"""A stripe may change its width so much from place to place: a spacing of points on either side."""
+
 _BESIDE_M = 0.12
-_PURE = 0.75  # so much of the stripe is bright, and of what is beside it dark
+"""As in `trace_edges`."""
+
+_PURE = 0.75
+"""So much of the stripe is bright, and of what is beside it dark. By trial; no measurement is
+recorded."""
 
 
 class MarkingFollower:
@@ -63,7 +88,7 @@ class MarkingFollower:
     ) -> Sequence[tuple[TracePoint, float]]:
         """The line again near an expected place, with how unlike the stripe's width is."""
         side, width = expected.look
-        stripe = self._stripe(_middle(expected), width / 2 + slack_m + 0.15)
+        stripe = self._stripe(_middle(expected), width / 2 + slack_m + _ROAD_M)
         if stripe is None:
             return []
         found = _line(stripe, side)
@@ -125,7 +150,7 @@ def _bright(intensity: _Floats) -> NDArray[np.bool_] | None:
         return None
     spread = math.hypot(float(intensity[is_bright].std()), float(intensity[~is_bright].std()))
     contrast = float(intensity[is_bright].mean() - intensity[~is_bright].mean())
-    return is_bright if contrast > _LEAST_CONTRAST * max(spread, 1e-9) else None
+    return is_bright if contrast > _LEAST_CONTRAST * max(spread, _LEAST_SPREAD) else None
 
 
 def _borders(across: _Floats, is_bright: NDArray[np.bool_]) -> tuple[float, float] | None:

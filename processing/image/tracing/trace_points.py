@@ -17,10 +17,20 @@ _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
 
 _CELL_M = 0.25
-_BESIDE_M = 1.5  # rows so far before the start and beyond the end are taken in
+"""Cells of the plan by which points are found: half the radius of a section. It changes only the
+time."""
+
+_BESIDE_M = 1.5
+"""Rows so far before the start and beyond the end are taken in."""
+
 _DETOUR, _DETOUR_M = 1.3, 4.0
+"""A line between two clicks may be so much longer than the straight one: as in `trace_search`."""
+
 _AT_ONCE = 1_000_000
+"""Points read at a time: 12 MB."""
+
 _LOOKED_AROUND_M = (0.1, 0.5)
+"""The measured point at a place is looked for within the first, then the second."""
 
 
 class PointsBetween:

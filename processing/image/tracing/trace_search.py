@@ -1,6 +1,6 @@
-"""The way along an edge or a marking: a shortest path over the places where it is found again.
+"""The line along an edge or a marking: a shortest path over the places where it is found again.
 
-The search doesn't walk blindly on: every place that was found waits with the price of the way to
+The search doesn't walk blindly on: every place that was found waits with the price of the path to
 it and the distance still to go, and the cheapest goes on first (A*). So a branch that leads astray
 is left when another one comes nearer to the end.
 """
@@ -20,18 +20,37 @@ from numpy.typing import NDArray
 _Floats = NDArray[np.float64]
 
 STEP_M = 0.25
-"""Places are looked for at this distance from each other."""
+"""Places are looked for at this distance from each other: half a section, so that neighbours share
+points."""
 
 HOLE_M = 1.0
-"""A line isn't followed over more than this without finding it again."""
+"""A line isn't followed over more than this without finding it again: beyond it another edge may
+begin. By trial; no measurement is recorded."""
 
-_SLACK_M, _SLACK_RATIO = 0.03, 0.20  # how far off the way ahead a line may go on
-_SHARPEST_TURN = math.radians(20.0)  # at one step; a curb's smallest radius is about 0.7 m
+_SLACK_M, _SLACK_RATIO = 0.03, 0.20
+"""How far off what lies straight ahead a line may go on: at once, m, and per metre (11°). By trial;
+no measurement is recorded."""
+
+_SHARPEST_TURN = math.radians(20.0)
+"""At one step: a curb's smallest radius is about 0.7 m."""
+
 _CELL_M = 0.08
+"""Places found in one cell, in one direction, are one: less than half a step."""
+
 _DETOUR, _DETOUR_M = 1.3, 4.0
-_HOLE_PRICE = 3.0  # a metre without the line is as dear as three more with it
+"""A line may be so much longer than the straight one, a share and m: round a corner. By trial; no
+measurement is recorded."""
+
+_HOLE_PRICE = 3.0
+"""A metre without the line is as dear as three more with it. By trial; no measurement is
+recorded."""
+
 _DEAREST = 3.0
+"""Times the longest line that is followed: dearer ones are given up. By trial; no measurement is
+recorded."""
+
 _MOST_POSITIONS = 20_000
+"""Places found before a search ends: 5 km of line, some seconds."""
 
 
 @dataclass(frozen=True)

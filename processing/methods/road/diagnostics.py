@@ -1,4 +1,4 @@
-"""Diagnostics: places that a tool looked at and the tests that decided there, for people to read."""
+"""Diagnostics: places that a tool looked at, and the tests that decided there."""
 
 from __future__ import annotations
 

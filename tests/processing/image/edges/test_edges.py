@@ -8,7 +8,13 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from processing.image.edges.edge_kernels import BEND, CORNER_COLUMNS, MOST_CORNERS, corners_kernel
+from processing.image.edges.edge_kernels import (
+    BEND,
+    CORNER_COLUMNS,
+    MOST_CORNERS,
+    SectionLimits,
+    corners_kernel,
+)
 from processing.image.edges.edges import edge_beside, highest_point, lowest_point, strongest_bend
 from processing.image.edges.step_kernels import HEADING, JUMP, STEP, UNKNOWNS, step_kernel
 from processing.image.neighbourhoods.points_around import neighbours
@@ -219,7 +225,7 @@ def test_the_compiled_profile_is_the_plain_one() -> None:
     up = np.concatenate([np.zeros(40), random.uniform(0, 0.15, 20), np.full(40, 0.15)])
     local = np.column_stack([random.uniform(-0.4, 0.4, 100), across, up])
     local[:, 1:] += random.normal(0, 0.003, (100, 2))
-    limits = np.array([0.5, 0.5, 0.5, 0.004, 0.0])
+    limits = SectionLimits(0.5, 0.5, 0.5, 0.004, 0)
     results = []
     plain = corners_kernel.py_func  # type: ignore[attr-defined]
     for kernel in (corners_kernel, plain):
