@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,10 +15,34 @@ ALONE_M = 0.01
 MOST_CELLS = 8.0
 """So far from its own cell a point covers others at most."""
 
-
 _RIM = 0.6
+"""Of the distance to a neighbour: how large a point at a surface's rim, or among leaves, is. By
+trial; no measurement is recorded."""
+
 _STRAIGHT = -0.7
+"""Cosine between the directions to two opposite neighbours on a surface: they are in line within
+45°."""
+
 _LEAST_SINE = 0.3
+"""Of the angle between row and column from which both span a plane: 17°."""
+
+_LIMIT = 3
+"""Place of the farthest distance of neighbours in what `_size_between` is given."""
+
+
+class HidingTolerance(NamedTuple):
+    """How far behind a surface a point still is seen: m, and a share of its range."""
+
+    distance_m: float
+    share: float
+
+
+class Discs(NamedTuple):
+    """Points: (n, 3) from the perspective centre, m; (n, 3) normals; (n,) radii of discs, m."""
+
+    away: NDArray[np.float64]
+    normals: NDArray[np.float64]
+    radii: NDArray[np.float64]
 
 
 @kernel
@@ -25,12 +51,12 @@ def _size_between(
     is_filled: NDArray[np.bool_],
     here: tuple[int, int],
     step: tuple[int, int],
-    way: NDArray[np.float64],
+    offset: NDArray[np.float64],
 ) -> float:
     """Distance to the nearer of two opposite neighbours; less where they form no surface.
 
-    ``way``: (4,) given with the farthest distance of neighbours in its last place; gets the
-    direction to one of them.
+    ``offset``: (4,) given with the farthest distance of neighbours in its last place; gets the
+    offset to one of them.
     """
     height, width = is_filled.shape
     r, c = here
@@ -44,11 +70,11 @@ def _size_between(
         y = xyz[i, j, 1] - xyz[r, c, 1]
         z = xyz[i, j, 2] - xyz[r, c, 2]
         away = np.sqrt(x * x + y * y + z * z)
-        if away > way[3] or away == 0.0:
+        if away > offset[_LIMIT] or away == 0.0:
             continue
         if found:
-            product = (x * way[0] + y * way[1] + z * way[2]) / (away * length)
-        way[0], way[1], way[2], length = x, y, z, away
+            product = (x * offset[0] + y * offset[1] + z * offset[2]) / (away * length)
+        offset[0], offset[1], offset[2], length = x, y, z, away
         found += 1
         nearest = min(nearest, away)
     if found == 0:
@@ -73,7 +99,7 @@ def sizes_kernel(
     """
     height, width = is_filled.shape
     a, b = np.zeros(4), np.zeros(4)
-    a[3], b[3] = limit, limit
+    a[_LIMIT], b[_LIMIT] = limit, limit
     for r in range(height):
         for c in range(width):
             if not is_filled[r, c]:
@@ -98,7 +124,7 @@ def sizes_kernel(
 @kernel
 def front_kernel(
     positions: NDArray[np.float64],
-    points: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]],
+    points: Discs,
     scale: float,
     rays: NDArray[np.float64],
     front: NDArray[np.float32],
@@ -106,8 +132,7 @@ def front_kernel(
 ) -> None:
     """The nearest piece of surface in each cell.
 
-    ``positions``: (n, 2) column and row in cells, NaN where not seen; ``points``: (n, 3) from the
-    perspective centre, m, (n, 3) normals, (n,) radii of their discs, m; ``scale``: cells a
+    ``positions``: (n, 2) column and row in cells, NaN where not seen; ``scale``: cells a
     radian; ``rays``: (h, w, 3) directions of the cells' middles; ``front``: (h, w), infinite at
     first; ``number``: (h, w), the front point.
     """
@@ -174,12 +199,12 @@ def hidden_kernel(
     cells: NDArray[np.int64],
     ranges: NDArray[np.float64],
     front: NDArray[np.float32],
-    tolerance: tuple[float, float],
+    tolerance: HidingTolerance,
     hidden: NDArray[np.bool_],
 ) -> None:
     """Which points lie behind the surface in their cell.
 
-    ``cells``: (n, 2) column and row, −1: outside; ``tolerance``: m, and share of the range.
+    ``cells``: (n, 2) column and row, −1: outside.
     The inverse range of a plane is linear in the image, so the far end of a tilted surface
     within its cell is foretold from the cells beside it.
     """
@@ -190,7 +215,7 @@ def hidden_kernel(
             continue
         far = 1.0 / front[r, c] - _slope(front, (r, c), (0, 1)) - _slope(front, (r, c), (1, 0))
         if far > 0.0:
-            hidden[k] = ranges[k] > 1.0 / far + tolerance[0] + tolerance[1] * ranges[k]
+            hidden[k] = ranges[k] > 1.0 / far + tolerance.distance_m + tolerance.share * ranges[k]
 
 
 def warm_up() -> None:
@@ -198,7 +223,7 @@ def warm_up() -> None:
     sizes, normals = np.zeros((2, 2), np.float32), np.zeros((2, 2, 3), np.float32)
     sizes_kernel(np.zeros((2, 2, 3)), np.ones((2, 2), np.bool_), 0.3, sizes, normals)
     front, number = np.full((2, 2), np.inf, np.float32), np.zeros((2, 2), np.int32)
-    points = np.ones((1, 3)), np.ones((1, 3)), np.ones(1)
+    points = Discs(np.ones((1, 3)), np.ones((1, 3)), np.ones(1))
     front_kernel(np.zeros((1, 2)), points, 1.0, np.ones((2, 2, 3)), front, number)
     cells, hidden = np.zeros((1, 2), np.int64), np.zeros(1, np.bool_)
-    hidden_kernel(cells, np.ones(1), front, (0.2, 0.01), hidden)
+    hidden_kernel(cells, np.ones(1), front, HidingTolerance(0.2, 0.01), hidden)

@@ -22,8 +22,13 @@ if TYPE_CHECKING:  # a drive knows its cameras, so importing it here would be a 
     from processing.recording.drive import Drive
 
 _READ_PIXELS = 12_000_000
+"""Larger images are read reduced: colours of points need no more than a pixel each, 36 MB."""
+
 _KEPT_DEPTHS = 32
+"""Depth pictures that are kept, of some MB each: images along some hundred metres."""
+
 _AT_ONCE = 250_000
+"""Points coloured at a time: short enough for a cancel to be felt at once."""
 
 
 class PointColouring:

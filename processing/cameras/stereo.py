@@ -19,8 +19,15 @@ LEAST_ANGLE_DEG = 1.0
 """Rays that cross at a smaller angle say nothing about the distance."""
 
 _MOST_ERRORS_APART = 10.0
+"""Rays that pass each other at more than so many standard deviations show two things, or an image
+is oriented wrongly. By trial; no measurement is recorded."""
+
 _EPIPOLAR_STEPS = 96
+"""Places along a ray that are drawn in another image, evenly in the inverse distance: a smooth
+curve on any screen."""
+
 _NEAREST_M, _FARTHEST_M = 1.0, 300.0
+"""From the vehicle's own body to what no point shows any more."""
 
 
 @dataclass(frozen=True)

@@ -25,10 +25,14 @@ OWN_BODY_M = 1.5
 """Points nearer to a camera than this are the vehicle's own body, or its dirt."""
 
 _SURFACE_M = 0.3
+"""Neighbours of a raster farther apart are of other surfaces, but where points are sparser than
+that: half of it. By trial; no measurement is recorded."""
+
 _NOT_THERE = (7, 18, 64)
 """Classes that hide nothing: noise, and what moved between measurement and image."""
 
 _KEPT_TILES = 48
+"""Tiles that are kept: those about an image and the next."""
 
 
 @dataclass(frozen=True)

@@ -50,7 +50,8 @@ def test_the_nearest_point_covers_the_cells_it_reaches(form: Form) -> None:
     away = np.array([[-0.125, -0.125, 5.0], [0, 0, 3.0], [0, 0, 1.0], [0, 0, 1.0]])
     normals = np.array([[0, 0, 1.0], [0, 0, 0], [0, 0, 0], [0, 0, 0]])
     radii = np.array([0.3, 0.01, 0.3, 0.01])
-    form(depth_kernels.front_kernel)(positions, (away, normals, radii), 20.0, rays, front, number)
+    discs = depth_kernels.Discs(away, normals, radii)
+    form(depth_kernels.front_kernel)(positions, discs, 20.0, rays, front, number)
     assert number.tolist() == [[-1, 0, -1, -1], [0, 1, 0, -1], [-1, 0, -1, -1], [-1] * 4]
     assert front[1, 1] == 3.0
     # The disc is flat: its cells are as far away as its plane is there.
@@ -65,5 +66,6 @@ def test_a_slope_hides_nothing_of_itself_and_an_edge_what_is_behind(form: Form) 
     cells = np.array([[4, 1], [4, 1], [0, 1], [0, 1], [-1, -1]])
     ranges = np.array([slope[4] * 1.05, slope[4] * 2, 2.1, 2.5, 99.0])
     hidden = np.zeros(5, np.bool_)
-    form(depth_kernels.hidden_kernel)(cells, ranges, front, (0.2, 0.01), hidden)
+    tolerance = depth_kernels.HidingTolerance(0.2, 0.01)
+    form(depth_kernels.hidden_kernel)(cells, ranges, front, tolerance, hidden)
     assert hidden.tolist() == [False, True, False, True, False]
