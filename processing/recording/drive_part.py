@@ -25,6 +25,7 @@ from processing.recording.drive_info import write_drive_info
 from processing.recording.revolutions.revolutions_file import write_revolutions
 
 _AT_ONCE = 1_000_000
+"""Points copied at a time: short enough for a cancel to be felt at once."""
 
 PointFilter = Callable[[int, int], NDArray[np.bool_]]
 """Which of the points ``start … stop − 1`` are wanted: (k,) bool."""

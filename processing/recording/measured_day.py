@@ -11,7 +11,10 @@ from processing.recording.drive import Drive
 from processing.recording.vehicle_path.clock import day_of
 
 _LOOKED_AT = 1000
-_HOURS_AHEAD = 9.0  # of Japan
+"""Times that are looked at, spread over the drive."""
+
+_HOURS_AHEAD = 9.0
+"""Of Japan, of UTC: the day a survey is named after."""
 
 
 def measured_day(drives: Sequence[Drive]) -> date | None:

@@ -19,7 +19,13 @@ from scipy.ndimage import maximum_filter1d, minimum_filter1d
 from processing.core.errors import MissingInput
 from processing.core.text import Text
 from processing.recording.drive import Drive
-from processing.recording.vehicle_path.pass_kernels import records_kernel, stations_kernel
+from processing.recording.vehicle_path.pass_kernels import (
+    Passage,
+    PathPlaces,
+    PathReach,
+    records_kernel,
+    stations_kernel,
+)
 from processing.recording.vehicle_path.smooth_path import (
     SmoothPath,
     apart,
@@ -31,13 +37,17 @@ from processing.recording.vehicle_path.trajectory import LONGEST_GAP_S, Trajecto
 Floats = NDArray[np.float64]
 
 REACH_M = 25.0
-"""A beam that is turned by 45° meets a place 15 m aside as far ahead, in bends somewhat farther."""
+"""A beam that leaves at 45° meets a place 15 m aside as far ahead, in bends somewhat farther."""
 
 _FAR_M = 60.0
-"""Farther from the vehicle than this in plan nothing is told of a place."""
+"""Farther from the vehicle than this in plan a place has no station: points on the ground are
+sparse there, and in bends sections cross."""
 
 _SHORTEST_M = 1.0
+"""A shorter drive between two stops is no pass: manoeuvring."""
+
 _MARGIN_M = 0.01
+"""Heights are looked at so much farther than asked: rounding of the smooth path."""
 
 
 @dataclass(frozen=True)
@@ -121,7 +131,7 @@ class Pass:
         return np.column_stack([along[:, 1], -along[:, 0]])
 
     def positions_at(self, stations_m: ArrayLike) -> Floats:
-        """Where the way is, straight on and level beyond its ends: (n, 3) float64, project CRS."""
+        """Where the path is, straight on and level beyond its ends: (n, 3) float64, project CRS."""
         stations = np.asarray(stations_m, dtype=np.float64)
         positions = self._interpolated(self.vehicle_path.positions, stations)
         beyond = stations - np.clip(stations, 0.0, self.length_m)
@@ -136,7 +146,7 @@ class Pass:
         return positions
 
     def stations_of(self, xyz: ArrayLike, time: ArrayLike) -> tuple[Floats, Floats]:
-        """Where measured points lie along and aside of the way.
+        """Where measured points lie along the path and beside it.
 
         Parameters
         ----------
@@ -152,7 +162,7 @@ class Pass:
             m; NaN for points outside the times of the pass, farther than `REACH_M` along the
             vehicle's path from the vehicle, and about the centre of a bend, where sections cross.
         across : (n,) float64
-            m to the right of the way; NaN likewise.
+            m to the right of the path; NaN likewise.
         """
         local = np.asarray(xyz, dtype=np.float64).reshape(-1, 3) - self.origin
         found = self.stations_of_local(local, np.asarray(time, dtype=np.float64))
@@ -161,7 +171,7 @@ class Pass:
     def stations_of_local(
         self, local: Floats, time: Floats, asked: PathSurroundings | None = None
     ) -> Floats:
-        """The same for places about the origin, with the height above the way: (n, 3) float64.
+        """The same for places about the origin, with the height above the path: (n, 3) float64.
 
         Where only some places are ``asked`` for, the others may be NaN too.
         """
@@ -173,15 +183,15 @@ class Pass:
         stations_kernel(
             np.ascontiguousarray(local),
             np.ascontiguousarray(time),
-            self._kernel_way,
-            (self.times, self.stations_m),
-            (REACH_M, asked.far_m, asked.heights),
+            self._kernel_path,
+            Passage(self.times, self.stations_m),
+            PathReach(REACH_M, float(asked.far_m), asked.heights),
             found,
         )
         return found
 
     def beside(self, half_width_m: float, lowest_m: float, highest_m: float) -> PathSurroundings:
-        """What holds all places so near to the way and between two heights above it."""
+        """What holds all places so near to the path and between two heights above it."""
         step_m, z = self.vehicle_path.step_m, self.vehicle_path.positions[:, 2]
         size = 2 * (int(REACH_M / step_m) + 2) + 1
         low, high = minimum_filter1d(z, size), maximum_filter1d(z, size)
@@ -189,8 +199,9 @@ class Pass:
         return PathSurroundings(min(_FAR_M, REACH_M + half_width_m + 2 * step_m), heights)
 
     @property
-    def _kernel_way(self) -> tuple[float, Floats, Floats]:
-        return self.vehicle_path.step_m, self.vehicle_path.positions, self.vehicle_path.directions
+    def _kernel_path(self) -> PathPlaces:
+        path = self.vehicle_path
+        return PathPlaces(path.step_m, path.positions, path.directions)
 
     def _interpolated(self, values: NDArray[Any], stations: Floats) -> Floats:
         known = np.arange(len(values)) * self.vehicle_path.step_m
@@ -244,14 +255,14 @@ def _pass_of(number: int, time: Floats, xyz: Floats) -> Pass | None:
     records_kernel(
         local,
         guesses,
-        (vehicle_path.step_m, vehicle_path.positions, vehicle_path.directions),
+        PathPlaces(vehicle_path.step_m, vehicle_path.positions, vehicle_path.directions),
         stations,
     )
     return Pass(number, origin, vehicle_path, np.ascontiguousarray(time), stations)
 
 
 def _guesses(local: Floats, vehicle_path: SmoothPath) -> Floats:
-    """About where on the way each record is, by what was driven apart from all trembling."""
+    """About where on the path each record is, by what was driven apart from all trembling."""
     marks = apart(local)
     driven = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(local[marks, :2], axis=0).T))])
     driven *= vehicle_path.length_m / max(float(driven[-1]), vehicle_path.length_m / 2)

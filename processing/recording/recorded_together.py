@@ -11,8 +11,13 @@ from processing.recording.drive import SCAN, Drive
 from processing.recording.vehicle_path.clock import are_within_days, is_of_week
 
 _TIMES = 1000
+"""Times of each drive that are compared, spread over it."""
+
 _TOGETHER_DAYS = 1.0
-_SURVEY_DAYS = 31.0  # lanes, missed streets and the way back are driven within weeks
+"""Files measured more than a day apart are drives of their own."""
+
+_SURVEY_DAYS = 31.0
+"""Lanes, missed streets and the way back are driven within weeks."""
 
 
 def recorded_together(drive: Drive, beside: Sequence[Drive]) -> tuple[Drive, ...]:

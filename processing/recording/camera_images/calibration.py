@@ -17,9 +17,17 @@ from processing.recording.camera_images.image_list import CameraImage, ImageList
 from processing.recording.vehicle_path.trajectory import Trajectory
 
 _PAIRS_FOR_ROTATION = 2
+"""Pairs of places and pixels from which a rotation follows: four equations for three unknowns."""
+
 _PAIRS_FOR_SHIFT = 5
+"""Pairs from which a shift follows too: ten equations for six unknowns, so that a wrong one
+shows."""
+
 _STEEP = 1e-9
+"""Cosine of the pitch below which heading and roll cannot be told apart."""
+
 _BEHIND_PX = 1e4
+"""Stands for the error of a place behind the camera: larger than any image."""
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 from processing.recording.camera_images.image_list import CameraImage
 
 _UNDISTORT_STEPS = 20
+"""Of the iteration that takes distortion off; of usual lenses ten leave less than a thousandth of a
+pixel."""
 
 
 @dataclass(frozen=True)

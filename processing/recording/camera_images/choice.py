@@ -16,12 +16,19 @@ if TYPE_CHECKING:  # its import takes a third of a second, which the program's s
     from scipy.spatial import cKDTree
 
 REACH_M = 50.0
-"""From farther away an image isn't offered."""
+"""From farther away an image isn't offered: things are a few pixels wide."""
 
 _NEAREST_M = 0.5
+"""Nearer there is the vehicle itself."""
+
 _MARGIN = 0.01
+"""Share of an image along its edges in which nothing is offered: what lies there is cut."""
+
 _EDGE_STEPS = 24
+"""Rays along each edge of the ground that an image shows: a smooth outline."""
+
 _LOWEST_DEG = -89.0
+"""Rays closer to straight down are taken as that: below a spherical image is the vehicle."""
 
 OcclusionTest = Callable[[int, NDArray[np.float64]], bool | None]
 """Whether something hides a place, (3,) float64 m, in the image of a number; None: not known."""

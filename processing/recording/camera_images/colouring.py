@@ -20,12 +20,21 @@ from processing.recording.camera_images.image_list import CameraImage, ImageList
 from processing.recording.camera_images.image_pixels import ImagePixels, read_pixels
 
 WITHIN_S = 6.0
-"""Images taken up to this long before or after a point was measured may show it."""
+"""Images taken up to this long before or after a point was measured may show it: later the vehicle
+has passed by 60 m and more at 40 km/h."""
 
 _MOST_IMAGES = 24
+"""Images that are asked for each group of points: those nearest in time. By trial; no measurement
+is recorded."""
+
 _BIN_S = 4.0
+"""Points are grouped by this time, so that their images are chosen once."""
+
 _READ_PIXELS = 1_500_000
+"""Larger images are read reduced: a colour needs no more."""
+
 _KEPT_IMAGES = 16
+"""Images that are kept, 4.5 MB each."""
 
 
 @dataclass(frozen=True)

@@ -17,10 +17,21 @@ MOST_PIXELS = 16_000_000
 """Larger images are shown and used at a half, a quarter or an eighth."""
 
 _MOST_WHOLE = 134_000_000
+"""Files that cannot be read reduced are refused from so many pixels on: 400 MB in memory."""
+
 _HEAD_BYTES = 1 << 20
+"""In which the size of an image stands: behind thumbnails and other notes of cameras."""
+
 _SIZE_TOLERANCE = 0.01
+"""By this share a picture may differ in shape from what the list says: rounding of a reduced
+one."""
+
 _FRAMES = frozenset(range(0xC0, 0xD0)) - {0xC4, 0xC8, 0xCC}
+"""Markers of JPEG frames, which hold the size (ITU-T T.81, table B.1): C0 to CF but for tables and
+extensions."""
+
 _PROGRESSIVE = frozenset({0xC2, 0xC6, 0xCA, 0xCE})
+"""Those of progressive frames, which no decoder reads reduced."""
 
 
 @dataclass(frozen=True)

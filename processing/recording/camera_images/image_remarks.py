@@ -10,7 +10,8 @@ from processing.recording.camera_images.image_list import ImageList
 from processing.recording.vehicle_path.trajectory import Trajectory
 
 FAR_M = 500.0
-"""Images taken farther from the recorded points than this don't belong to them."""
+"""Images taken farther from the recorded points than this don't belong to them: a wrong list or
+another zone of coordinates."""
 
 
 def far_away(

@@ -17,9 +17,24 @@ from processing.recording.vehicle_path.trajectory import Trajectory
 Floats = NDArray[np.float64]
 
 _WINDOW_S = 0.1
+"""Length of a piece of trajectory in which the scanner moves evenly but for its rotation. By trial;
+no measurement is recorded."""
+
 _MOST_POINTS = 400
+"""Points of a piece that are looked at."""
+
+_LEAST_REVOLUTIONS, _LEAST_POINTS = 2.0, 20
+"""Of a piece from which a rate is told: two whole revolutions and some points in each."""
+
+_MARGIN_S = 1e-3
+"""Before the first and behind the last point of a recording: times are known better."""
+
 _READ_POINTS = 1_000_000
+"""Points read at a time."""
+
 _RATES_HZ = np.arange(38.0, 310.0, 0.5)
+"""Rates of rotation that scanners have: as `SLOWEST_HZ` and `FASTEST_HZ` of `rotation_fit`; over
+0.1 s half a hertz is a twentieth of a revolution."""
 
 
 def trajectory_from_origins(columns: Columns | PointColumns | PointSource) -> Trajectory:
@@ -70,10 +85,10 @@ def trajectory_from_origins(columns: Columns | PointColumns | PointSource) -> Tr
             ),
         )
     # From the ends of the recording on, the vehicle is taken to move as in the nearest window.
-    before = positions[0] + (first_time - 1e-3 - times[0]) * velocities[0]
-    after = positions[-1] + (last_time + 1e-3 - times[-1]) * velocities[-1]
+    before = positions[0] + (first_time - _MARGIN_S - times[0]) * velocities[0]
+    after = positions[-1] + (last_time + _MARGIN_S - times[-1]) * velocities[-1]
     return Trajectory.from_positions(
-        np.concatenate([[first_time - 1e-3], times, [last_time + 1e-3]]),
+        np.concatenate([[first_time - _MARGIN_S], times, [last_time + _MARGIN_S]]),
         np.vstack([before, *positions, after]),
     )
 
@@ -121,7 +136,7 @@ def _steady(time: Floats, origin: Floats, rate_hz: float) -> tuple[float, Floats
     local = time - middle
     turned = 2 * np.pi * rate_hz * local
     parts = [np.ones(local.size), local]
-    if (time[-1] - time[0]) * rate_hz > 2.0 and time.size > 20:
+    if (time[-1] - time[0]) * rate_hz > _LEAST_REVOLUTIONS and time.size > _LEAST_POINTS:
         parts += [np.cos(turned), np.sin(turned)]
     base = origin[0]
     found = np.linalg.lstsq(np.column_stack(parts), origin - base)[0]

@@ -19,14 +19,36 @@ from processing.recording.vehicle_path.trajectory import Trajectory
 Floats = NDArray[np.float64]
 
 _WINDOW_S = 0.06
+"""Length of a piece that is looked at: two revolutions of the slowest scanner, within which a
+vehicle moves and turns evenly."""
+
 _EVERY_S = 0.2
+"""From piece to piece: a vehicle hardly turns within it."""
+
 _MOST_POINTS = 1_500
+"""Points of a piece that are looked at."""
+
 _LEAST_POINTS = 200
+"""Points that a piece must have. By trial; no measurement is recorded."""
+
 _FLATTEST = 0.05
+"""Points flatter than this share of their distance lie in one plane, whose rotation says nothing.
+By trial; no measurement is recorded."""
+
 _LEAST_COHERENCE = 0.8
+"""How well directions must follow one rotation, 0 to 1: of any directions it is near 0. By trial;
+no measurement is recorded."""
+
 _LESS_COHERENT = 0.03
+"""By how much a start found nearby may be worse than usual and still be taken without a search. By
+trial; no measurement is recorded."""
+
 _STARTS_M = ((-1.5, 0.0), (0.0, 3.0), (0.0, -3.0))
+"""Where centres are looked for beside the one before, m along and aside. By trial; no measurement
+is recorded."""
+
 _READ_POINTS = 2_000_000
+"""Points read at a time."""
 
 
 def trajectory_from_points(points: PointSource, monitor: Monitor) -> Trajectory | None:

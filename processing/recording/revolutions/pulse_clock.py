@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from processing.recording.columns.point_source import PointColumns
 from processing.recording.revolutions.pulse_clock_kernels import (
+    TimeLimits,
     new_state,
     number_exact,
     number_rounded,
@@ -26,9 +27,16 @@ LONGEST_MISSING_S = 1.0
 """Longer times without a point are a stop; shorter ones are pulses without return."""
 
 _LEAST_COHERENCE = 0.6
-# Fewer ties are returns that the file does not number well: they share a pulse.
+"""How well times must lie on a lattice, 0 to 1: of any times it is near 0. By trial; no measurement
+is recorded."""
+
 _TIES_OF_ROUNDED_TIMES = 0.15
+"""Share of times equal to the one before from which times are rounded; fewer are returns that the
+file does not number well: they share a pulse."""
+
 _STAGES = (16, 64, 256, 1024, 4096, 16384)
+"""Lengths of pieces, in pulses, over which the interval is made better: each is known well enough
+by the one before that no pulse is miscounted."""
 
 
 @dataclass(frozen=True)
@@ -110,7 +118,7 @@ class PulseNumbering:
         -------
         (m,) int64
             From the first number, not decreasing. ``m`` is the number of points, or less by those
-            of the last shared time, which are to be given again at the start of the next stretch.
+            of the last shared time, which are to be given again at the start of the next chunk.
         """
         times = np.ascontiguousarray(points.time)
         pulses = np.empty(times.size, dtype=np.int64)
@@ -123,7 +131,7 @@ class PulseNumbering:
         if not is_last:
             done = int(np.searchsorted(times, times[-1] - 0.5 * self._clock.quantum_s)) or done
         pulses = pulses[:done]
-        limits = np.array([self._clock.quantum_s, LONGEST_MISSING_S])
+        limits = TimeLimits(self._clock.quantum_s, LONGEST_MISSING_S)
         number_rounded(times, repeats, limits, self._state, pulses)
         pulses += self._first_number
         return pulses

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,14 +11,44 @@ from processing.core.kernels import kernel
 
 Floats = NDArray[np.float64]
 
-# Gain on the phase per point once locked, its quarter square on the interval (critical damping):
-# a memory of some thousand pulses, so that a sky gap of half a turn is bridged to 0.01 pulse.
 _GAIN = 4e-4
+"""On the phase per point once locked, its quarter square on the interval (critical damping): a
+memory of some thousand pulses, so that a sky gap of half a revolution is bridged to 0.01 pulse."""
+
+_DAMPED = 0.25
+"""Of the square of the gain: what the interval takes over at critical damping."""
+
 _STEADY_AFTER = 400
+"""Points until the loop is locked; before that phases are averaged. By trial; no measurement is
+recorded."""
+
+_MOST_DRIFT = 1e-3
+"""Share by which an interval may drift off the nominal one before it is set back: clocks are good
+to a millionth."""
+
+_SLOT_SLACK, _PAST_SLACK = 0.6, 0.4
+"""Of an interval: noise of the lattice that is forgiven when slots of a quantum are counted. By
+trial; no measurement is recorded."""
+
+_SAME_QUANTUM, _NEXT_QUANTUM = 0.5, 1.5
+"""Times nearer than half a step are equal; nearer than one and a half follow."""
+
+_GAIN_OF_QUANTA = 4.0
+"""A whole quantum of pulses weighs so many times as much as one of them."""
+
+_BASE, _LATTICE, _INTERVAL, _NUMBER, _AGE, _LAST, _NOMINAL = range(7)
+"""Of the state: see `new_state`."""
+
+
+class TimeLimits(NamedTuple):
+    """Step of the times, and the longest time that is no stop, s."""
+
+    quantum_s: float
+    longest_s: float
 
 
 def new_state(first_time: float, interval_s: float) -> Floats:
-    """What the loop remembers between stretches.
+    """What the loop remembers between chunks.
 
     Returns
     -------
@@ -36,7 +68,7 @@ def number_exact(times: Floats, longest_s: float, state: Floats, pulses: NDArray
 def number_rounded(
     times: Floats,
     repeats: NDArray[np.bool_],
-    limits: Floats,
+    limits: TimeLimits,
     state: Floats,
     pulses: NDArray[np.int64],
 ) -> None:
@@ -48,8 +80,7 @@ def number_rounded(
         May hold more points than are to be numbered: what follows tells where a gap is.
     repeats : (n,) bool
         Whether a point is a later return of the pulse before it.
-    limits : (2,) float64
-        Step of the times, and the longest time that is no stop, s.
+    limits : TimeLimits
     pulses : (m,) int64
         Filled for the first ``m`` points.
     """
@@ -60,9 +91,10 @@ def number_rounded(
 def _number_exact_kernel(
     times: Floats, longest_s: float, state: Floats, pulses: NDArray[np.int64]
 ) -> None:
-    base, lattice, interval, age, last = state[0], state[1], state[2], state[4], state[5]
-    nominal = state[6]
-    number = np.int64(state[3])
+    base, lattice, interval = state[_BASE], state[_LATTICE], state[_INTERVAL]
+    age, last = state[_AGE], state[_LAST]
+    nominal = state[_NOMINAL]
+    number = np.int64(state[_NUMBER])
     for i in range(times.shape[0]):
         time = times[i] - base
         if number < 0:
@@ -81,19 +113,20 @@ def _number_exact_kernel(
                     lattice += steps * interval + error / (age + 1.0)
                 else:
                     lattice += steps * interval + _GAIN * error
-                    interval += 0.25 * _GAIN * _GAIN * error
-                    if abs(interval - nominal) > 1e-3 * nominal:
+                    interval += _DAMPED * _GAIN * _GAIN * error
+                    if abs(interval - nominal) > _MOST_DRIFT * nominal:
                         interval = nominal
         last = time
         pulses[i] = number
-    state[1], state[2], state[3], state[4], state[5] = lattice, interval, float(number), age, last
+    state[_LATTICE], state[_INTERVAL], state[_NUMBER] = lattice, interval, float(number)
+    state[_AGE], state[_LAST] = age, last
 
 
 @kernel
 def _number_rounded_kernel(
     times: Floats,
     repeats: NDArray[np.bool_],
-    limits: Floats,
+    limits: TimeLimits,
     state: Floats,
     pulses: NDArray[np.int64],
 ) -> None:
@@ -102,28 +135,29 @@ def _number_rounded_kernel(
     Points that follow a gap and run on belong to the last slots of their quantum, others to the
     first free ones.
     """
-    base, lattice, interval, age, last = state[0], state[1], state[2], state[4], state[5]
-    number = np.int64(state[3])
-    quantum, longest_s = limits[0], limits[1]
+    base, lattice, interval = state[_BASE], state[_LATTICE], state[_INTERVAL]
+    age, last = state[_AGE], state[_LAST]
+    number = np.int64(state[_NUMBER])
+    quantum, longest_s = limits.quantum_s, limits.longest_s
     count = times.shape[0]
     start = 0
     while start < pulses.shape[0]:
         time = times[start] - base
         stop = start + 1
         pulses_here = 1
-        while stop < count and times[stop] - base < time + 0.5 * quantum:
+        while stop < count and times[stop] - base < time + _SAME_QUANTUM * quantum:
             pulses_here += 0 if repeats[stop] else 1
             stop += 1
-        follows = number >= 0 and time - last < 1.5 * quantum
-        leads = stop < count and times[stop] - base < time + 1.5 * quantum
+        follows = number >= 0 and time - last < _NEXT_QUANTUM * quantum
+        leads = stop < count and times[stop] - base < time + _NEXT_QUANTUM * quantum
         if number < 0:
             lattice, age = time - interval, 0.0
             first = np.int64(0)
         else:
             free = number + 1
             # The lattice holds the time of the last pulse; slack forgives its noise.
-            slot = number + np.int64(np.ceil((time - lattice) / interval - 0.6))
-            past = number + np.int64(np.ceil((time + quantum - lattice) / interval - 0.4))
+            slot = number + np.int64(np.ceil((time - lattice) / interval - _SLOT_SLACK))
+            past = number + np.int64(np.ceil((time + quantum - lattice) / interval - _PAST_SLACK))
             first = max(free, slot)
             if not follows and leads:
                 first = max(first, past - pulses_here)
@@ -137,10 +171,10 @@ def _number_rounded_kernel(
         if age == 0.0:
             lattice += 0.5 * error
         elif follows and leads:
-            gain = max(1.0 / (age + 1.0), 4.0 * _GAIN)
+            gain = max(1.0 / (age + 1.0), _GAIN_OF_QUANTA * _GAIN)
             lattice += gain * error
             if age > _STEADY_AFTER:
-                interval += 0.25 * gain * gain * error / pulses_here
+                interval += _DAMPED * gain * gain * error / pulses_here
         age += 1.0
         pulse = first - 1
         for i in range(start, stop):
@@ -148,7 +182,8 @@ def _number_rounded_kernel(
             pulses[i] = pulse
         last = time
         start = stop
-    state[1], state[2], state[3], state[4], state[5] = lattice, interval, float(number), age, last
+    state[_LATTICE], state[_INTERVAL], state[_NUMBER] = lattice, interval, float(number)
+    state[_AGE], state[_LAST] = age, last
 
 
 def warm_up() -> None:
@@ -156,5 +191,5 @@ def warm_up() -> None:
     times = np.array([0.0, 1e-5, 2e-5])
     pulses = np.empty(3, dtype=np.int64)
     number_exact(times, 1.0, new_state(0.0, 1e-5), pulses)
-    limits = np.array([1e-5, 1.0])
+    limits = TimeLimits(1e-5, 1.0)
     number_rounded(times, np.zeros(3, dtype=np.bool_), limits, new_state(0.0, 4e-6), pulses)

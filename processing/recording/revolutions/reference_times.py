@@ -12,14 +12,33 @@ from processing.recording.revolutions.vehicle_frame import Poses
 Floats = NDArray[np.float64]
 
 SEARCHED_SHARE = 0.2
-"""Share of a turn before and after the prediction in which the crossing is looked for."""
+"""Share of a revolution before and after the prediction in which the crossing is looked for."""
 
 _LONG_CHORD_PULSES = 20
+"""A crossing between two points so many pulses apart is interpolated over a gap."""
+
 _CLOSE_REVOLUTIONS = 0.01
+"""By so much it may miss the prediction there: what a gap hides. By trial; no measurement is
+recorded."""
+
 _FAR_REVOLUTIONS = 0.04
+"""The same where points are next to each other: the ground may be uneven. By trial; no measurement
+is recorded."""
+
 _LEAST_MISS_REVOLUTIONS = 0.003
+"""Crossings usually miss by no less: a degree."""
+
+_MISSES = 6.0
+"""A crossing that misses by more than so many times the median (four standard deviations of normal
+noise) is of something else."""
+
 _MEDIAN_OVER = 31
+"""Revolutions of a running median: of uneven ground and things below. By trial; no measurement is
+recorded."""
+
 _LEAST_SHARE = 0.1
+"""Share of revolutions whose crossing must be found; else predictions are taken. By trial; no
+measurement is recorded."""
 
 
 def find_crossings(
@@ -107,7 +126,7 @@ def repair_reference_times(
         return predicted.copy()
     usual = np.interp(np.arange(predicted.size), found, _running_median(shift[found]))
     miss = np.abs(shift - usual)
-    usual_miss = max(_LEAST_MISS_REVOLUTIONS, 6.0 * float(np.median(miss[found])))
+    usual_miss = max(_LEAST_MISS_REVOLUTIONS, _MISSES * float(np.median(miss[found])))
     allowed = np.where(chord > _LONG_CHORD_PULSES, _CLOSE_REVOLUTIONS, _FAR_REVOLUTIONS)
     allowed = np.minimum(allowed, usual_miss)
     good = np.isfinite(shift) & (miss <= allowed)

@@ -11,9 +11,21 @@ from numpy.typing import NDArray
 Floats = NDArray[np.float64]
 
 _REVOLUTIONS_PER_WINDOW = 8.0
+"""Length of a window in which the rotation is even and the vehicle straight. By trial; no
+measurement is recorded."""
+
 _LEAST_POINTS = 24
+"""Points of a window from which its phase is told. By trial; no measurement is recorded."""
+
 _LEAST_COHERENCE = 0.3
+"""How well directions of a window follow the rotation, 0 to 1, for its phase to count. By trial; no
+measurement is recorded."""
+
+_MOST_CHANGE = 0.01
+"""Share by which the rate may change from window to window: a heavy mirror keeps it."""
+
 _CLEAR_ANGLE_RAD = 0.6
+"""Directions farther off the rotation are of other things: 34°, as in `rotation_fit`."""
 
 
 @dataclass(frozen=True)
@@ -170,7 +182,7 @@ class RevolutionTracker:
         self._coherences.append(float(np.mean(np.cos(miss))))
         if spread > 0:
             change = float(centred @ miss[near]) / spread
-            most = 0.01 * self._rate
+            most = _MOST_CHANGE * self._rate
             self._rate += (0.5 if self._is_locked else 1.0) * float(np.clip(change, -most, most))
         self._is_locked = True
 

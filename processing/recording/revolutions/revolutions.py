@@ -43,7 +43,10 @@ __all__ = [
 ]
 
 _LEAST_POINTS = 500
+"""With fewer points nothing repeats. By trial; no measurement is recorded."""
+
 _CLOCK_SAMPLES, _CLOCK_SAMPLE_POINTS = 4, 20_000
+"""Pieces of a recording from which the pulse interval follows, and points of each."""
 
 _TOO_FEW = Text(
     "There are too few points to find turns in them.",

@@ -30,7 +30,11 @@ READ_POINTS = 500_000
 """Points read at a time."""
 
 _TRACKED_PER_REVOLUTION = 64
+"""Points of each revolution by which its phase is followed: the rest would say the same."""
+
 _BELOW_CENTRE_M = 0.3
+"""Points lower than this below the centre are ground and what stands on it: rows are cut where
+nothing of the vehicle's roof is."""
 
 
 @dataclass(frozen=True)

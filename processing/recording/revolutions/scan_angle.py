@@ -16,11 +16,22 @@ from processing.recording.revolutions.vehicle_frame import Poses
 Floats = NDArray[np.float64]
 
 _WINDOWS = 5
+"""Pieces of a recording that are looked at; their median counts."""
+
 _WINDOW_S = 0.1
+"""Length of a piece: several revolutions."""
+
 _POINTS_PER_WINDOW = 700
+"""Points of a piece."""
+
 _SAMPLE_POINTS = 60_000
+"""Points read for each piece."""
+
 _FLATTEST = 0.1
+"""As in `periodicity`, for pieces of any plane. By trial; no measurement is recorded."""
+
 _LEAST_COHERENCE = 0.75
+"""How well directions follow one rotation, 0 to 1. By trial; no measurement is recorded."""
 
 
 class MirrorAngle(Protocol):

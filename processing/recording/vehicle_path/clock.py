@@ -18,13 +18,23 @@ from processing.core.text import Text
 from processing.recording.vehicle_path.trajectory import Trajectory
 
 DAY_S = 86_400.0
+"""s."""
+
 WEEK_S = 604_800.0
+"""s; GPS weeks begin on Sunday at midnight."""
+
 ADJUSTMENT_S = 1e9
+"""Adjusted standard GPS time is GPS time less 1e9 s (LAS 1.4, global encoding)."""
+
 LEAP_S = 18.0
 """GPS time less UTC since 2017."""
 
 _LEAST_SHARE = 0.9
+"""Share of times that a trajectory must cover for its clock to be taken as that of the points. By
+trial; no measurement is recorded."""
+
 _START = datetime(1980, 1, 6, tzinfo=UTC)
+"""Of GPS time."""
 
 
 class ClockKind(Enum):

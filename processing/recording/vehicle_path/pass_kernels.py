@@ -1,6 +1,8 @@
-"""Where points lie along and aside of a way: the loops over points."""
+"""Where points lie along and beside a path: the loops over points."""
 
 from __future__ import annotations
+
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,12 +13,45 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 _MOST_STEPS = 20
+"""Of Newton's method; it ends within three but in sharp bends."""
+
 _NEAR_M = 1e-3
+"""From so near on what is left is its square times the bend: some ten-thousandth of a
+millimetre."""
+
+_FLATTENED, _RECORDS_AHEAD = 0.1, 8
+"""Share of `LEAST_STRETCH` below which a step leads nowhere; records of the vehicle that are looked
+through one by one before a search: times of points rise."""
+
 _LONGEST_STEP_M = 5.0
+"""A step is no longer, so that it stays in the bend it began in."""
 
 LEAST_STRETCH = 0.25
 """How much of a metre along the vehicle's path a metre beside it must be: towards the
 centre of a bend the sections come together, and beyond it they cross."""
+
+
+class PathPlaces(NamedTuple):
+    """A vehicle path: its step, m, places (m, 3) and directions (m, 2)."""
+
+    step_m: float
+    positions: Floats
+    directions: Floats
+
+
+class Passage(NamedTuple):
+    """When the vehicle was where: times, s, and stations, m."""
+
+    times: Floats
+    stations: Floats
+
+
+class PathReach(NamedTuple):
+    """How far along and in plan from the vehicle a place may be; between which heights (m, 2)."""
+
+    reach_m: float
+    far_m: float
+    heights: Floats
 
 
 @kernel
@@ -25,8 +60,8 @@ def _solved(
 ) -> tuple[float, float]:
     """Station and across of a place; NaN, NaN where no section near the guess holds it.
 
-    The section at station s holds p where (p − way(s)) · direction(s) = 0, which is solved by
-    Newton's steps from the guess. Beyond an end the way goes straight on.
+    The section at station s holds p where (p − path(s)) · direction(s) = 0, which is solved by
+    Newton's steps from the guess. Beyond an end the path goes straight on.
     """
     last = positions.shape[0] - 1
     per_step = 1.0 / step_m
@@ -45,21 +80,21 @@ def _solved(
                 positions[i + 1, 1] - positions[i, 1],
             )
             from_e, from_n = east - positions[i, 0] - u * way_e, north - positions[i, 1] - u * way_n
-            chunk = way_e * along_e + way_n * along_n - from_e * bend_e - from_n * bend_n
-            chunk *= per_step
+            stretch = way_e * along_e + way_n * along_n - from_e * bend_e - from_n * bend_n
+            stretch *= per_step
         else:
             end = 0 if u < 0.0 else last
             beyond = (u - v) * step_m
             from_e = east - positions[end, 0] - beyond * along_e
             from_n = north - positions[end, 1] - beyond * along_n
-            chunk = 1.0
+            stretch = 1.0
         ahead = from_e * along_e + from_n * along_n
-        if chunk < 0.1 * LEAST_STRETCH:
+        if stretch < _FLATTENED * LEAST_STRETCH:
             break
-        station += min(max(ahead / chunk, -_LONGEST_STEP_M), _LONGEST_STEP_M)
+        station += min(max(ahead / stretch, -_LONGEST_STEP_M), _LONGEST_STEP_M)
         if abs(ahead) < _NEAR_M:
             # What is left is its square times the bend: some ten-thousandth of a millimetre.
-            if chunk < LEAST_STRETCH:
+            if stretch < LEAST_STRETCH:
                 break
             return station, from_e * along_n - from_n * along_e
     return np.nan, np.nan
@@ -77,7 +112,7 @@ def _height_at(station: float, step_m: float, positions: Floats) -> float:
 def _may_count(
     local: Floats,
     station: float,
-    vehicle_path: tuple[float, Floats, Floats],
+    vehicle_path: PathPlaces,
     far_m: float,
     heights: Floats,
 ) -> bool:
@@ -94,26 +129,24 @@ def _may_count(
 def stations_kernel(
     local: Floats,
     time: Floats,
-    vehicle_path: tuple[float, Floats, Floats],
-    passed: tuple[Floats, Floats],
-    asked: tuple[float, float, Floats],
+    vehicle_path: PathPlaces,
+    passed: Passage,
+    reach: PathReach,
     found: Floats,
 ) -> None:
-    """Station, across and height above the way of places, (n, 3) into ``found``; NaN where none.
+    """Station, across and height above the path of places, (n, 3) into ``found``; NaN where none.
 
-    ``local`` (n, 3) is about the vehicle's path's origin; ``vehicle_path`` is its step, places and
-    directions, ``passed`` the times and stations of the vehicle; ``asked`` how far along and in
-    plan from it a place may be, and between which heights (m, 2) at each step of the way.
+    ``local`` (n, 3) is about the vehicle path's origin; heights are at each step of the path.
     """
     step_m, positions, directions = vehicle_path
     times, stations = passed
-    reach_m, far_m, heights = asked
+    reach_m, far_m, heights = reach
     j, last = 0, times.shape[0] - 2
     for i in range(local.shape[0]):
         found[i, 0], found[i, 1], found[i, 2] = np.nan, np.nan, np.nan
         if not (times[0] <= time[i] <= times[last + 1]):
             continue
-        if times[j] > time[i] or times[min(j + 8, last)] < time[i]:
+        if times[j] > time[i] or times[min(j + _RECORDS_AHEAD, last)] < time[i]:
             j = min(max(np.searchsorted(times, time[i]) - 1, 0), last)
         while j < last and times[j + 1] < time[i]:
             j += 1
@@ -129,7 +162,7 @@ def stations_kernel(
 
 @kernel
 def records_kernel(
-    local: Floats, guesses: Floats, vehicle_path: tuple[float, Floats, Floats], stations: Floats
+    local: Floats, guesses: Floats, vehicle_path: PathPlaces, stations: Floats
 ) -> None:
     """The station of each record of the vehicle itself, never less than the one before."""
     step_m, positions, directions = vehicle_path
@@ -156,9 +189,9 @@ def advanced_kernel(stations: Floats, least_m: float, kept: NDArray[np.bool_]) -
 def warm_up() -> None:
     """Compile the kernels."""
     positions = np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [2.0, 0.0, 0.0]])
-    vehicle_path = (1.0, positions, np.array([[1.0, 0.0]] * 3))
-    passed = (np.arange(3.0), np.arange(3.0))
-    asked = (9.0, 9.0, np.zeros((3, 2)))
-    stations_kernel(positions, np.arange(3.0), vehicle_path, passed, asked, np.empty((3, 3)))
+    vehicle_path = PathPlaces(1.0, positions, np.array([[1.0, 0.0]] * 3))
+    passed = Passage(np.arange(3.0), np.arange(3.0))
+    reach = PathReach(9.0, 9.0, np.zeros((3, 2)))
+    stations_kernel(positions, np.arange(3.0), vehicle_path, passed, reach, np.empty((3, 3)))
     records_kernel(positions, np.arange(3.0), vehicle_path, np.empty(3))
     advanced_kernel(np.arange(3.0), 0.5, np.zeros(3, np.bool_))

@@ -18,9 +18,12 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 APART_M = 0.5
-"""Records nearer than this in plan count together as one place."""
+"""Records nearer than this in plan count together as one place: those of a waiting vehicle."""
 
 STEP_M = 0.25
+"""Between places of the smooth path: under a bend of 5 m radius its chord leaves the arc by 1.6
+mm."""
+
 SMOOTHED_M = 1.0
 """Standard deviation of the bell over which places are averaged along the vehicle's path:
 an axle's distance is some three of it, so no vehicle turns faster than this follows."""

@@ -16,7 +16,11 @@ LONGEST_GAP_S = 5.0
 """Between two records further apart than this, nothing is known of the vehicle."""
 
 _CLOCK_TOLERANCE_S = 1e-6
+"""Times outside a trajectory by no more are on its ends: rounding."""
+
 _STEP_FOR_HEADING_M = 0.25
+"""A heading follows from a movement of so much, more than a position scatters. By trial; no
+measurement is recorded."""
 
 
 @dataclass(frozen=True)

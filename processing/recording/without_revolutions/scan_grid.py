@@ -23,11 +23,24 @@ COLUMN = "grid"
 """Column of a folder that is being made: (n, 2) sweep and place in it, −1 where unknown."""
 
 _POINTS_AT_ONCE = 2_000_000
+"""Points read at a time."""
+
 _MOST_REPEATED = 0.01
+"""Share of points that may share a cell: second returns that a file has all the same. By trial; no
+measurement is recorded."""
+
 _MOST_CELLS_A_POINT, _FEW_CELLS = 1_000, 10_000_000
+"""A grid with more cells for each point is a mistake, but for small ones: it would fill memory."""
+
 _PIECES, _PIECE_POINTS = 64, 4_096
+"""Pieces in which neighbours are looked at, spread over the scan."""
+
 _FEWEST_PAIRS = 200
+"""Pairs of neighbours that tell something. By trial; no measurement is recorded."""
+
 _FARTHEST_STEP = 0.5
+"""Neighbours in a grid are nearer than this share of what points of a piece are apart. By trial; no
+measurement is recorded."""
 
 SHOWN_AS_SCAN = Text(
     "The scanner stood still, so there are no revolutions along a way; the scan's own image "

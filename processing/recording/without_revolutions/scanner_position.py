@@ -11,9 +11,17 @@ from processing.recording.columns.quantisation import Quantisation
 ScannerPosition = tuple[float, float, float]
 
 _SWEEPS = 24
+"""Sweeps that are looked at, spread over the scan."""
+
 _FEWEST_POINTS, _MOST_POINTS = 12, 400
+"""Points of a sweep. By trial; no measurement is recorded."""
+
 _FEWEST_SWEEPS = 3
+"""Planes from which a position follows: three meet in a point."""
+
 _THICKEST = 0.02
+"""Share of their width that points of a sweep may lie off a plane, as its smallest variances: a
+seventh."""
 
 
 def check_scanner_position(

@@ -13,11 +13,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 _LEAST_CELL_M = 1e-3
+"""Cells are no smaller: coordinates are in millimetres."""
+
 _MOST_CELLS = 1e10
+"""More would not fit into memory, as facts of their tiles."""
+
 _COARSEST, _FINEST = 7, 24
+"""Levels of division that are tried: 2 to the power of so many cells across."""
+
 _POINTS_TO_GO_FINER = 8
+"""Points of a sample for each filled cell from which cells may be finer: with fewer an emptier cell
+is chance. By trial; no measurement is recorded."""
+
 _ODD_SHARE = 0.001
+"""Share of points at each side that are left out of the extent: strays."""
+
 _LEAST_SAMPLE = 1_000
+"""Of fewer points all count."""
 
 
 @dataclass(frozen=True)

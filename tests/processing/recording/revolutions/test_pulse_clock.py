@@ -104,7 +104,7 @@ def test_the_kernel_of_shared_times_does_compiled_what_it_does_plain():
     for function in (kernel, kernel.py_func):
         pulses = np.empty(time.size, dtype=np.int64)
         state = pulse_clock_kernels.new_state(0.0, 1e-6)
-        function(time, repeats, np.array([quantum, 1.0]), state, pulses)
+        function(time, repeats, pulse_clock_kernels.TimeLimits(quantum, 1.0), state, pulses)
         found.append(pulses)
     assert (found[0] == found[1]).all()
     assert (np.diff(found[0]) > 0).all()
