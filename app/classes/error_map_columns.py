@@ -23,7 +23,7 @@ from processing.recording.columns.columns import column_path
 from processing.recording.columns.error_map import ERROR_MAP
 from processing.recording.drive import Drive
 from processing.scoring.asked_classes import ASKED
-from processing.scoring.confusion_matrix import ConfusionMatrix
+from processing.scoring.confusion_matrix import BinaryConfusionMatrix
 from processing.tools.tool import FinishedColumns
 
 _JUDGING = Text("Evaluation", "評価")
@@ -139,7 +139,7 @@ class ErrorMapColumns(QObject):
             if has_truth(drive, truth) and drive.columns.has(ERROR_MAP)
         ]
         if tool in ASKED and on:
-            counts = ConfusionMatrix(0, 0, 0, 0)  # nobody asks for them here
+            counts = BinaryConfusionMatrix(0, 0, 0, 0)  # nobody asks for them here
             self._shown = _Shown(truth, ClassEvaluation(tool, None, tuple(on), counts))
 
     def _forget(self) -> None:

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.core.text import Text
-from processing.scoring.confusion_matrix import ConfusionMatrix
+from processing.scoring.confusion_matrix import BinaryConfusionMatrix
 from processing.scoring.curb_sections import (
     COVERED_SHARE,
     SECTION_M,
@@ -102,13 +102,13 @@ class ScoredEdge:
     right_types: int
     unseen: int
 
-    def counts(self, *, with_dropped: bool) -> ConfusionMatrix:
+    def counts(self, *, with_dropped: bool) -> BinaryConfusionMatrix:
         """Sections found, false and missed; dropped curbs count neither way where left out."""
         is_dropped = np.array([one.kind == "dropped" for one in self.asked], np.bool_)
         counted = self.is_found[with_dropped | ~is_dropped]
         hits = int(counted.sum())
         false = sum(len(one.false) for one in self.lines)
-        return ConfusionMatrix(hits, false, counted.size - hits, 0)
+        return BinaryConfusionMatrix(hits, false, counted.size - hits, 0)
 
 
 def curb_score(
@@ -180,7 +180,7 @@ def _counts(edges: Mapping[str, ScoredEdge]) -> Iterator[DetectionCounts]:
     for with_dropped, name in names.items():
         counts = [one.counts(with_dropped=with_dropped) for one in edges.values()]
         id_ = "all" if with_dropped else "without_dropped"
-        yield DetectionCounts(id_, name, sum(counts, ConfusionMatrix(0, 0, 0, 0)))
+        yield DetectionCounts(id_, name, sum(counts, BinaryConfusionMatrix(0, 0, 0, 0)))
     for edge, score in edges.items():
         name = Text(*_edge_name(edge, "2 m sections", "の2m区間"))
         yield DetectionCounts(edge, name, score.counts(with_dropped=True))

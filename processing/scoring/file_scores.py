@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from processing.core.text import Text
-from processing.scoring.confusion_matrix import ConfusionMatrix
+from processing.scoring.confusion_matrix import BinaryConfusionMatrix
 from processing.scoring.mapped_features import MappedFile
 from processing.scoring.point_scores import NamedFigure, NamedShare
 from processing.scoring.reliability import share_of
@@ -25,14 +25,14 @@ class DetectionCounts:
     id : str
         Its name in JSON.
     name : Text
-    counts : ConfusionMatrix
+    counts : BinaryConfusionMatrix
     has_rejections : bool
         Whether there are places where nothing is and nothing was found; else its TN says nothing.
     """
 
     id: str
     name: Text
-    counts: ConfusionMatrix
+    counts: BinaryConfusionMatrix
     has_rejections: bool = False
 
 
@@ -90,7 +90,7 @@ class FileScore:
     left_out: Mapping[str, int] = field(default_factory=dict)
     limits: Mapping[str, float] = field(default_factory=dict)
 
-    def counts_of(self, id: str) -> ConfusionMatrix:  # noqa: A002 - the field's name
+    def counts_of(self, id: str) -> BinaryConfusionMatrix:  # noqa: A002 - the field's name
         """The counts of one name.
 
         Raises

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.core.text import Text
-from processing.scoring.confusion_matrix import ConfusionMatrix
+from processing.scoring.confusion_matrix import BinaryConfusionMatrix
 from processing.scoring.file_scores import DetectionCounts, FileScore, errors_of, named_share
 from processing.scoring.gutter_runs import (
     JOINT_M,
@@ -81,7 +81,7 @@ class _Pieces:
     is_on_unseen: NDArray[np.bool_]  # of the result: most of it lies on lids that nobody can see
     pairs: tuple[tuple[int, int], ...]
 
-    def counts(self, kind: str | None = None) -> ConfusionMatrix:
+    def counts(self, kind: str | None = None) -> BinaryConfusionMatrix:
         """Of one type, or of both alike; one taken for the other is a miss and a false alarm."""
 
         def is_of(feature: MappedFeature) -> bool:
@@ -95,7 +95,7 @@ class _Pieces:
         left_out |= {i for i, j in self.pairs if not self.is_asked[j]}
         given = sum(is_of(one) for i, one in enumerate(self.result) if i not in left_out)
         wanted = sum(is_of(one) for j, one in enumerate(self.truth) if self.is_asked[j])
-        return ConfusionMatrix(int(hits), int(given - hits), int(wanted - hits), 0)
+        return BinaryConfusionMatrix(int(hits), int(given - hits), int(wanted - hits), 0)
 
 
 def gutter_score(result: MappedFile, truth: MappedFile) -> FileScore:
@@ -223,17 +223,17 @@ def _mostly_on(found: Areas, unseen: Areas) -> NDArray[np.bool_]:
 
 def _slot_counts(
     runs: Sequence[GutterSlots], found: Sequence[MappedFeature], areas: Areas
-) -> tuple[ConfusionMatrix, int, int]:
+) -> tuple[BinaryConfusionMatrix, int, int]:
     """Slots along all runs and beside them; how many runs were found, and of how many."""
-    counts, found_runs, asked_runs = ConfusionMatrix(0, 0, 0, 0), 0, 0
+    counts, found_runs, asked_runs = BinaryConfusionMatrix(0, 0, 0, 0), 0, 0
     for run in runs:
         is_found, _ = _on_run(run, areas)
-        counts += ConfusionMatrix.of(run.has_lid[run.is_asked], is_found[run.is_asked])
+        counts += BinaryConfusionMatrix.of(run.has_lid[run.is_asked], is_found[run.is_asked])
         wanted = run.has_lid & run.is_asked
         asked_runs += bool(wanted.any())
         found_runs += bool(wanted.any() and is_found[wanted].mean() >= RUN_SHARE)
     beside = sum(map(_slots_of, _beside_runs(runs, found, areas)))
-    return counts + ConfusionMatrix(0, beside, 0, 0), found_runs, asked_runs
+    return counts + BinaryConfusionMatrix(0, beside, 0, 0), found_runs, asked_runs
 
 
 def _on_run(run: GutterSlots, areas: Areas) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:

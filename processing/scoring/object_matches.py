@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.scoring.confusion_matrix import ConfusionMatrix
+from processing.scoring.confusion_matrix import BinaryConfusionMatrix
 from processing.scoring.file_scores import ErrorStatistics, errors_of
 from processing.scoring.mapped_features import Floats, MappedFeature, MappedFile
 from processing.scoring.one_to_one import pairs_within
@@ -30,7 +30,7 @@ class ObjectMatches:
     ----------
     partners : tuple of Partner
         Things that were asked for and found, in the truth's order.
-    counts : ConfusionMatrix
+    counts : BinaryConfusionMatrix
         Without those that were not asked for.
     alone : tuple of MappedFeature
         Found where nothing is.
@@ -39,7 +39,7 @@ class ObjectMatches:
     """
 
     partners: tuple[ObjectMatch, ...]
-    counts: ConfusionMatrix
+    counts: BinaryConfusionMatrix
     alone: tuple[MappedFeature, ...]
     unseen: int
     unseen_found: int
@@ -86,7 +86,7 @@ def match_objects(
     hits, wanted = len(partners), int(asked.sum())
     return ObjectMatches(
         partners,
-        ConfusionMatrix(hits, len(alone), wanted - hits, 0),
+        BinaryConfusionMatrix(hits, len(alone), wanted - hits, 0),
         alone,
         len(truth) - wanted,
         len(of_result) - hits,

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from processing.core.text import Text
 from processing.scoring.coded_points import CodePairs
-from processing.scoring.confusion_matrix import ClassCounts, ConfusionMatrix, is_one_of
+from processing.scoring.confusion_matrix import BinaryConfusionMatrix, ConfusionMatrix, is_one_of
 from processing.scoring.reliability import ShareInterval, share_of
 
 
@@ -22,12 +22,12 @@ class ClassScore:
     id : str
         Its name in JSON.
     name : Text
-    counts : ConfusionMatrix
+    counts : BinaryConfusionMatrix
     """
 
     id: str
     name: Text
-    counts: ConfusionMatrix
+    counts: BinaryConfusionMatrix
 
 
 @dataclass(frozen=True)
@@ -79,6 +79,8 @@ class PointScore:
     figures : tuple of NamedFigure
     kinds : tuple of KindShare
         By group and number; empty where the truth has no kinds.
+    matrix : ConfusionMatrix or None
+        Every class against every other; None where the question has two answers only.
     """
 
     tool: str
@@ -87,8 +89,9 @@ class PointScore:
     shares: tuple[NamedShare, ...]
     figures: tuple[NamedFigure, ...] = ()
     kinds: tuple[KindShare, ...] = ()
+    matrix: ConfusionMatrix | None = None
 
-    def class_of(self, id: str) -> ConfusionMatrix:  # noqa: A002 - the field's name
+    def class_of(self, id: str) -> BinaryConfusionMatrix:  # noqa: A002 - the field's name
         """The counts with one class positive.
 
         Raises
@@ -113,7 +116,7 @@ class PointScorer:
         Codes of a truth that says only no and yes: text with classes 0 and 1.
     flags : mapping of str to (int, int)
         Names of yes-or-no arrays in a truth, with the codes for no and yes.
-    told : callable
+    score_counts : callable
         Classes, shares and figures out of counts.
     """
 
@@ -123,23 +126,21 @@ class PointScorer:
     if_false: int
     if_true: int
     flags: Mapping[str, tuple[int, int]]
-    told: Callable[[ClassCounts], PointScore]
+    score_counts: Callable[[ConfusionMatrix], PointScore]
 
     def score(self, pairs: Iterable[CodePairs]) -> PointScore:
         """Score points that are paired with their truth, a block at a time."""
-        counts = ClassCounts()
+        counts = ConfusionMatrix()
         kinds: dict[tuple[str, int], list[int]] = {}
         for pair in pairs:
-            counts += ClassCounts.of(pair.truth.codes, pair.result.codes)
+            counts += ConfusionMatrix.of(pair.truth.codes, pair.result.codes)
             _count_kinds(pair, self.codes, kinds)
-        score = self.told(counts)
+        score = self.score_counts(counts)
         by_kind = tuple(
             KindShare(group, kind, share_of(right, of))
             for (group, kind), (right, of) in sorted(kinds.items())
         )
-        return PointScore(
-            score.tool, score.points, score.classes, score.shares, score.figures, by_kind
-        )
+        return replace(score, kinds=by_kind)
 
 
 NOISE_CODES = frozenset({7, 18})
@@ -147,7 +148,7 @@ GROUND_CODES = frozenset({2, 11})
 """A road's surface is ground too, where a classification has it apart."""
 
 
-def noise_score(counts: ClassCounts) -> PointScore:
+def noise_score(counts: ConfusionMatrix) -> PointScore:
     """Noise: both classes, what doing nothing would score, and what went wrong.
 
     References
@@ -155,7 +156,7 @@ def noise_score(counts: ClassCounts) -> PointScore:
     Specification noise_ground.md, A5 (kept points, equations 1 to 3) and A7 (what must be said
     beside them).
     """
-    noise = counts.confusion_matrix(NOISE_CODES)
+    noise = counts.against_rest(NOISE_CODES)
     true_noise, kept = noise.hits + noise.misses, noise.turned()
     right_code = sum(counts.pairs((code,), (code,)) for code in NOISE_CODES)
     return PointScore(
@@ -194,7 +195,7 @@ def noise_score(counts: ClassCounts) -> PointScore:
     )
 
 
-def ground_score(counts: ClassCounts) -> PointScore:
+def ground_score(counts: ConfusionMatrix) -> PointScore:
     """Ground: both classes, errors of both types, and the agreement beyond chance.
 
     References
@@ -202,7 +203,7 @@ def ground_score(counts: ClassCounts) -> PointScore:
     Specification noise_ground.md, B4 (positive: the removed point); Sithole and Vosselman 2004,
     ISPRS Journal 59, section 4.2 (types of error: I rejects ground, II accepts objects).
     """
-    ground = counts.confusion_matrix(GROUND_CODES)
+    ground = counts.against_rest(GROUND_CODES)
     removed = ground.turned()
     true_ground, true_objects = ground.hits + ground.misses, removed.hits + removed.misses
     return PointScore(

@@ -37,7 +37,7 @@ NOISE_SCORER = PointScorer(
     if_false=0,
     if_true=18,
     flags={"signal": (18, 0)},
-    told=noise_score,
+    score_counts=noise_score,
 )
 GROUND_SCORER = PointScorer(
     tool="ground",
@@ -46,7 +46,7 @@ GROUND_SCORER = PointScorer(
     if_false=2,
     if_true=1,
     flags={"ground": (1, 2)},
-    told=ground_score,
+    score_counts=ground_score,
 )
 CLASS_SCORER = PointScorer(
     tool="classify",
@@ -55,7 +55,7 @@ CLASS_SCORER = PointScorer(
     if_false=0,
     if_true=1,
     flags={},
-    told=class_score,
+    score_counts=class_score,
 )
 POINT_SCORERS = (NOISE_SCORER, GROUND_SCORER, CLASS_SCORER)
 FEATURE_SCORERS = (

@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from processing.core.text import Text
-from processing.scoring.confusion_matrix import ConfusionMatrix
+from processing.scoring.confusion_matrix import BinaryConfusionMatrix
 from processing.scoring.file_scores import DetectionCounts, FileScore, errors_of, named_share
 from processing.scoring.mapped_features import Floats, MappedFeature, MappedFile
 from processing.scoring.object_matches import (
@@ -78,12 +78,12 @@ def sign_score(result: MappedFile, truth: MappedFile) -> FileScore:
         "signs",
         (
             DetectionCounts(
-                "signs", _NAME, ConfusionMatrix(len(main), false_signs, signs - len(main), 0)
+                "signs", _NAME, BinaryConfusionMatrix(len(main), false_signs, signs - len(main), 0)
             ),
             DetectionCounts(
                 "supplementary",
                 Text("supplementary plates", "補助標識"),
-                ConfusionMatrix(
+                BinaryConfusionMatrix(
                     found.counts.hits - len(main),
                     false_plates,
                     plates - found.counts.hits + len(main),

@@ -13,11 +13,16 @@ from app.cli.scores.score_cells import (
     so_many_of,
 )
 from processing.core.text import Language, Text
+from processing.scoring.confusion_matrix import ConfusionMatrix
 from processing.scoring.point_scores import PointScore
 from processing.scoring.reliability import ShareInterval
 
 _HEAD = (Text("positive class", "正例とするクラス"), *COUNTS_HEAD)
 _KINDS_HEAD = (Text("kind", "種類"), Text("points", "点数"), Text("right", "正解率"))
+
+_MATRIX_HEAD = Text(
+    "true class (rows), class given (columns)", "正解のクラス（行）・結果のクラス（列）"
+)
 
 
 def point_score_json(score: PointScore) -> dict[str, object]:
@@ -25,13 +30,17 @@ def point_score_json(score: PointScore) -> dict[str, object]:
     kinds: dict[str, dict[str, object]] = {}
     for one in score.kinds:
         kinds.setdefault(one.group, {})[str(one.kind)] = _share_json(one.right)
-    return {
+    figures: dict[str, object] = {
         "points": score.points,
         "classes": {one.id: counts_json(one.counts) for one in score.classes},
         "shares": {one.id: _share_json(one.share) for one in score.shares},
         "figures": {one.id: or_null(one.value) for one in score.figures},
         "kinds": kinds,
     }
+    if score.matrix is not None:
+        matrix = score.matrix
+        figures["matrix"] = {"codes": list(matrix.codes), "counts": matrix.counts.tolist()}
+    return figures
 
 
 def point_score_lines(score: PointScore, tool: Text, language: Language) -> list[str]:
@@ -57,7 +66,19 @@ def point_score_lines(score: PointScore, tool: Text, language: Language) -> list
             for one in score.kinds
         ]
         lines += ["", *align_lines(kinds)]
+    if score.matrix is not None and score.matrix.codes:
+        lines += ["", *_matrix_lines(score.matrix, language)]
     return lines
+
+
+def _matrix_lines(matrix: ConfusionMatrix, language: Language) -> list[str]:
+    """Points by true class, a row each, and by the class that they were given."""
+    rows = [[_MATRIX_HEAD.in_language(language), *map(str, matrix.codes)]]
+    rows += [
+        [str(code), *(f"{count:,}" for count in counts)]
+        for code, counts in zip(matrix.codes, matrix.counts.tolist(), strict=True)
+    ]
+    return align_lines(rows)
 
 
 def _share_json(share: ShareInterval) -> dict[str, object]:

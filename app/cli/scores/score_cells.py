@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from processing.core.text import Text
-from processing.scoring.confusion_matrix import ConfusionMatrix
+from processing.scoring.confusion_matrix import BinaryConfusionMatrix
 from processing.scoring.reliability import ShareInterval
 
 COUNTS_HEAD = (
@@ -19,7 +19,7 @@ COUNTS_HEAD = (
 )
 
 
-def count_cells(counts: ConfusionMatrix, *, has_rejections: bool = True) -> list[str]:
+def count_cells(counts: BinaryConfusionMatrix, *, has_rejections: bool = True) -> list[str]:
     """The cells under `COUNTS_HEAD`."""
     shares = (counts.precision, counts.recall, counts.f_measure)
     found = (counts.hits, counts.false_alarms, counts.misses)
@@ -27,7 +27,7 @@ def count_cells(counts: ConfusionMatrix, *, has_rejections: bool = True) -> list
     return [*map(percent, shares), *(f"{count:,}" for count in found), rejected]
 
 
-def counts_json(counts: ConfusionMatrix, *, has_rejections: bool = True) -> dict[str, object]:
+def counts_json(counts: BinaryConfusionMatrix, *, has_rejections: bool = True) -> dict[str, object]:
     """Counts and what is computed from them."""
     return {
         "precision": or_null(counts.precision),

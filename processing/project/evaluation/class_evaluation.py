@@ -19,7 +19,7 @@ from processing.recording.columns.columns import ColumnWriter
 from processing.recording.columns.error_map import ERROR_MAP, map_errors
 from processing.recording.drive import Drive
 from processing.scoring.asked_classes import ASKED
-from processing.scoring.confusion_matrix import ConfusionMatrix, is_one_of
+from processing.scoring.confusion_matrix import BinaryConfusionMatrix, is_one_of
 from processing.tools.tool import FinishedColumns
 
 _AT_ONCE = 1 << 20
@@ -37,14 +37,14 @@ class ClassEvaluation:
         None: the classes as they stand now, corrections by hand and all.
     drives : tuple of str
         On which it was counted.
-    counts : ConfusionMatrix
+    counts : BinaryConfusionMatrix
         Of the points whose truth is known; positive are those that the tool looks for.
     """
 
     tool: str
     run: Run | None
     drives: tuple[str, ...]
-    counts: ConfusionMatrix
+    counts: BinaryConfusionMatrix
 
 
 def evaluate_classes(
@@ -97,7 +97,7 @@ def evaluate_classes(
             found.append(ClassEvaluation(tool, which, ids, known_counts[which.id, ids]))
             continue
         part = PartMonitor(monitor, number / len(wanted), (number + 1) / len(wanted))
-        counts = ConfusionMatrix(0, 0, 0, 0)
+        counts = BinaryConfusionMatrix(0, 0, 0, 0)
         for drive in on:
             counts += _counted(drive, truth, tool, which, part)
         found.append(ClassEvaluation(tool, which, ids, counts))
@@ -152,8 +152,8 @@ def _is_on(drive: Drive, wanted: Sequence[tuple[str, Run | None, list[Drive]]]) 
 
 def _counted(
     drive: Drive, truth: str, tool: str, run: Run | None, monitor: Monitor
-) -> ConfusionMatrix:
-    counts = ConfusionMatrix(0, 0, 0, 0)
+) -> BinaryConfusionMatrix:
+    counts = BinaryConfusionMatrix(0, 0, 0, 0)
     for start in range(0, drive.count, _AT_ONCE):
         monitor.check()
         monitor.report(start / drive.count)
@@ -162,7 +162,9 @@ def _counted(
         is_known = codes > 0
         if is_known.any():
             is_found = _found(drive, tool, run, start, stop)[is_known]
-            counts += ConfusionMatrix.of(is_one_of(codes[is_known], ASKED[tool].codes), is_found)
+            counts += BinaryConfusionMatrix.of(
+                is_one_of(codes[is_known], ASKED[tool].codes), is_found
+            )
     return counts
 
 

@@ -16,7 +16,7 @@ from processing.core.safe_write import write_safely
 from processing.project.evaluation.class_evaluation import ClassEvaluation
 from processing.project.evaluation.parameter_study import ParameterStudy
 from processing.scoring.asked_classes import ASKED
-from processing.scoring.confusion_matrix import ConfusionMatrix
+from processing.scoring.confusion_matrix import BinaryConfusionMatrix
 
 _DIGITS = 6
 
@@ -78,7 +78,7 @@ def write_study(path: Path, study: ParameterStudy, *, never: Iterable[Path] = ()
     _write(path, rows, never)
 
 
-def _scores(tool: str, counts: ConfusionMatrix) -> dict[str, str]:
+def _scores(tool: str, counts: BinaryConfusionMatrix) -> dict[str, str]:
     asked, turned = ASKED[tool], counts.turned()
     found, other = _id(asked.found.en), _id(asked.other.en)
     return {

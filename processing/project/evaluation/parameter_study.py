@@ -18,7 +18,7 @@ from processing.core.parameters import Parameter, ParameterValue, fill_parameter
 from processing.core.text import Text
 from processing.recording.drive import Drive
 from processing.scoring.asked_classes import ASKED
-from processing.scoring.confusion_matrix import ConfusionMatrix, is_one_of
+from processing.scoring.confusion_matrix import BinaryConfusionMatrix, is_one_of
 from processing.tools.runner import RunRequest, drives_of, run_together, tool_of
 from processing.tools.tool import FinishedColumns
 
@@ -57,12 +57,12 @@ class StudyCell:
     ----------
     values : tuple
         Of the varied parameters, in their order.
-    counts : ConfusionMatrix
+    counts : BinaryConfusionMatrix
         Positive are the points that the tool looks for.
     """
 
     values: tuple[ParameterValue, ...]
-    counts: ConfusionMatrix
+    counts: BinaryConfusionMatrix
 
 
 @dataclass(frozen=True)
@@ -113,9 +113,9 @@ class ParameterStudy:
         return max(scored, key=lambda cell: cell.counts.f_measure, default=None)
 
     @property
-    def untouched(self) -> ConfusionMatrix:
+    def untouched(self) -> BinaryConfusionMatrix:
         """What leaving every point as it is would score."""
-        none = ConfusionMatrix(0, 0, 0, 0)
+        none = BinaryConfusionMatrix(0, 0, 0, 0)
         return self.cells[0].counts.if_nothing_was_positive() if self.cells else none
 
 
@@ -157,12 +157,12 @@ def _tried(
     truth: TruthOf,
     monitor: Monitor,
     into: Path,
-) -> ConfusionMatrix:
+) -> BinaryConfusionMatrix:
     """What one setting does to all drives of a study."""
     tool = tool_of(request.tool)
     parameters = fill_parameters(tool.parameters, setting)
     everything = (*request.drives, *request.beside)
-    counts, left = ConfusionMatrix(0, 0, 0, 0), list(request.drives)
+    counts, left = BinaryConfusionMatrix(0, 0, 0, 0), list(request.drives)
     while left:
         beside = tuple(other for other in everything if other is not left[0])
         wanted = RunRequest(tool.id, left[0], parameters, beside)
@@ -276,15 +276,17 @@ def _counted(
     truth: TruthOf,
     codes: frozenset[int],
     monitor: Monitor,
-) -> ConfusionMatrix:
-    counts = ConfusionMatrix(0, 0, 0, 0)
+) -> BinaryConfusionMatrix:
+    counts = BinaryConfusionMatrix(0, 0, 0, 0)
     for start in range(0, drive.count, _AT_ONCE):
         monitor.check()
         stop = min(start + _AT_ONCE, drive.count)
         known = truth(drive, start, stop)
         is_known = known > 0
         found = result.read(_CLASS, start, stop)[is_known]
-        counts += ConfusionMatrix.of(is_one_of(known[is_known], codes), is_one_of(found, codes))
+        counts += BinaryConfusionMatrix.of(
+            is_one_of(known[is_known], codes), is_one_of(found, codes)
+        )
     return counts
 
 

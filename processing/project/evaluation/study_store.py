@@ -10,7 +10,7 @@ from processing.core.parameters import ParameterValue
 from processing.core.text import Text
 from processing.project.evaluation.parameter_study import ParameterStudy, StudyCell, VariedParameter
 from processing.project.store.project_settings import JsonValue, ProjectSettings
-from processing.scoring.confusion_matrix import ConfusionMatrix
+from processing.scoring.confusion_matrix import BinaryConfusionMatrix
 
 MOST_KEPT = 50
 """The oldest ones go first; a study of twenty by twenty is some 20 kB."""
@@ -158,7 +158,7 @@ def _varied_of(stored: JsonValue) -> VariedParameter:
 def _cell_of(stored: JsonValue) -> StudyCell:
     values, numbers = _list(stored)
     counts = [one for one in _list(numbers) if isinstance(one, int)]
-    return StudyCell(tuple(_value(one) for one in _list(values)), ConfusionMatrix(*counts))
+    return StudyCell(tuple(_value(one) for one in _list(values)), BinaryConfusionMatrix(*counts))
 
 
 def _list(stored: JsonValue) -> list[JsonValue]:

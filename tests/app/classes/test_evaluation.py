@@ -24,7 +24,7 @@ from processing.map.change import Change, Replacement
 from processing.map.feature import Feature, Vertex, new_feature_id
 from processing.project.importing.importing import ImportRequest
 from processing.project.review.review_state import ReviewOrder
-from processing.scoring.confusion_matrix import ConfusionMatrix
+from processing.scoring.confusion_matrix import BinaryConfusionMatrix
 from processing.scoring.file_scores import FileScore
 from processing.scoring.reliability import reliability_of
 from processing.tools.tool import Candidate, CandidateResult
@@ -136,4 +136,4 @@ def test_what_a_run_found_is_scored_against_what_was_drawn_and_accepted(
     scores: list[Mapping[str, FileScore]] = []
     evaluation.score_maps(scores.append)
     qtbot.waitUntil(lambda: bool(scores), timeout=WAIT_MS)
-    assert scores[0][made.run.id].counts_of("all") == ConfusionMatrix(1, 2, 0, 0)
+    assert scores[0][made.run.id].counts_of("all") == BinaryConfusionMatrix(1, 2, 0, 0)

@@ -106,8 +106,33 @@ def test_all_classes_are_scored_each_against_the_others_and_by_their_mean(
     assert reported["figures"]["mean_f"] == pytest.approx((6 / 7 + 0.8 + 2 / 3) / 3)
     assert reported["figures"]["mean_f_ground_joined"] == pytest.approx((1 + 2 / 3) / 2)
     assert reported["shares"]["right"]["points"] == 7
+    assert reported["matrix"]["codes"] == [1, 2, 11, 18, 65]
+    assert reported["matrix"]["counts"][1] == [0, 3, 1, 0, 0]
+    by_chance = (4 * 3 + 2 * 3 + 2 * 1 + 1 * 1) / 81
+    assert reported["figures"]["kappa"] == pytest.approx((7 / 9 - by_chance) / (1 - by_chance))
     truth_of_points = write_las(tmp_path / "truth.laz", positions(), truth)
     assert scored(capsys, "classify", result, truth_of_points)["figures"] == reported["figures"]
+
+
+def test_the_matrix_of_all_classes_is_a_table_of_true_and_given_classes(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("ZUKA_LANGUAGE", "en")
+    np.save(tmp_path / "left.labels.npy", np.array([2, 2, 2, 5, 5, 5, 65, 65, 65, 65], np.uint8))
+    codes = np.array([2, 2, 5, 5, 5, 5, 65, 2, 65, 65], np.uint8)
+    result = write_las(tmp_path / "result.las", positions(), codes)
+    arguments = ["score", "classify", str(result), str(tmp_path / "left.labels.npy")]
+    assert run_in_terminal(arguments) == DONE
+    *_, head, ground, trees, signs = capsys.readouterr().out.rstrip("\n").splitlines()
+    assert head.split()[-3:] == ["2", "5", "65"]
+    assert [line.split() for line in (ground, trees, signs)] == [
+        ["2", "2", "1", "0"],
+        ["5", "0", "3", "0"],
+        ["65", "1", "0", "3"],
+    ]
+    np.savez(tmp_path / "truth.npz", code=TRUTH)
+    result = write_las(tmp_path / "noise.las", positions(), RESULT)
+    assert "matrix" not in scored(capsys, "noise", result, tmp_path / "truth.npz")
 
 
 def test_text_of_the_isprs_test_has_ground_0_and_object_1(

@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from processing.core.errors import BadFile
-from processing.scoring.confusion_matrix import ConfusionMatrix
+from processing.scoring.confusion_matrix import BinaryConfusionMatrix
 from processing.scoring.gutters import gutter_score
 from tests.processing.scoring.small_maps import (
     changed,
@@ -29,10 +29,10 @@ TRUTH = gutter()  # 30 places, two without a lid, three gratings
 
 def test_the_truth_itself_is_right_in_everything() -> None:
     score = gutter_score(TRUTH, TRUTH)
-    assert score.counts_of("slots") == ConfusionMatrix(28, 0, 0, 2)
-    assert score.counts_of("pieces") == ConfusionMatrix(28, 0, 0, 0)
-    assert score.counts_of("lids") == ConfusionMatrix(25, 0, 0, 0)
-    assert score.counts_of("gratings") == ConfusionMatrix(3, 0, 0, 0)
+    assert score.counts_of("slots") == BinaryConfusionMatrix(28, 0, 0, 2)
+    assert score.counts_of("pieces") == BinaryConfusionMatrix(28, 0, 0, 0)
+    assert score.counts_of("lids") == BinaryConfusionMatrix(25, 0, 0, 0)
+    assert score.counts_of("gratings") == BinaryConfusionMatrix(3, 0, 0, 0)
     assert score.share_of("runs") == 1
     assert score.errors_of("corner_plan").count == 4 * 28
     assert max(one.largest for one in score.errors) == 0
@@ -40,7 +40,7 @@ def test_the_truth_itself_is_right_in_everything() -> None:
 
 def test_a_small_shift_is_measured_at_the_corners() -> None:
     score = gutter_score(moved(TRUTH, north=0.05, up=-0.02), TRUTH)
-    assert score.counts_of("pieces") == ConfusionMatrix(28, 0, 0, 0)
+    assert score.counts_of("pieces") == BinaryConfusionMatrix(28, 0, 0, 0)
     assert score.errors_of("corner_plan").mean == pytest.approx(0.05)
     assert score.errors_of("corner_plan").within_95 == pytest.approx(0.05)
     assert score.errors_of("corner_height").mean == pytest.approx(-0.02)
@@ -48,25 +48,25 @@ def test_a_small_shift_is_measured_at_the_corners() -> None:
 
 def test_lids_shifted_by_half_of_their_length_are_wrong_but_their_slots_are_found() -> None:
     score = gutter_score(moved(TRUTH, east=0.25), TRUTH)
-    assert score.counts_of("pieces") == ConfusionMatrix(0, 28, 28, 0)
+    assert score.counts_of("pieces") == BinaryConfusionMatrix(0, 28, 28, 0)
     # The lid before the gap ends 5 cm before the gap's first slot has its middle.
     assert score.counts_of("slots").hits == 28
-    assert gutter_score(moved(TRUTH, north=2.0), TRUTH).counts_of("slots") == ConfusionMatrix(
+    assert gutter_score(moved(TRUTH, north=2.0), TRUTH).counts_of("slots") == BinaryConfusionMatrix(
         0, 28, 28, 2
     )
 
 
 def test_missing_lids_are_missed_one_by_one() -> None:
     score = gutter_score(without_each_third(TRUTH), TRUTH)
-    assert score.counts_of("pieces") == ConfusionMatrix(19, 0, 9, 0)
-    assert score.counts_of("slots") == ConfusionMatrix(19, 0, 9, 2)
+    assert score.counts_of("pieces") == BinaryConfusionMatrix(19, 0, 9, 0)
+    assert score.counts_of("slots") == BinaryConfusionMatrix(19, 0, 9, 2)
 
 
 def test_lids_in_the_gap_and_elsewhere_are_false() -> None:
     more = [lid(6.0), lid(6.6), lid(40.0)]
     score = gutter_score(with_more(TRUTH, *more), TRUTH)
-    assert score.counts_of("pieces") == ConfusionMatrix(28, 3, 0, 0)
-    assert score.counts_of("slots") == ConfusionMatrix(28, 3, 0, 0)
+    assert score.counts_of("pieces") == BinaryConfusionMatrix(28, 3, 0, 0)
+    assert score.counts_of("slots") == BinaryConfusionMatrix(28, 3, 0, 0)
     long = feature(
         "area", [[40, 0, 0], [43, 0, 0], [43, 1, 0], [40, 1, 0]], kind="gutter", type="lid"
     )
@@ -75,15 +75,15 @@ def test_lids_in_the_gap_and_elsewhere_are_false() -> None:
 
 def test_a_lid_found_twice_is_right_once() -> None:
     score = gutter_score(with_more(TRUTH, lid(0.02)), TRUTH)
-    assert score.counts_of("pieces") == ConfusionMatrix(28, 1, 0, 0)
-    assert score.counts_of("slots") == ConfusionMatrix(28, 0, 0, 2)
+    assert score.counts_of("pieces") == BinaryConfusionMatrix(28, 1, 0, 0)
+    assert score.counts_of("slots") == BinaryConfusionMatrix(28, 0, 0, 2)
 
 
 def test_a_grating_taken_for_a_lid_is_wrong_for_both() -> None:
     score = gutter_score(with_facts(TRUTH, lambda _: {"type": "lid"}), TRUTH)
-    assert score.counts_of("pieces") == ConfusionMatrix(28, 0, 0, 0)
-    assert score.counts_of("lids") == ConfusionMatrix(25, 3, 0, 0)
-    assert score.counts_of("gratings") == ConfusionMatrix(0, 0, 3, 0)
+    assert score.counts_of("pieces") == BinaryConfusionMatrix(28, 0, 0, 0)
+    assert score.counts_of("lids") == BinaryConfusionMatrix(25, 3, 0, 0)
+    assert score.counts_of("gratings") == BinaryConfusionMatrix(0, 0, 3, 0)
 
 
 def test_corners_may_begin_anywhere_and_go_round_either_way() -> None:
@@ -113,8 +113,8 @@ def test_what_the_points_do_not_show_counts_neither_way() -> None:
     seen = changed(TRUTH, lambda one: None if one.number in facts else one)
     for result in (truth, seen):
         score = gutter_score(result, truth)
-        assert score.counts_of("pieces") == ConfusionMatrix(25, 0, 0, 0)
-        assert score.counts_of("slots") == ConfusionMatrix(25, 0, 0, 2)
+        assert score.counts_of("pieces") == BinaryConfusionMatrix(25, 0, 0, 0)
+        assert score.counts_of("slots") == BinaryConfusionMatrix(25, 0, 0, 2)
     assert gutter_score(truth, truth).left_out == {
         "unseen": 3,
         "unseen_found": 3,
@@ -130,14 +130,14 @@ def test_lids_guessed_over_hidden_ones_are_not_held_against_a_result() -> None:
     guessed = [lid(0.6 * number + 0.3) for number in range(4)]
     seen = changed(TRUTH, lambda one: one if one.number > 5 else None)
     score = gutter_score(with_more(seen, *guessed), truth)
-    assert score.counts_of("pieces") == ConfusionMatrix(23, 0, 0, 0)
-    assert score.counts_of("slots") == ConfusionMatrix(23, 0, 0, 2)
+    assert score.counts_of("pieces") == BinaryConfusionMatrix(23, 0, 0, 0)
+    assert score.counts_of("slots") == BinaryConfusionMatrix(23, 0, 0, 2)
 
 
 def test_a_street_without_gutters_makes_all_that_is_found_false() -> None:
     nothing = map_of([])
-    assert gutter_score(TRUTH, nothing).counts_of("pieces") == ConfusionMatrix(0, 28, 0, 0)
-    assert gutter_score(TRUTH, nothing).counts_of("slots") == ConfusionMatrix(0, 28, 0, 0)
+    assert gutter_score(TRUTH, nothing).counts_of("pieces") == BinaryConfusionMatrix(0, 28, 0, 0)
+    assert gutter_score(TRUTH, nothing).counts_of("slots") == BinaryConfusionMatrix(0, 28, 0, 0)
     assert np.isnan(gutter_score(nothing, nothing).share_of("runs"))
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from processing.scoring.confusion_matrix import ConfusionMatrix
+from processing.scoring.confusion_matrix import BinaryConfusionMatrix
 from processing.scoring.poles import pole_score
 from tests.processing.scoring.small_maps import (
     map_of,
@@ -25,16 +25,16 @@ TRUTH = map_of(
 
 def test_the_truth_itself_is_right_in_everything() -> None:
     score = pole_score(TRUTH, TRUTH)
-    assert score.counts_of("poles") == ConfusionMatrix(9, 0, 0, 0)
+    assert score.counts_of("poles") == BinaryConfusionMatrix(9, 0, 0, 0)
     assert score.share_of("type") == 1
     assert max(one.largest for one in score.errors) == 0
 
 
 def test_places_types_and_measures_fall_one_by_one() -> None:
     score = pole_score(moved(TRUTH, north=0.3), TRUTH)
-    assert score.counts_of("poles") == ConfusionMatrix(9, 0, 0, 0)
+    assert score.counts_of("poles") == BinaryConfusionMatrix(9, 0, 0, 0)
     assert score.errors_of("place").rms == pytest.approx(0.3)
-    assert pole_score(moved(TRUTH, north=0.6), TRUTH).counts_of("poles") == ConfusionMatrix(
+    assert pole_score(moved(TRUTH, north=0.6), TRUTH).counts_of("poles") == BinaryConfusionMatrix(
         0, 9, 9, 0
     )
     other = with_facts(TRUTH, lambda _: {"type": "street_light", "height_m": 9.0})
@@ -51,11 +51,11 @@ def test_a_kind_can_say_the_type() -> None:
 
 
 def test_missing_added_and_unseen_poles_are_counted() -> None:
-    assert pole_score(without_each_third(TRUTH), TRUTH).counts_of("poles") == ConfusionMatrix(
+    assert pole_score(without_each_third(TRUTH), TRUTH).counts_of("poles") == BinaryConfusionMatrix(
         6, 0, 3, 0
     )
     truth = with_more(TRUTH, point(0.0, 9.0, kind="pole", points=4))
     for result in (TRUTH, truth):
-        assert pole_score(result, truth).counts_of("poles") == ConfusionMatrix(9, 0, 0, 0)
+        assert pole_score(result, truth).counts_of("poles") == BinaryConfusionMatrix(9, 0, 0, 0)
     more = with_more(TRUTH, point(0.0, 9.0, kind="pole"))
-    assert pole_score(more, TRUTH).counts_of("poles") == ConfusionMatrix(9, 1, 0, 0)
+    assert pole_score(more, TRUTH).counts_of("poles") == BinaryConfusionMatrix(9, 1, 0, 0)

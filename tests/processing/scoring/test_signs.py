@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from processing.core.errors import BadFile
-from processing.scoring.confusion_matrix import ConfusionMatrix
+from processing.scoring.confusion_matrix import BinaryConfusionMatrix
 from processing.scoring.signs import SHAPES, sign_score
 from tests.processing.scoring.small_maps import (
     changed,
@@ -45,7 +45,7 @@ def rates(*arguments: object) -> list[float]:
 
 def test_the_truth_itself_is_right_in_everything() -> None:
     score = sign_score(TRUTH, TRUTH)
-    assert score.counts_of("signs") == ConfusionMatrix(12, 0, 0, 0)
+    assert score.counts_of("signs") == BinaryConfusionMatrix(12, 0, 0, 0)
     assert rates(TRUTH, TRUTH) == [1, 1, 1, 1, 1]
     assert max(one.largest for one in score.errors) == 0
 
@@ -53,10 +53,10 @@ def test_the_truth_itself_is_right_in_everything() -> None:
 def test_five_centimetres_off_are_in_place_and_thirty_are_not() -> None:
     assert rates(moved(TRUTH, east=0.05), TRUTH) == [1, 1, 1, 1, 1]
     far = sign_score(moved(TRUTH, east=0.3), TRUTH)
-    assert far.counts_of("signs") == ConfusionMatrix(12, 0, 0, 0)
+    assert far.counts_of("signs") == BinaryConfusionMatrix(12, 0, 0, 0)
     assert [one.share.value for one in far.shares] == [0, 0, 0, 1, 1]
     assert far.errors_of("place").mean == pytest.approx(0.3)
-    assert sign_score(moved(TRUTH, north=1.2), TRUTH).counts_of("signs") == ConfusionMatrix(
+    assert sign_score(moved(TRUTH, north=1.2), TRUTH).counts_of("signs") == BinaryConfusionMatrix(
         0, 12, 12, 0
     )
 
@@ -76,11 +76,11 @@ def test_facings_are_compared_round_the_north() -> None:
 
 
 def test_missing_and_added_plates_are_counted() -> None:
-    assert sign_score(without_each_third(TRUTH), TRUTH).counts_of("signs") == ConfusionMatrix(
+    assert sign_score(without_each_third(TRUTH), TRUTH).counts_of("signs") == BinaryConfusionMatrix(
         8, 0, 4, 0
     )
     more = with_more(TRUTH, point(0.0, 0.1, 2.0, kind="sign", shape="circle"))
-    assert sign_score(more, TRUTH).counts_of("signs") == ConfusionMatrix(12, 1, 0, 0)
+    assert sign_score(more, TRUTH).counts_of("signs") == BinaryConfusionMatrix(12, 1, 0, 0)
     assert rates(without_each_third(TRUTH), TRUTH)[2] == pytest.approx(8 / 12)
 
 
@@ -90,14 +90,14 @@ def test_supplementary_plates_are_judged_apart() -> None:
         lambda one: replace(one, facts={**one.facts, "supplementary": one.number % 2 == 1}),
     )
     score = sign_score(TRUTH, truth)
-    assert score.counts_of("signs") == ConfusionMatrix(6, 0, 0, 0)
-    assert score.counts_of("supplementary") == ConfusionMatrix(6, 0, 0, 0)
+    assert score.counts_of("signs") == BinaryConfusionMatrix(6, 0, 0, 0)
+    assert score.counts_of("supplementary") == BinaryConfusionMatrix(6, 0, 0, 0)
     assert score.errors_of("place").count == 6
     nothing = sign_score(map_of([]), truth)
     assert (
         nothing.counts_of("signs")
         == nothing.counts_of("supplementary")
-        == ConfusionMatrix(0, 0, 6, 0)
+        == BinaryConfusionMatrix(0, 0, 6, 0)
     )
 
 
@@ -105,9 +105,9 @@ def test_plates_whose_face_no_points_show_count_neither_way() -> None:
     behind = point(0.0, 50.0, 2.0, kind="sign", shape="circle", points=900, front_points=2)
     truth = with_more(TRUTH, behind)
     for result in (TRUTH, truth):
-        assert sign_score(result, truth).counts_of("signs") == ConfusionMatrix(12, 0, 0, 0)
+        assert sign_score(result, truth).counts_of("signs") == BinaryConfusionMatrix(12, 0, 0, 0)
     few = with_facts(map_of([behind]), lambda _: {"front_points": None, "points": 4})
-    assert sign_score(map_of([]), few).counts_of("signs") == ConfusionMatrix(0, 0, 0, 0)
+    assert sign_score(map_of([]), few).counts_of("signs") == BinaryConfusionMatrix(0, 0, 0, 0)
 
 
 def test_the_middle_of_the_outline_is_a_centre_too() -> None:
@@ -124,7 +124,7 @@ def test_the_middle_of_the_outline_is_a_centre_too() -> None:
 def test_plates_without_heights_are_compared_in_plan() -> None:
     flat = changed(TRUTH, lambda one: replace(one, xyz=one.xyz * [[1, 1, np.nan]]))
     score = sign_score(flat, TRUTH)
-    assert score.counts_of("signs") == ConfusionMatrix(12, 0, 0, 0)
+    assert score.counts_of("signs") == BinaryConfusionMatrix(12, 0, 0, 0)
     assert score.share_of("place") == 1
 
 

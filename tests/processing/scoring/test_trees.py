@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from processing.core.errors import BadFile
-from processing.scoring.confusion_matrix import ConfusionMatrix
+from processing.scoring.confusion_matrix import BinaryConfusionMatrix
 from processing.scoring.trees import tree_score
 from tests.processing.scoring.small_maps import (
     map_of,
@@ -39,7 +39,7 @@ TRUTH = map_of(
 
 def test_the_truth_itself_is_right_in_everything() -> None:
     score = tree_score(TRUTH, TRUTH)
-    assert score.counts_of("trees") == ConfusionMatrix(12, 0, 0, 0)
+    assert score.counts_of("trees") == BinaryConfusionMatrix(12, 0, 0, 0)
     assert {one.id: one.count for one in score.errors} == {
         "dbh": 9,
         "dbh_with_stakes": 3,
@@ -73,25 +73,25 @@ def test_a_girth_stands_for_a_diameter() -> None:
 
 def test_trees_within_two_metres_are_found_and_farther_ones_are_not() -> None:
     score = tree_score(moved(TRUTH, north=1.5, up=0.1), TRUTH)
-    assert score.counts_of("trees") == ConfusionMatrix(12, 0, 0, 0)
+    assert score.counts_of("trees") == BinaryConfusionMatrix(12, 0, 0, 0)
     assert score.errors_of("place").mean == pytest.approx(1.5)
     assert score.errors_of("foot_height").mean == pytest.approx(0.1)
-    assert tree_score(moved(TRUTH, north=2.5), TRUTH).counts_of("trees") == ConfusionMatrix(
+    assert tree_score(moved(TRUTH, north=2.5), TRUTH).counts_of("trees") == BinaryConfusionMatrix(
         0, 12, 12, 0
     )
 
 
 def test_missing_and_added_trees_are_counted() -> None:
-    assert tree_score(without_each_third(TRUTH), TRUTH).counts_of("trees") == ConfusionMatrix(
+    assert tree_score(without_each_third(TRUTH), TRUTH).counts_of("trees") == BinaryConfusionMatrix(
         8, 0, 4, 0
     )
     twice = with_more(TRUTH, point(0.5, 0.0, kind="street_tree"), point(0.0, 30.0))
-    assert tree_score(twice, TRUTH).counts_of("trees") == ConfusionMatrix(12, 2, 0, 0)
+    assert tree_score(twice, TRUTH).counts_of("trees") == BinaryConfusionMatrix(12, 2, 0, 0)
 
 
 def test_trees_a_person_rejected_are_not_part_of_a_result() -> None:
     rejected = with_facts(TRUTH, lambda _: {"status": "rejected"})
-    assert tree_score(rejected, TRUTH).counts_of("trees") == ConfusionMatrix(0, 0, 12, 0)
+    assert tree_score(rejected, TRUTH).counts_of("trees") == BinaryConfusionMatrix(0, 0, 12, 0)
 
 
 def test_trunks_that_no_points_show_count_neither_way_and_short_arcs_are_not_measured() -> None:
@@ -100,10 +100,10 @@ def test_trunks_that_no_points_show_count_neither_way_and_short_arcs_are_not_mea
     askew = point(140.0, 0.0, kind="tree", trunk_points=90, arc_deg=40.0, dbh_m=0.2)
     truth = with_more(TRUTH, hidden, passed, askew)
     score = tree_score(truth, truth)
-    assert score.counts_of("trees") == ConfusionMatrix(13, 0, 0, 0)
+    assert score.counts_of("trees") == BinaryConfusionMatrix(13, 0, 0, 0)
     assert score.left_out == {"unseen": 2, "unseen_found": 2, "trunk_arc_too_short": 1}
     assert score.errors_of("dbh").count == 9
-    assert tree_score(TRUTH, truth).counts_of("trees") == ConfusionMatrix(12, 0, 1, 0)
+    assert tree_score(TRUTH, truth).counts_of("trees") == BinaryConfusionMatrix(12, 0, 1, 0)
 
 
 def test_a_measure_that_is_no_number_is_refused_with_its_feature() -> None:

@@ -27,7 +27,7 @@ from processing.project.evaluation.class_evaluation import ClassEvaluation
 from processing.project.evaluation.truth_store import Truth
 from processing.recording.columns.error_map import ERROR_MAP, ErrorMapValue
 from processing.scoring.asked_classes import ASKED
-from processing.scoring.confusion_matrix import ConfusionMatrix
+from processing.scoring.confusion_matrix import BinaryConfusionMatrix
 from widgets.feature_drawing.swatch import SWATCH_PX, swatch_of
 from widgets.panels.class_evaluation.setting_words import moment_of, settings_words
 from widgets.panels.class_evaluation.truth_bar import TruthBar
@@ -119,7 +119,7 @@ class ClassPanel(QWidget):
         chosen = self.chosen
         self._evaluations = tuple(evaluations)
         self._rows = []
-        rows: list[tuple[str, ConfusionMatrix]] = []
+        rows: list[tuple[str, BinaryConfusionMatrix]] = []
         for one in self._evaluations:
             tool = name_of_tool(one.tool, self._language)
             if not self._rows or self._rows[-1] is None or self._rows[-1].tool != one.tool:
@@ -156,7 +156,7 @@ class ClassPanel(QWidget):
             return self.tr("{tool}: if nothing were removed").format(tool=name)
         return self.tr("{tool}: if everything were kept").format(tool=name)
 
-    def _fill(self, row: int, name: str, counts: ConfusionMatrix, *, is_run: bool) -> None:
+    def _fill(self, row: int, name: str, counts: BinaryConfusionMatrix, *, is_run: bool) -> None:
         before = self._rows[row] or self._rows[row + 1]
         asked = ASKED["noise" if before is None else before.tool]
         removed = counts if asked.removes else counts.turned()
@@ -296,7 +296,7 @@ class ClassPanel(QWidget):
         self._ask_if_seen()
 
 
-def _untouched(one: ClassEvaluation) -> ConfusionMatrix:
+def _untouched(one: ClassEvaluation) -> BinaryConfusionMatrix:
     """What the same truth gives where every point is kept."""
     if ASKED[one.tool].removes:
         return one.counts.if_nothing_was_positive()

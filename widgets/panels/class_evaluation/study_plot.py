@@ -13,7 +13,7 @@ from processing.core.parameters import ParameterValue
 from processing.core.text import Language
 from processing.project.evaluation.parameter_study import ParameterStudy, StudyCell
 from processing.scoring.asked_classes import ASKED
-from processing.scoring.confusion_matrix import ConfusionMatrix
+from processing.scoring.confusion_matrix import BinaryConfusionMatrix
 from widgets.panels.class_evaluation.setting_words import parameter_name, value_words
 from widgets.panels.reliability_plot import PlotColours
 
@@ -80,7 +80,7 @@ class StudyPlot:
         scored = [one for one in self.study.cells if not math.isnan(self.counts_of(one).f_measure)]
         return max(scored, key=lambda one: self.counts_of(one).f_measure, default=None)
 
-    def counts_of(self, cell: StudyCell) -> ConfusionMatrix:
+    def counts_of(self, cell: StudyCell) -> BinaryConfusionMatrix:
         """A cell's counts with the points shown as the positive class."""
         is_as_found = ASKED[self.study.tool].removes is self.shows_removed
         return cell.counts if is_as_found else cell.counts.turned()

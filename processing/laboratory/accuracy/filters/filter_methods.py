@@ -27,7 +27,7 @@ from processing.laboratory.accuracy.filters.peer_filters import (
 from processing.project.importing.importing import ImportRequest, import_drives
 from processing.project.results.point_results import write_point_results
 from processing.recording.drive import Drive
-from processing.scoring.confusion_matrix import ClassCounts
+from processing.scoring.confusion_matrix import ConfusionMatrix
 from processing.tools.ground import GROUND_TOOL, LOWEST, PUBLISHED, GroundParameters
 from processing.tools.noise import NOISE, RADIUS, STATISTICAL, NoiseParameters
 from processing.tools.runner import RunRequest, drives_of, run_together
@@ -230,7 +230,7 @@ def _best(
         for one in settings:
             codes = codes_of(one, scene, folder)
             if codes is not None:
-                counts = ClassCounts.of(scene.truth, codes).confusion_matrix((int(_GROUND),))
+                counts = ConfusionMatrix.of(scene.truth, codes).against_rest((int(_GROUND),))
                 yield np.nan_to_num(counts.kappa), codes
 
     return max(found(), key=lambda pair: pair[0], default=(0.0, None))[1]

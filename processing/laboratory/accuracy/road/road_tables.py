@@ -11,7 +11,7 @@ from processing.laboratory.accuracy.filters.filter_tables import markdown_table
 from processing.laboratory.accuracy.road.road_failures import CURB_TYPES
 from processing.laboratory.accuracy.road.road_gutter_failures import GUTTER_TYPES
 from processing.laboratory.accuracy.road.road_surroundings import Failure
-from processing.scoring.confusion_matrix import ConfusionMatrix
+from processing.scoring.confusion_matrix import BinaryConfusionMatrix
 from processing.scoring.file_scores import ErrorStatistics, FileScore
 from processing.scoring.reliability import Reliability
 
@@ -135,9 +135,9 @@ def reliability_table(of_tools: Mapping[str, Reliability]) -> str:
     return markdown_table(rows)
 
 
-def sum_counts(streets: Sequence[ScoredStreet], id_: str) -> ConfusionMatrix:
+def sum_counts(streets: Sequence[ScoredStreet], id_: str) -> BinaryConfusionMatrix:
     """Counts of one name over all streets."""
-    return sum((one.score.counts_of(id_) for one in streets), ConfusionMatrix(0, 0, 0, 0))
+    return sum((one.score.counts_of(id_) for one in streets), BinaryConfusionMatrix(0, 0, 0, 0))
 
 
 def percent(share: float) -> str:
@@ -155,12 +155,12 @@ _THESIS_HEADS = (
 )
 
 
-def _figures(counts: ConfusionMatrix) -> list[str]:
+def _figures(counts: BinaryConfusionMatrix) -> list[str]:
     told = f"{counts.hits:,}, {counts.false_alarms:,}, {counts.misses:,}"
     return [told, *_shares(counts)]
 
 
-def _shares(counts: ConfusionMatrix) -> list[str]:
+def _shares(counts: BinaryConfusionMatrix) -> list[str]:
     return [percent(one) for one in (counts.precision, counts.recall, counts.f_measure)]
 
 

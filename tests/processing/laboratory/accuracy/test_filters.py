@@ -28,7 +28,7 @@ from processing.laboratory.accuracy.filters.filter_tables import (
     sites_table,
 )
 from processing.laboratory.accuracy.filters.filters import HEADINGS, main, replace_section
-from processing.scoring.confusion_matrix import ClassCounts
+from processing.scoring.confusion_matrix import ConfusionMatrix
 from processing.scoring.point_scores import ground_score, noise_score
 
 
@@ -134,13 +134,13 @@ def test_tables_have_the_figures_of_the_scores() -> None:
     result = truth.copy()
     result[[0, 95]] = 18, 0
     row = noise_table(
-        [FilterResult("road", "m", "s", True, noise_score(ClassCounts.of(truth, result)))]
+        [FilterResult("road", "m", "s", True, noise_score(ConfusionMatrix.of(truth, result)))]
     ).splitlines()[2]
     cells = [cell.strip() for cell in row.split("|")[1:-1]]
     assert cells[:9] == ["road", "m", "s", *["98.889 %"] * 3, "0.900", "0.900", "0.900"]
     truth = np.where(truth == 0, 2, 1).astype(np.uint8)
     result = np.where(result == 0, 2, 1).astype(np.uint8)
-    score = ground_score(ClassCounts.of(truth, result))
+    score = ground_score(ConfusionMatrix.of(truth, result))
     found = [FilterResult(f"samp{number}", "m", "s", True, score) for number in (12, 22)]
     cells = [cell.strip() for cell in sites_table(found).splitlines()[2].split("|")[1:-1]]
     assert cells[3:] == [

@@ -32,7 +32,7 @@ from processing.project.evaluation.truth_store import Truth, TruthStore, read_tr
 from processing.project.evaluation.truth_study import study_by_truth
 from processing.project.importing.importing import ImportRequest, import_drives
 from processing.project.project import Project
-from processing.scoring.confusion_matrix import ConfusionMatrix
+from processing.scoring.confusion_matrix import BinaryConfusionMatrix
 from processing.tools.noise import NoiseParameters
 from processing.tools.runner import RunRequest, run
 from tests.builders import write_laz, write_trajectory_csv
@@ -91,7 +91,7 @@ def test_each_setting_scores_as_a_run_with_it(project: Project, tmp_path: Path) 
         result = run(RunRequest("noise", drive, parameters), SILENT, into=tmp_path / "run")
         called = np.isin(result.read("classification", 0, drive.count), (7, 18))  # type: ignore[union-attr] - it gives columns
         result.remove()  # type: ignore[union-attr] - it gives columns
-        assert cell.counts == ConfusionMatrix.of(is_noise, called)
+        assert cell.counts == BinaryConfusionMatrix.of(is_noise, called)
     assert found.best is max(found.cells, key=lambda cell: cell.counts.f_measure)
     assert found.fixed == {"method": "radius"}
     assert found.untouched.recall == 0.0
@@ -195,15 +195,15 @@ def test_values_outside_their_limits_are_refused_before_the_first_run(
 
 
 def test_the_best_is_the_first_of_equals_and_none_where_nothing_can_be_scored() -> None:
-    cells = [StudyCell((one,), ConfusionMatrix(5, 1, 1, 9)) for one in (1, 2)]
+    cells = [StudyCell((one,), BinaryConfusionMatrix(5, 1, 1, 9)) for one in (1, 2)]
     varied = (VariedParameter("neighbours", (1, 2)),)
     assert ParameterStudy("noise", 1, {}, varied, tuple(cells)).best is cells[0]
-    nothing = StudyCell((1,), ConfusionMatrix(0, 0, 0, 9))
+    nothing = StudyCell((1,), BinaryConfusionMatrix(0, 0, 0, 9))
     assert ParameterStudy("noise", 1, {}, varied, (nothing,)).best is None
 
 
 def test_studies_are_kept_with_the_project_the_last_fifty(project: Project, tmp_path: Path) -> None:
-    cells = (StudyCell((0.5, "radius"), ConfusionMatrix(5, 1, 1, 9)),)
+    cells = (StudyCell((0.5, "radius"), BinaryConfusionMatrix(5, 1, 1, 9)),)
     varied = (VariedParameter("radius_m", (0.5,)), VariedParameter("method", ("radius",)))
     found = ParameterStudy("noise", 1, {"deviations": 1.5}, varied, cells)
     store = StudyStore(project.settings)
