@@ -32,15 +32,7 @@ def class_score(counts: ConfusionMatrix) -> PointScore:
     Specification mms.md, 4.2 (classes) and 4.6 (mean F).
     """
     known = counts.without_true((NOT_KNOWN,))
-    names = {one.code: one.name for one in point_classes()}
-    classes = [
-        ClassScore(
-            str(code),
-            Text.same(f"{code} {{name}}").filled(name=names.get(code, Text.same(""))),
-            known.against_rest((code,)),
-        )
-        for code in known.codes
-    ]
+    classes = _each_class(known)
     judged = [
         code
         for code, points in zip(known.codes, known.true_counts.tolist(), strict=True)
@@ -82,3 +74,15 @@ def class_score(counts: ConfusionMatrix) -> PointScore:
         ),
         matrix=known,
     )
+
+
+def _each_class(known: ConfusionMatrix) -> list[ClassScore]:
+    names = {one.code: one.name for one in point_classes()}
+    return [
+        ClassScore(
+            str(code),
+            Text.same(f"{code} {{name}}").filled(name=names.get(code, Text.same(""))),
+            known.against_rest((code,)),
+        )
+        for code in known.codes
+    ]
