@@ -12,7 +12,7 @@ from app.importing.drive_wiring import connect_drives
 from app.importing.import_wiring import connect_imports
 from app.jobs.jobs import JobState, JobStatus
 from app.review.review_wiring import connect_review
-from app.runs.process_actions import one_click_tools
+from app.runs.process_actions import one_click_buttons, run_action_of
 from app.templates.template_wiring import connect_templates
 from app.views.view_wiring import connect_views
 from app.volumes.volume_wiring import connect_volumes
@@ -121,9 +121,9 @@ class _Wiring(QObject):
 
     def allow_tools(self) -> None:
         """Let those tools be run by one click that can run on the drive shown."""
-        for one in one_click_tools():
-            reason = self.reason_against_tool(one.tool)
-            self._parts.window.actions_made.forbid(one.action, reason)
+        for tool in one_click_buttons():
+            reason = self.reason_against_tool(tool)
+            self._parts.window.actions_made.forbid(run_action_of(tool), reason)
 
     def remark_on_tool(self, tool: str) -> Text | None:
         """What must be given for a tool on the drive shown; None where nothing must."""

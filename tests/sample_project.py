@@ -9,7 +9,7 @@ from processing.core.monitor import SilentMonitor
 from processing.project.importing.dropped_files import request_of_files
 from processing.project.importing.importing import import_drives
 from processing.project.project import Project
-from processing.tools.registry import POINT_TOOLS
+from processing.tools.registry import point_tools
 from processing.tools.runner import RunRequest, run
 from processing.tools.tool import FinishedColumns
 from resources import path_of
@@ -21,7 +21,7 @@ def make_sample_project(folder: Path) -> Path:
         request = request_of_files((path_of("sample_street"),), "")
         found = import_drives(request, project.temporary_folder(), SilentMonitor())
         for drive in project.adopt_drives(found):
-            for tool in POINT_TOOLS.values():
+            for tool in point_tools().values():
                 wish = RunRequest(tool.id, drive, tool.parameters())
                 result = run(wish, SilentMonitor(), into=project.temporary_folder())
                 assert isinstance(result, FinishedColumns)

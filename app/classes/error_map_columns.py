@@ -22,8 +22,8 @@ from processing.project.project import Project
 from processing.recording.columns.columns import column_path
 from processing.recording.columns.error_map import ERROR_MAP
 from processing.recording.drive import Drive
-from processing.scoring.asked_classes import ASKED
 from processing.scoring.confusion_matrix import BinaryConfusionMatrix
+from processing.tools.registry import asked_classes
 from processing.tools.tool import FinishedColumns
 
 _JUDGING = Text("Evaluation", "評価")
@@ -138,7 +138,7 @@ class ErrorMapColumns(QObject):
             for drive in project.drives
             if has_truth(drive, truth) and drive.columns.has(ERROR_MAP)
         ]
-        if tool in ASKED and on:
+        if tool in asked_classes() and on:
             counts = BinaryConfusionMatrix(0, 0, 0, 0)  # nobody asks for them here
             self._shown = _Shown(truth, ClassEvaluation(tool, None, tuple(on), counts))
 

@@ -12,7 +12,7 @@ from processing.project.evaluation.mapped_map import mapped_of
 from processing.project.evaluation.run_evaluation import RunEvaluation, evaluate_runs, within_drives
 from processing.scoring.file_scores import FeatureScorer, FileScore
 from processing.scoring.mapped_features import MappedFile
-from processing.scoring.scorers import SCORERS
+from processing.tools.registry import scorers
 
 
 class Evaluation:
@@ -61,9 +61,9 @@ class Evaluation:
             return
         agreed = [one for one in self._document.features() if one.status is Status.ACCEPTED]
         asked: list[tuple[str, FeatureScorer, MappedFile, MappedFile]] = []
-        runs = self._document.runs()
+        runs, known_scorers = self._document.runs(), scorers()
         for run in runs:
-            scorer = SCORERS.get(run.tool)
+            scorer = known_scorers.get(run.tool)
             found = self._originals.get(run.id, {}).values()
             before = {one.id for one in runs_before(run, runs)}
             asked_of = [one for one in agreed if one.provenance.run not in before]

@@ -24,8 +24,8 @@ from processing.scoring.file_scores import FeatureScorer, FileScore, VolumeScore
 from processing.scoring.mapped_features import MappedFile, check_same_system
 from processing.scoring.pairs_by_position import pairs_by_position
 from processing.scoring.point_scores import PointScore, PointScorer
-from processing.scoring.scorers import scorer_of
 from processing.scoring.volumes import MEASURES
+from processing.tools.registry import scorer_of
 
 _ORDER, _POSITION = "order", "place"
 

@@ -29,7 +29,7 @@ from processing.project.evaluation.truth_of_file import coded_truth, truth_of_fi
 from processing.project.evaluation.truth_store import TRUTH
 from processing.recording.columns.ordering import read_chunk
 from processing.recording.drive import Drive
-from processing.scoring.asked_classes import ASKED
+from processing.tools.registry import asked_classes
 from processing.tools.runner import check_needs, tool_of
 
 _READING = 0.1
@@ -82,7 +82,7 @@ def _lines(found: ParameterStudy, language: Language) -> list[str]:
         [
             *names,
             *(
-                f"{ASKED[found.tool].found.in_language(language)}:{one.in_language(language)}"
+                f"{asked_classes()[found.tool].found.in_language(language)}:{one.in_language(language)}"
                 for one in _HEAD
             ),
             "",

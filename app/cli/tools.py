@@ -8,14 +8,14 @@ from app.cli.output import print_json, print_lines
 from app.cli.parameter_lines import parameter_lines
 from app.settings.language import system_language
 from processing.core.parameters import Parameter, parameters_of
-from processing.tools.registry import EVERY_TOOL
+from processing.tools.registry import every_tool
 from processing.tools.runner import any_tool
-from processing.tools.tool import Tool
+from processing.tools.tool import Comparison, Tool
 
 
 def command(arguments: argparse.Namespace) -> int:
     """List all tools, or one."""
-    chosen = [any_tool(arguments.name)] if arguments.name else list(EVERY_TOOL.values())
+    chosen = [any_tool(arguments.name)] if arguments.name else list(every_tool().values())
     if arguments.json:
         described = [_described(tool) for tool in chosen]
         print_json(described[0] if arguments.name else described)
@@ -37,12 +37,13 @@ def _described(tool: Tool) -> dict[str, object]:
             {"name": column.name, "type": column.dtype, "values": column.width}
             for column in tool.outputs
         ],
+        "makes": list(tool.makes),
         "parameters": [_parameter(parameter) for parameter in parameters_of(tool.parameters)],
     }
 
 
 def _gives(tool: Tool) -> str:
-    if tool.compare is not None:
+    if isinstance(tool.method, Comparison):
         return "volumes"
     return "candidates" if tool.gives_candidates else "columns"
 

@@ -26,7 +26,7 @@ from processing.project.importing.dropped_files import request_of_files
 from processing.project.project import is_project
 from processing.recording.drive import Drive
 from processing.recording.kinds import ImageKind
-from processing.tools.registry import POINT_TOOLS
+from processing.tools.registry import point_tools
 from resources import path_of
 from widgets.shared.cursor import PickedPosition
 
@@ -129,7 +129,7 @@ class _DemoJob:
 
     def run_tools(self) -> None:
         for drive in self._document.drives():
-            for tool in POINT_TOOLS.values():
+            for tool in point_tools().values():
                 self._run(tool.id, drive.id, tool.parameters())
 
     def show_and_shoot(self) -> None:

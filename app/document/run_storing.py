@@ -18,7 +18,6 @@ from processing.project.results.found_features import FoundFeatures, found_featu
 from processing.project.results.run_findings import adopt_finding, write_finding
 from processing.project.results.surface_files import delivered_files, surface_file_of, write_surface
 from processing.recording.drive import Drive
-from processing.scoring.asked_classes import ASKED
 from processing.tools.runner import RunRequest, drives_of, run, run_together, tool_of
 from processing.tools.tool import CandidateResult, FinishedColumns
 
@@ -131,9 +130,9 @@ def _classes(
             for file in together.kept:
                 file.replace(kept / file.name)
         results = list(zip(drives, together.columns, strict=True))
-        if tool.id in ASKED:
+        if tool.asked is not None:
             for drive, result in results:
-                write_finding(result, ASKED[tool.id].codes, kept / drive.id)
+                write_finding(result, tool.asked.codes, kept / drive.id)
         if surface_file is not None:
             write_surface(
                 StoredSurface(kept / SURFACE), surface_file, delivered_files(drives), monitor

@@ -6,7 +6,7 @@ from PySide6.QtCore import QObject, Qt
 
 from app.review.review import Review
 from app.review.review_actions import QUEUE_KEYS
-from app.runs.process_actions import one_click_tools
+from app.runs.process_actions import one_click_buttons
 from app.window.window_parts import WindowParts
 from processing.map.catalogue import Geometry
 from processing.map.feature import Feature, Status
@@ -124,7 +124,7 @@ class _ReviewWiring(QObject):
 
     def on_candidates_found(self, tool: str, run: str) -> None:
         """What was found by one click goes to the queue; the views stay where they are."""
-        if tool not in {one.tool for one in one_click_tools()}:
+        if tool not in one_click_buttons():
             return
         self._parts.window.show_panel("review")
         if self._parts.of(Review).is_open:

@@ -2,46 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import replace
 
 from app.window.action import Action
 from app.window.window_parts import WindowParts
 from processing.core.text import Text
 from processing.tools.registry import TOOLS
+from processing.tools.tool import ToolButton
 from processing.tools.volume import VOLUME
-
-
-@dataclass(frozen=True)
-class OneClick:
-    """A tool that is run by one click or key, as its form stands.
-
-    Attributes
-    ----------
-    tool : str
-        Id of the tool; it has no button where the program has no such tool.
-    """
-
-    tool: str
-    text: Text
-    key: str
-    icon: str
-
-    @property
-    def action(self) -> str:
-        """Id of the action that runs it."""
-        return f"run-{self.tool}"
-
-
-ONE_CLICK = (
-    OneClick("curbs", Text("Find curbs", "縁石を抽出"), "F9", "mdi6.stairs"),
-    OneClick(
-        "gutters",
-        Text("Find covered gutters", "蓋付き側溝を抽出"),
-        "Shift+F9",
-        "mdi6.view-parallel-outline",
-    ),
-)
-"""What takes most of a road map's time by hand."""
 
 _TOOLBAR = 5
 _HINT = Text("{explanation} {way}", "{explanation}{way}")
@@ -51,27 +20,32 @@ _WAY = Text(
 )
 
 
-def one_click_tools() -> tuple[OneClick, ...]:
-    """Those of :data:`ONE_CLICK` that the program has."""
-    return tuple(one for one in ONE_CLICK if one.tool in TOOLS)
+def one_click_buttons() -> Mapping[str, ToolButton]:
+    """The buttons of the tools that have one, by the tools' ids."""
+    return {tool.id: tool.button for tool in TOOLS.values() if tool.button is not None}
+
+
+def run_action_of(tool: str) -> str:
+    """Id of the action that runs a tool by one click."""
+    return f"run-{tool}"
 
 
 def process_actions(parts: WindowParts) -> tuple[Action, ...]:
     """The process menu, from top to bottom."""
 
-    def running(one: OneClick) -> Action:
+    def running(tool: str, button: ToolButton) -> Action:
         def run() -> None:
-            parts.processing_panel.run_tool(one.tool)
+            parts.processing_panel.run_tool(tool)
 
         return Action(
-            one.action,
-            one.text,
+            run_action_of(tool),
+            button.text,
             run,
             "process",
-            (one.key,),
-            one.icon,
+            (button.key,),
+            button.icon,
             toolbar=_TOOLBAR,
-            hint=_HINT.filled(explanation=TOOLS[one.tool].explanation, way=_WAY),
+            hint=_HINT.filled(explanation=TOOLS[tool].explanation, way=_WAY),
             needs_project=True,
         )
 
@@ -97,7 +71,7 @@ def process_actions(parts: WindowParts) -> tuple[Action, ...]:
         "cancel-jobs", Text("Cancel all jobs", "すべてのジョブを中止"), cancel_all, "process"
     )
     return (
-        *(running(one) for one in one_click_tools()),
+        *(running(tool, button) for tool, button in one_click_buttons().items()),
         *(showing(tool) for tool in TOOLS),
         *_volume_actions(parts),
         cancel,

@@ -16,7 +16,6 @@ from processing.core.text import Text
 from processing.formats.drawings.profile_dxf import ProfileStyle, write_profile_dxf
 from processing.recording.camera_images.calibration import CameraOffset
 from processing.section.cut import Cut
-from processing.tools.diagnostic_makers import DIAGNOSTIC_MAKERS
 from processing.tools.registry import TOOLS
 from widgets.shared.view_settings import PointStyle
 
@@ -69,9 +68,12 @@ class _ViewWiring(QObject):
 
     def on_processing_values_changed(self) -> None:
         panel = self._parts.processing_panel
-        known = [tool for tool in DIAGNOSTIC_MAKERS if tool in TOOLS]
         self._parts.section_view.use_tool_parameters(
-            {tool: panel.parameters_of(tool) for tool in known}
+            {
+                tool.id: panel.parameters_of(tool.id)
+                for tool in TOOLS.values()
+                if tool.diagnostics is not None
+            }
         )
 
     def on_bar_another_requested(self) -> None:

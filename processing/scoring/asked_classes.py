@@ -1,11 +1,11 @@
 """What a tool that gives classes is asked for: which codes mean yes, and words for both sides.
 
-Two studies call opposite classes positive, so every score names its class; the words are here.
+Two studies call opposite classes positive, so every score names its class; the words are here. A
+tool that can be judged so names one of these in its declaration.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 from processing.core.text import Text
@@ -44,15 +44,12 @@ class AskedClass:
         return self.found if self.removes else self.other
 
 
-ASKED: Mapping[str, AskedClass] = {
-    "noise": AskedClass(
-        NOISE_CODES,
-        Text("noise point", "ノイズ点"),
-        Text("true point", "ノイズでない点"),
-        removes=True,
-    ),
-    "ground": AskedClass(
-        GROUND_CODES, Text("ground", "地面"), Text("object", "物体"), removes=False
-    ),
-}
-"""By the tool's id."""
+NOISE_ASKED = AskedClass(
+    NOISE_CODES,
+    Text("noise point", "ノイズ点"),
+    Text("true point", "ノイズでない点"),
+    removes=True,
+)
+GROUND_ASKED = AskedClass(
+    GROUND_CODES, Text("ground", "地面"), Text("object", "物体"), removes=False
+)

@@ -1,15 +1,13 @@
 """Every kind of result that can be scored against a truth, declared once.
 
-``zuka score``, the accuracy tables and the evaluation in the window take their scorers from here.
-A tool that classifies points has a :class:`~processing.scoring.point_scores.PointScorer`, one that
-maps features a :class:`~processing.scoring.file_scores.FeatureScorer`.
+A tool names its scorer in its declaration; ``zuka score``, the accuracy tables and the evaluation
+in the window take it from there. A tool that classifies points has a
+:class:`~processing.scoring.point_scores.PointScorer`, one that maps features a
+:class:`~processing.scoring.file_scores.FeatureScorer`.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
-from processing.core.errors import name_with_type
 from processing.core.text import Text
 from processing.scoring.class_scores import class_score
 from processing.scoring.curb_lines import curb_score
@@ -57,30 +55,14 @@ CLASS_SCORER = PointScorer(
     flags={},
     score_counts=class_score,
 )
-POINT_SCORERS = (NOISE_SCORER, GROUND_SCORER, CLASS_SCORER)
-FEATURE_SCORERS = (
-    FeatureScorer("curbs", Text("Curbs", "縁石"), curb_score),
-    FeatureScorer("gutters", Text("Covered gutters", "蓋付き側溝"), gutter_score),
+CURB_SCORER = FeatureScorer("curbs", Text("Curbs", "縁石"), curb_score)
+GUTTER_SCORER = FeatureScorer("gutters", Text("Covered gutters", "蓋付き側溝"), gutter_score)
+VOLUME_SCORER = VolumeScorer("volume", Text("Volumes", "土量"), volume_score)
+
+SCORERS_WITHOUT_TOOL: tuple[Scorer, ...] = (
+    CLASS_SCORER,
     FeatureScorer("trees", Text("Street trees", "街路樹"), tree_score),
     FeatureScorer("signs", Text("Road signs", "道路標識"), sign_score),
     FeatureScorer("poles", Text("Poles", "柱状物"), pole_score),
 )
-VOLUME_SCORER = VolumeScorer("volume", Text("Volumes", "土量"), volume_score)
-SCORERS: Mapping[str, Scorer] = {
-    one.tool: one for one in (*POINT_SCORERS, *FEATURE_SCORERS, VOLUME_SCORER)
-}
-
-
-def scorer_of(tool: str) -> Scorer:
-    """The scorer of a tool's results.
-
-    Raises
-    ------
-    OutOfRange
-        There is none; names those there are.
-    """
-    return name_with_type(
-        SCORERS,
-        tool,
-        Text("Results of this tool can't be scored.", "このツールの結果は評価できません。"),
-    )
+"""Of results that other programs and persons make; a tool of that id brings its scorer itself."""

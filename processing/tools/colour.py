@@ -14,7 +14,15 @@ from processing.core.text import Text
 from processing.recording.camera_images.image_list import ImageList
 from processing.recording.camera_images.image_remarks import far_away
 from processing.recording.drive import Drive
-from processing.tools.tool import Needs, OutputColumn, PointBlock, PointComputer, PointResult, Tool
+from processing.tools.tool import (
+    Needs,
+    OutputColumn,
+    PerPointOfDrive,
+    PointBlock,
+    PointComputer,
+    PointResult,
+    Tool,
+)
 
 
 @dataclass(frozen=True)
@@ -107,9 +115,11 @@ COLOUR = Tool(
     group=Text("Points", "点群"),
     needs=Needs.IMAGES,
     parameters=ColourParameters,
-    compute_of=colouring_of,
-    outputs=(
-        OutputColumn("seen_color", "uint8", 3, Text("Colour from images", "画像の色")),
-        OutputColumn("is_seen", "uint8", 1, Text("Seen by a camera", "画像に写った点")),
+    method=PerPointOfDrive(
+        colouring_of,
+        outputs=(
+            OutputColumn("seen_color", "uint8", 3, Text("Colour from images", "画像の色")),
+            OutputColumn("is_seen", "uint8", 1, Text("Seen by a camera", "画像に写った点")),
+        ),
     ),
 )

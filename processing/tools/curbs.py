@@ -23,6 +23,7 @@ from processing.methods.road.curbs.edges.curb_features import CurbFeature, EdgeL
 from processing.methods.road.curbs.edges.curb_joins import join_edges
 from processing.methods.road.curbs.edges.curb_lines import CurbLine, lines_of
 from processing.methods.road.curbs.steps.curb_confidence import CurbFacts, chance_of
+from processing.methods.road.curbs.steps.curb_diagnostics import curb_diagnostics
 from processing.methods.road.curbs.steps.curb_filters import (
     remove_inner_faces,
     remove_lone_edging,
@@ -32,8 +33,11 @@ from processing.methods.road.curbs.steps.curb_filters import (
 from processing.methods.road.curbs.steps.curb_notes import note_on
 from processing.methods.road.curbs.steps.curb_profile import StepSettings
 from processing.methods.road.curbs.steps.curb_runs import StepRun
+from processing.methods.road.diagnostics import Diagnostic
+from processing.methods.road.requested_position import RequestedPosition
 from processing.recording.drive import Drive
-from processing.tools.tool import Candidate, CandidateResult, Needs, Tool
+from processing.scoring.scorers import CURB_SCORER
+from processing.tools.tool import Candidate, CandidateResult, Needs, SurveyFinder, Tool, ToolButton
 
 _FINDING = 0.7  # of the time goes into runs of steps
 _LOOKING = Text("Looking for steps on the scanlines", "スキャンライン上の段差を探しています")
@@ -190,6 +194,11 @@ def step_settings(parameters: CurbParameters) -> StepSettings:
     )
 
 
+def diagnose_curbs(asked: RequestedPosition, parameters: CurbParameters) -> tuple[Diagnostic, ...]:
+    """What the tool makes of the steps on the scanline through a place."""
+    return curb_diagnostics(asked, step_settings(parameters))
+
+
 def find_curbs(
     drives: tuple[Drive, ...], parameters: CurbParameters, monitor: Monitor
 ) -> CandidateResult:
@@ -289,5 +298,9 @@ CURBS = Tool(
     group=Text("Road", "道路"),
     needs=Needs.TRAJECTORY,
     parameters=CurbParameters,
-    find_together=find_curbs,
+    method=SurveyFinder(find_curbs),
+    makes=("curb_upper", "curb_lower"),
+    button=ToolButton(Text("Find curbs", "縁石を抽出"), "F9", "mdi6.stairs"),
+    diagnostics=diagnose_curbs,
+    scorer=CURB_SCORER,
 )

@@ -22,7 +22,16 @@ from processing.methods.ground.ground_columns import CLASS, GROUND, HEIGHT, OTHE
 from processing.methods.ground.stored_surface import FILE_NAME
 from processing.methods.noise.beams.behind_surfaces import echoes_of
 from processing.recording.drive import Drive
-from processing.tools.tool import FinishedColumns, Needs, OutputColumn, TogetherResult, Tool
+from processing.scoring.asked_classes import GROUND_ASKED
+from processing.scoring.scorers import GROUND_SCORER
+from processing.tools.tool import (
+    FinishedColumns,
+    Needs,
+    OutputColumn,
+    Together,
+    TogetherResult,
+    Tool,
+)
 
 ADAPTIVE, PUBLISHED, LOWEST = "adaptive", "published", "lowest"
 _PAPER_GRID_M = 3.0
@@ -235,11 +244,17 @@ GROUND_TOOL = Tool(
     group=Text("Points", "点群"),
     needs=Needs.POINTS,
     parameters=GroundParameters,
-    mark_together=mark_ground,
+    method=Together(
+        mark_ground,
+        outputs=(
+            OutputColumn(CLASS, "uint8", 1, Text("Class", "クラス")),
+            OutputColumn(
+                HEIGHT, "float32", 1, Text("Height above ground (m)", "地面からの高さ（m）")
+            ),
+        ),
+    ),
     version=3,
     gives_classes=(GROUND, OTHER),
-    outputs=(
-        OutputColumn(CLASS, "uint8", 1, Text("Class", "クラス")),
-        OutputColumn(HEIGHT, "float32", 1, Text("Height above ground (m)", "地面からの高さ（m）")),
-    ),
+    scorer=GROUND_SCORER,
+    asked=GROUND_ASKED,
 )

@@ -12,6 +12,7 @@ from processing.core.monitor import Monitor, PartMonitor, parts_of
 from processing.core.parameters import count, length, ratio
 from processing.core.text import Text
 from processing.methods.road.curbs.edges.curb_points import LineCells
+from processing.methods.road.diagnostics import Diagnostic
 from processing.methods.road.gutters.grating_facts import GratingFound, one_of_each
 from processing.methods.road.gutters.gratings import GratingParameters, gratings_of
 from processing.methods.road.gutters.gutter_confidence import CoverFacts, chance_of, facts_of
@@ -21,10 +22,13 @@ from processing.methods.road.gutters.gutter_lines import REACH_M
 from processing.methods.road.gutters.gutter_notches import notches_of
 from processing.methods.road.gutters.gutter_outline import edge_lines
 from processing.methods.road.gutters.gutter_runs import GutterRun, gutter_runs
+from processing.methods.road.gutters.notch_diagnostics import notch_diagnostics
 from processing.methods.road.gutters.notches import Notches, NotchParameters
+from processing.methods.road.requested_position import RequestedPosition
 from processing.recording.drive import Drive
 from processing.recording.passes import passes_of
-from processing.tools.tool import Candidate, CandidateResult, Needs, Tool
+from processing.scoring.scorers import GUTTER_SCORER
+from processing.tools.tool import Candidate, CandidateResult, Needs, SurveyFinder, Tool, ToolButton
 
 _FINDING = 0.8  # of the time goes into notches
 _OUTLINE_GAP_M = 6.0
@@ -224,6 +228,13 @@ def notch_parameters(parameters: GutterParameters) -> NotchParameters:
     )
 
 
+def diagnose_gutters(
+    asked: RequestedPosition, parameters: GutterParameters
+) -> tuple[Diagnostic, ...]:
+    """What the tool makes of the dents on the scanline through a place."""
+    return notch_diagnostics(asked, notch_parameters(parameters))
+
+
 def _notches(
     drives: Sequence[Drive], parameters: GutterParameters, monitor: Monitor
 ) -> list[Notches]:
@@ -294,5 +305,11 @@ GUTTERS = Tool(
     group=Text("Road", "道路"),
     needs=Needs.TRAJECTORY,
     parameters=GutterParameters,
-    find_together=find_gutters,
+    method=SurveyFinder(find_gutters),
+    makes=("gutter_lid", "gutter_grating", "gutter_covered"),
+    button=ToolButton(
+        Text("Find covered gutters", "蓋付き側溝を抽出"), "Shift+F9", "mdi6.view-parallel-outline"
+    ),
+    diagnostics=diagnose_gutters,
+    scorer=GUTTER_SCORER,
 )

@@ -19,7 +19,9 @@ from processing.methods.noise.scratch_files import scratch_array
 from processing.recording.columns.columns import ColumnWriter
 from processing.recording.columns.ordering import chunk_ranges, read_chunk
 from processing.recording.drive import Drive
-from processing.tools.tool import FinishedColumns, Needs, OutputColumn, Tool
+from processing.scoring.asked_classes import NOISE_ASKED
+from processing.scoring.scorers import NOISE_SCORER
+from processing.tools.tool import FinishedColumns, Needs, OutputColumn, PerDrive, Tool
 
 _CLASS = "classification"
 _FINDING = 0.95
@@ -152,8 +154,11 @@ NOISE = Tool(
     group=Text("Points", "点群"),
     needs=Needs.POINTS,
     parameters=NoiseParameters,
-    mark=mark_noise,
+    method=PerDrive(
+        mark_noise, outputs=(OutputColumn(_CLASS, "uint8", 1, Text("Class", "クラス")),)
+    ),
     version=2,
     gives_classes=(LOW_NOISE, HIGH_NOISE),
-    outputs=(OutputColumn(_CLASS, "uint8", 1, Text("Class", "クラス")),),
+    scorer=NOISE_SCORER,
+    asked=NOISE_ASKED,
 )

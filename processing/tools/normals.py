@@ -10,7 +10,7 @@ from processing.core.monitor import Monitor
 from processing.core.parameters import length
 from processing.core.text import Text
 from processing.image.neighbourhoods.normals import OVERLAP_ROWS, oriented_surface_shapes
-from processing.tools.tool import Needs, OutputColumn, PointBlock, PointResult, Tool
+from processing.tools.tool import Needs, OutputColumn, PerPoint, PointBlock, PointResult, Tool
 
 
 @dataclass(frozen=True)
@@ -64,10 +64,12 @@ NORMALS = Tool(
     group=Text("Points", "点群"),
     needs=Needs.PIXELS,
     parameters=NormalsParameters,
-    compute=compute_normals,
-    outputs=(
-        OutputColumn("normal", "int8", 3, Text("Normal direction", "法線方向")),
-        OutputColumn("shape", "uint8", 3, Text("Shape", "形状")),
+    method=PerPoint(
+        compute_normals,
+        outputs=(
+            OutputColumn("normal", "int8", 3, Text("Normal direction", "法線方向")),
+            OutputColumn("shape", "uint8", 3, Text("Shape", "形状")),
+        ),
+        overlap_rows=OVERLAP_ROWS,
     ),
-    overlap_rows=OVERLAP_ROWS,
 )

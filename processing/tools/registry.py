@@ -1,9 +1,17 @@
-"""Every processing tool by id, in the order in which they are listed."""
+"""Every processing tool by id, in the order in which they are listed, and what follows from that.
+
+What is asked of all tools is read from their declarations at every call: a tool that is listed here
+has its button, diagnostics, scorer and classes without another line.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 
+from processing.core.errors import name_with_type
+from processing.core.text import Text
+from processing.scoring.asked_classes import AskedClass
+from processing.scoring.scorers import SCORERS_WITHOUT_TOOL, Scorer
 from processing.tools.colour import COLOUR
 from processing.tools.curbs import CURBS
 from processing.tools.ground import GROUND_TOOL
@@ -12,18 +20,62 @@ from processing.tools.noise import NOISE
 from processing.tools.normals import NORMALS
 from processing.tools.segments import SEGMENTS
 from processing.tools.template import TEMPLATE
-from processing.tools.tool import Tool
+from processing.tools.tool import Comparison, Tool
 from processing.tools.volume import VOLUME
 
+_DECLARED = (
+    CURBS,
+    GUTTERS,
+    NOISE,
+    GROUND_TOOL,
+    NORMALS,
+    SEGMENTS,
+    COLOUR,
+    TEMPLATE,
+    VOLUME,
+)
+
 TOOLS: Mapping[str, Tool] = {
-    tool.id: tool
-    for tool in (CURBS, GUTTERS, NOISE, GROUND_TOOL, NORMALS, SEGMENTS, COLOUR, TEMPLATE)
+    tool.id: tool for tool in _DECLARED if not isinstance(tool.method, Comparison)
 }
 
-COMPARISONS: Mapping[str, Tool] = {tool.id: tool for tool in (VOLUME,)}
+COMPARISONS: Mapping[str, Tool] = {
+    tool.id: tool for tool in _DECLARED if isinstance(tool.method, Comparison)
+}
 """Those that compare two grounds; they run on no drive."""
 
-EVERY_TOOL: Mapping[str, Tool] = {**TOOLS, **COMPARISONS}
 
-POINT_TOOLS: Mapping[str, Tool] = {tool.id: tool for tool in TOOLS.values() if tool.outputs}
-"""Those that say something about every point."""
+def every_tool() -> Mapping[str, Tool]:
+    """Tools and comparisons."""
+    return {**TOOLS, **COMPARISONS}
+
+
+def point_tools() -> Mapping[str, Tool]:
+    """Those that say something about every point."""
+    return {tool.id: tool for tool in TOOLS.values() if tool.outputs}
+
+
+def asked_classes() -> Mapping[str, AskedClass]:
+    """What the tools that can be judged on points are asked, by their ids."""
+    return {tool.id: tool.asked for tool in TOOLS.values() if tool.asked is not None}
+
+
+def scorers() -> Mapping[str, Scorer]:
+    """How each kind of result is scored, by the tool's id; also for results of other programs."""
+    own = {tool.id: tool.scorer for tool in every_tool().values() if tool.scorer is not None}
+    return {**own, **{one.tool: one for one in SCORERS_WITHOUT_TOOL if one.tool not in own}}
+
+
+def scorer_of(tool: str) -> Scorer:
+    """The scorer of a tool's results.
+
+    Raises
+    ------
+    OutOfRange
+        There is none; names those there are.
+    """
+    return name_with_type(
+        scorers(),
+        tool,
+        Text("Results of this tool can't be scored.", "このツールの結果は評価できません。"),
+    )

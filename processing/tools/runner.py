@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, assert_never
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,12 +22,19 @@ from processing.recording.columns.ordering import read_chunk
 from processing.recording.drive import Drive
 from processing.recording.recorded_together import recorded_together, surveyed_together
 from processing.tools.blocks import POINTS_PER_BLOCK, JoinedResults, blocks_of
-from processing.tools.registry import COMPARISONS, TOOLS
+from processing.tools.registry import TOOLS, every_tool
 from processing.tools.tool import (
     CandidateResult,
+    Comparison,
+    Finder,
     FinishedColumns,
     Needs,
+    PerDrive,
+    PerPoint,
+    PerPointOfDrive,
     PointBlock,
+    SurveyFinder,
+    Together,
     TogetherResult,
     Tool,
 )
@@ -96,17 +103,14 @@ def run(
     text = _RUNNING.filled(tool=tool.name, name=request.drive.info.name)
     monitor.check()
     monitor.report(0.0, text)
+    found = _result_of(request, monitor, _Columns(into, points_per_block))
     result: RunResult
-    if tool.find is not None:
-        result = tool.find(request.drive, request.parameters, monitor)
-    elif tool.find_together is not None:
-        result = tool.find_together(drives_of(request), request.parameters, monitor)
-    elif tool.mark_together is not None:
-        result, *others = _marked_together(request, monitor, into, points_per_block).columns
+    if isinstance(found, TogetherResult):
+        result, *others = found.columns
         for other in others:
             other.remove()
     else:
-        result = _columns(tool, request, monitor, into, points_per_block)
+        result = found
     monitor.report(1.0, text)
     return result
 
@@ -122,13 +126,15 @@ def drives_of(request: RunRequest) -> tuple[Drive, ...]:
         There is no such tool.
     """
     tool = tool_of(request.tool)
-    if tool.mark_together is not None:
-        return recorded_together(request.drive, request.beside)
-    if tool.find_together is None:
-        return (request.drive,)
-    is_met, _, _ = _NEEDS[tool.needs]
-    suited = tuple(drive for drive in request.beside if is_met(drive))
-    return surveyed_together(request.drive, suited)
+    match tool.method:
+        case Together():
+            return recorded_together(request.drive, request.beside)
+        case SurveyFinder():
+            is_met, _, _ = _NEEDS[tool.needs]
+            suited = tuple(drive for drive in request.beside if is_met(drive))
+            return surveyed_together(request.drive, suited)
+        case _:
+            return (request.drive,)
 
 
 def run_together(
@@ -150,10 +156,11 @@ def run_together(
     Unsuitable, OutOfRange, NoSpace, Cancelled
         As :func:`run`.
     """
-    if tool_of(request.tool).mark_together is None:
+    if not isinstance(tool_of(request.tool).method, Together):
         result = run(request, monitor, into=into, points_per_block=points_per_block)
         return TogetherResult((result,) if isinstance(result, FinishedColumns) else ())
-    return _marked_together(request, monitor, into, points_per_block)
+    found = _result_of(request, monitor, _Columns(into, points_per_block))
+    return found if isinstance(found, TogetherResult) else TogetherResult(())
 
 
 def mark_all(tool: str, drives: Sequence[Drive], monitor: Monitor, *, into: Path) -> None:
@@ -200,7 +207,7 @@ def any_tool(name: str) -> Tool:
     OutOfRange
         There is none.
     """
-    return name_with_type({**TOOLS, **COMPARISONS}, name, _NO_SUCH_TOOL)
+    return name_with_type(every_tool(), name, _NO_SUCH_TOOL)
 
 
 def tool_of(name: str) -> Tool:
@@ -271,51 +278,82 @@ _NEEDS: Mapping[Needs, _Need] = {
 }
 
 
-def _columns(
-    tool: Tool, request: RunRequest, monitor: Monitor, into: Path, points_per_block: int
-) -> FinishedColumns:
-    """What a tool says about every point, block by block."""
-    if tool.mark is not None:
-        with _removed_on_failure(into):
-            marked = tool.mark(request.drive, request.parameters, into, points_per_block, monitor)
-            monitor.check()
-        return marked
+@dataclass(frozen=True)
+class _Columns:
+    """Where columns come to lie, and how many points are held at a time."""
+
+    into: Path
+    points_at_once: int
+
+
+def _result_of(
+    request: RunRequest, monitor: Monitor, columns: _Columns
+) -> CandidateResult | TogetherResult:
+    """What a tool gives, by the kind of its method: the one place that knows the kinds."""
+    tool, parameters = tool_of(request.tool), request.parameters
+    match tool.method:
+        case Finder(find):
+            return find(request.drive, parameters, monitor)
+        case SurveyFinder(find_together):
+            return find_together(drives_of(request), parameters, monitor)
+        case PerPoint() as method:
+            return _by_blocks(method, request, monitor, columns)
+        case PerPointOfDrive(computer_of, outputs, overlap_rows):
+            compute = computer_of(request.drive, request.beside, parameters, monitor)
+            method = PerPoint(compute, outputs, overlap_rows)
+            return _by_blocks(method, request, monitor, columns)
+        case PerDrive(mark):
+            with _removed_on_failure(columns.into):
+                marked = mark(
+                    request.drive, parameters, columns.into, columns.points_at_once, monitor
+                )
+                monitor.check()
+            return TogetherResult((marked,))
+        case Together(mark_together):
+            drives = _checked_together(tool, request, monitor)
+            with _removed_on_failure(columns.into):
+                result = mark_together(
+                    drives, parameters, columns.into, columns.points_at_once, monitor
+                )
+                monitor.check()
+            return result
+        case Comparison():
+            message = f"{tool.id} runs on no drive"
+            raise ValueError(message)
+        case _:
+            assert_never(tool.method)
+
+
+def _by_blocks(
+    method: PerPoint, request: RunRequest, monitor: Monitor, columns: _Columns
+) -> TogetherResult:
+    """What a method says about every point, block by block."""
     image = image_of(request.drive, request.drive.pixel_kind)
     total = max(request.drive.count, 1)
-    compute = tool.compute
-    if tool.compute_of is not None:
-        compute = tool.compute_of(request.drive, request.beside, request.parameters, monitor)
     with (
-        _removed_on_failure(into),
-        closing(JoinedResults(tool.outputs, image.row_starts, into)) as results,
+        _removed_on_failure(columns.into),
+        closing(JoinedResults(method.outputs, image.row_starts, columns.into)) as results,
     ):
-        for block in blocks_of(image.row_starts, tool.overlap_rows, points_per_block):
+        for block in blocks_of(image.row_starts, method.overlap_rows, columns.points_at_once):
             monitor.check()
             monitor.report(float(image.row_starts[block.rows.start]) / total)
             request.drive.columns.give_back()
             points = _block_of(request.drive, image, block.rows_with_overlap)
-            results.add(block, compute(points, request.parameters, monitor))
+            results.add(block, method.compute(points, request.parameters, monitor))
         finished = results.finished(monitor)
         monitor.check()
-    return finished
+    return TogetherResult((finished,))
 
 
-def _marked_together(
-    request: RunRequest, monitor: Monitor, into: Path, points_per_block: int
-) -> TogetherResult:
-    tool, drives = tool_of(request.tool), drives_of(request)
-    if tool.mark_together is None:
-        message = f"{tool.id} takes drives one by one"
-        raise ValueError(message)
+def _checked_together(tool: Tool, request: RunRequest, monitor: Monitor) -> tuple[Drive, ...]:
+    """All drives of a run, which have what the tool needs."""
+    drives = drives_of(request)
     for drive in drives:
         check_needs(tool, drive)
     monitor.report(
         0.0, _RUNNING.filled(tool=tool.name, name=", ".join(drive.info.name for drive in drives))
     )
-    with _removed_on_failure(into):
-        marked = tool.mark_together(drives, request.parameters, into, points_per_block, monitor)
-        monitor.check()
-    return marked
+    return drives
 
 
 @contextmanager

@@ -9,7 +9,7 @@ from processing.core.monitor import Monitor
 from processing.core.parameters import angle, length, ratio
 from processing.core.text import Text
 from processing.image.neighbourhoods.segments import OVERLAP_ROWS, JoinLimits, connected_segments
-from processing.tools.tool import Needs, OutputColumn, PointBlock, PointResult, Tool
+from processing.tools.tool import Needs, OutputColumn, PerPoint, PointBlock, PointResult, Tool
 
 
 @dataclass(frozen=True)
@@ -108,7 +108,9 @@ SEGMENTS = Tool(
     group=Text("Points", "点群"),
     needs=Needs.PIXELS,
     parameters=SegmentsParameters,
-    compute=compute_segments,
-    outputs=(OutputColumn("segment", "int32", 1, Text("Segment", "セグメント")),),
-    overlap_rows=OVERLAP_ROWS,
+    method=PerPoint(
+        compute_segments,
+        outputs=(OutputColumn("segment", "int32", 1, Text("Segment", "セグメント")),),
+        overlap_rows=OVERLAP_ROWS,
+    ),
 )

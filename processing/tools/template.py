@@ -20,7 +20,7 @@ from processing.methods.templates.profile_template import ProfileTemplate
 from processing.methods.templates.slab import SectionFrame
 from processing.methods.templates.template_text import parse_template, read_template
 from processing.recording.drive import Drive
-from processing.tools.tool import Candidate, CandidateResult, Needs, Tool
+from processing.tools.tool import Candidate, CandidateResult, Finder, Needs, Tool
 
 _UNKNOWN_HEIGHT_M = -1000.0
 _ALONG_ROAD_DEG = -1.0
@@ -232,7 +232,7 @@ TEMPLATE = Tool(
     group=Text("Lines", "線"),
     needs=Needs.POINTS,
     parameters=TemplateParameters,
-    find=find_template,
+    method=Finder(find_template),
     remark=_remark,
     sought=("template", "easting_m", "northing_m", "height_m", "heading_deg"),
 )

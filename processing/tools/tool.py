@@ -1,8 +1,8 @@
 """Tool: one processing method, declared once.
 
-The form in the processing panel, ``zuka tools``, ``zuka run``, batch jobs and the manual are made
-from this declaration. A tool is a pure function, of a block of points where it says something about
-every point, of a drive where it finds things: no project, no view, no global.
+The form in the processing panel, its button, ``zuka tools``, ``zuka run``, ``zuka score``, batch
+jobs and the manual are made from this declaration. What a tool computes is a pure function of one
+of a few kinds (:data:`ToolMethod`): no project, no view, no global.
 """
 
 from __future__ import annotations
@@ -23,9 +23,13 @@ from processing.image.rows.grid import PixelGrid
 from processing.methods.earthwork.geometry.volume_scope import VolumeScope
 from processing.methods.earthwork.surfaces.sides import Side
 from processing.methods.earthwork.volumes.volume_result import VolumeResult
+from processing.methods.road.diagnostics import Diagnostic
+from processing.methods.road.requested_position import RequestedPosition
 from processing.recording.columns.columns import Columns, column_path
 from processing.recording.columns.ordering import read_chunk
 from processing.recording.drive import Drive
+from processing.scoring.asked_classes import AskedClass
+from processing.scoring.scorers import Scorer
 
 CandidateValue = str | float | int | bool | None
 CandidateGeometry = Literal["point", "line", "area"]
@@ -189,39 +193,6 @@ class CandidateResult:
     note: Text = Text("", "")
 
 
-# A tool's parameters are its own frozen dataclass, so the runner can't know their type.
-PointComputer = Callable[[PointBlock, Any, Monitor], PointResult]
-CandidateFinder = Callable[[Drive, Any, Monitor], CandidateResult]
-# Drives of one survey, the first being the one asked for, the tool's parameters.
-JointCandidateFinder = Callable[[tuple[Drive, ...], Any, Monitor], CandidateResult]
-# A drive, the tool's parameters, an empty folder for the columns, points to hold at a time.
-PointMarker = Callable[[Drive, Any, Path, int, Monitor], FinishedColumns]
-# Drives recorded together, the tool's parameters, an empty folder, points to hold at a time: the
-# columns of the first drive come to lie in it, and folders for those of the others.
-JointPointMarker = Callable[[tuple[Drive, ...], Any, Path, int, Monitor], TogetherResult]
-# A drive, the other drives of its street, the tool's parameters, whom to tell what is lacking.
-PointComputerFactory = Callable[[Drive, tuple[Drive, ...], Any, Monitor], PointComputer]
-
-
-# Two grounds, the earlier first, the tool's parameters, whom to tell, and what the volume is
-# limited to.
-VolumeComparer = Callable[[Side, Side, Any, Monitor, VolumeScope], VolumeResult]
-
-
-# What a person should know before the tool is run on a drive.
-RemarkFinder = Callable[[Drive], Text | None]
-
-
-def nothing_to_remark(_drive: Drive) -> Text | None:
-    """The ``remark`` of a tool that runs on any drive as its parameters stand."""
-    return None
-
-
-def nothing_per_point(_block: PointBlock, _parameters: object, _monitor: Monitor) -> PointResult:
-    """The ``compute`` of a tool that finds candidates."""
-    return PointResult()
-
-
 @dataclass(frozen=True)
 class OutputColumn:
     """A per-point result: its name in files, type, width and words for people."""
@@ -232,49 +203,205 @@ class OutputColumn:
     title: Text
 
 
+# A tool's parameters are its own frozen dataclass, so nobody here can know their type.
+PointComputer = Callable[[PointBlock, Any, Monitor], PointResult]
+# A drive, the other drives of its street, the tool's parameters, whom to tell what is lacking.
+PointComputerFactory = Callable[[Drive, tuple[Drive, ...], Any, Monitor], PointComputer]
+# A drive, the tool's parameters, an empty folder for the columns, points to hold at a time.
+PointMarker = Callable[[Drive, Any, Path, int, Monitor], FinishedColumns]
+# Drives recorded together, the tool's parameters, an empty folder, points to hold at a time: the
+# columns of the first drive come to lie in it, and folders for those of the others.
+JointPointMarker = Callable[[tuple[Drive, ...], Any, Path, int, Monitor], TogetherResult]
+CandidateFinder = Callable[[Drive, Any, Monitor], CandidateResult]
+# Drives of one survey, the first being the one asked for, the tool's parameters.
+JointCandidateFinder = Callable[[tuple[Drive, ...], Any, Monitor], CandidateResult]
+# Two grounds, the earlier first, the tool's parameters, whom to tell, and what the volume is
+# limited to.
+VolumeComparer = Callable[[Side, Side, Any, Monitor, VolumeScope], VolumeResult]
+# What a person should know before the tool is run on a drive.
+RemarkFinder = Callable[[Drive], Text | None]
+# A place with the scanline through it, the tool's parameters.
+DiagnosticMaker = Callable[[RequestedPosition, Any], tuple[Diagnostic, ...]]
+
+
 @dataclass(frozen=True)
-class Tool:
-    """One processing method: it says something about every point, or it finds candidates.
+class PerPoint:
+    """A method that says something about every point of a block.
 
     Attributes
     ----------
-    id : str
-        The name on the command line and in provenance.
-    version : int
-        Raised when the same input and parameters give another result.
     compute : callable
         Columns of a block's points.
     outputs : tuple of OutputColumn
         What ``compute`` gives per point.
     overlap_rows : int
-        Rows of the image that a block needs beyond its own on either side; −1: the tool can't be
+        Rows of the image that a block needs beyond its own on either side; −1: the method can't be
         cut into blocks and gets the recording whole.
-    compute_of : callable or None
-        Makes ``compute`` for one drive, where a block needs more than its own points: camera
-        images, or what stands around them.
-    mark : callable or None
-        Says something about every point in place of ``compute``, for a tool that needs the
-        neighbours in space whenever they were measured, and so reads a drive in an order of its
-        own. Its ``outputs`` don't depend on how many points it holds at a time. It reports its own
-        progress.
-    mark_together : callable or None
-        The same for all drives recorded together, for a tool that needs what any of them measured.
+    """
+
+    compute: PointComputer
+    outputs: tuple[OutputColumn, ...]
+    overlap_rows: int = 0
+
+
+@dataclass(frozen=True)
+class PerPointOfDrive:
+    """The same where a block needs more than its own points: images, or what stands around them.
+
+    Attributes
+    ----------
+    computer_of : callable
+        Makes ``compute`` of :class:`PerPoint` for one drive.
+    outputs, overlap_rows
+        As of :class:`PerPoint`.
+    """
+
+    computer_of: PointComputerFactory
+    outputs: tuple[OutputColumn, ...]
+    overlap_rows: int = 0
+
+
+@dataclass(frozen=True)
+class PerDrive:
+    """A method that says something about every point and reads the drive in an order of its own.
+
+    For what needs the neighbours in space whenever they were measured. It reports its own progress.
+
+    Attributes
+    ----------
+    mark : callable
+        Columns of a drive; they don't depend on how many points are held at a time.
+    outputs : tuple of OutputColumn
+    """
+
+    mark: PointMarker
+    outputs: tuple[OutputColumn, ...]
+
+
+@dataclass(frozen=True)
+class Together:
+    """The same on all drives recorded together, for what needs all that any of them measured.
+
+    Attributes
+    ----------
+    mark_together : callable
+        Columns of each of the drives.
+    outputs : tuple of OutputColumn
+    """
+
+    mark_together: JointPointMarker
+    outputs: tuple[OutputColumn, ...]
+
+
+@dataclass(frozen=True)
+class Finder:
+    """A method that finds things on a drive. It reads a chunk at a time and reports its progress.
+
+    Attributes
+    ----------
+    find : callable
+        Candidates on a whole drive.
+    """
+
+    find: CandidateFinder
+
+
+@dataclass(frozen=True)
+class SurveyFinder:
+    """The same on all drives of a survey, where several heads and passes give one result.
+
+    Attributes
+    ----------
+    find_together : callable
+        Candidates on all the drives.
+    """
+
+    find_together: JointCandidateFinder
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """A method that says what lies between two grounds; it runs on no drive.
+
+    Attributes
+    ----------
+    compare : callable
+        The volume between them.
+    """
+
+    compare: VolumeComparer
+
+
+PointMethod = PerPoint | PerPointOfDrive | PerDrive | Together
+"""Says something about every point."""
+
+FindingMethod = Finder | SurveyFinder
+"""Finds things, which a person accepts or rejects."""
+
+ToolMethod = PointMethod | FindingMethod | Comparison
+"""How a tool works; :mod:`processing.tools.runner` knows what each needs."""
+
+
+@dataclass(frozen=True)
+class ToolButton:
+    """The button of a tool that is run by one click or key, as its form stands.
+
+    Attributes
+    ----------
+    text : Text
+    key : str
+        As Qt names it: ``F9``, ``Shift+F9``.
+    icon : str
+        Name in the icon font.
+    """
+
+    text: Text
+    key: str
+    icon: str
+
+
+def nothing_to_remark(_drive: Drive) -> Text | None:
+    """The ``remark`` of a tool that runs on any drive as its parameters stand."""
+    return None
+
+
+@dataclass(frozen=True)
+class Tool:
+    """One processing method, with all that the program has to know of it.
+
+    Attributes
+    ----------
+    id : str
+        The name on the command line and in provenance.
+    name, explanation, group : Text
+        What the panel and ``zuka tools`` show.
+    needs : Needs
+        What a drive must have.
+    parameters : type
+        A frozen dataclass of fields from :mod:`processing.core.parameters`.
+    method : ToolMethod
+        What it computes, and on what.
+    version : int
+        Raised when the same input and parameters give another result.
     gives_classes : tuple of int
         The codes that a tool with the output ``classification`` may give; a new run in a project
         takes back those of an earlier one.
-    find : callable or None
-        Candidates on a whole drive, of which it reads a chunk at a time; None for a tool that
-        says something about points. It reports its own progress.
-    find_together : callable or None
-        The same on all drives of one survey at once, for a tool that gives one result for what
-        several heads and passes measured.
-    compare : callable or None
-        What lies between two grounds, for a tool that needs two of them and no drive.
-    remark : callable
-        What must be given so that it can run on a drive; None where nothing must.
+    makes : tuple of str
+        Ids of the catalogue's kinds that it finds; empty where somebody chooses them.
     sought : tuple of str
         Names of the parameters that say what is looked for, and where: runs of a project that
         differ in them find different things, so that none replaces what another found.
+    remark : callable
+        What must be given so that it can run on a drive; None where nothing must.
+    button : ToolButton or None
+        None where it is run from the panel alone.
+    diagnostics : callable or None
+        What it makes of the places about one that somebody points at in a section: of all places
+        on the scanline there that it would look at with some parameters.
+    scorer : Scorer or None
+        How its results are held against a truth.
+    asked : AskedClass or None
+        The question with two answers that a tool for points is asked, and so judged by.
     """
 
     id: str
@@ -282,22 +409,24 @@ class Tool:
     explanation: Text
     group: Text
     needs: Needs
-    parameters: type[Any]  # a frozen dataclass of fields from processing.core.parameters
-    compute: PointComputer = nothing_per_point
-    outputs: tuple[OutputColumn, ...] = ()
-    overlap_rows: int = 0
+    parameters: type[Any]  # each tool has its own
+    method: ToolMethod
     version: int = 1
-    compute_of: PointComputerFactory | None = None
-    mark: PointMarker | None = None
-    mark_together: JointPointMarker | None = None
     gives_classes: tuple[int, ...] = ()
-    find: CandidateFinder | None = None
-    find_together: JointCandidateFinder | None = None
-    compare: VolumeComparer | None = None
-    remark: RemarkFinder = nothing_to_remark
+    makes: tuple[str, ...] = ()
     sought: tuple[str, ...] = ()
+    remark: RemarkFinder = nothing_to_remark
+    button: ToolButton | None = None
+    diagnostics: DiagnosticMaker | None = None
+    scorer: Scorer | None = None
+    asked: AskedClass | None = None
 
     @property
     def gives_candidates(self) -> bool:
         """Whether it finds things instead of saying something about every point."""
-        return self.find is not None or self.find_together is not None
+        return isinstance(self.method, FindingMethod)
+
+    @property
+    def outputs(self) -> tuple[OutputColumn, ...]:
+        """What it says about every point; empty for a tool that says something else."""
+        return self.method.outputs if isinstance(self.method, PointMethod) else ()

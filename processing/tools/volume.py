@@ -5,7 +5,8 @@ from __future__ import annotations
 from processing.core.text import Text
 from processing.methods.earthwork.volumes.comparison import compare
 from processing.methods.earthwork.volumes.volume_parameters import VolumeParameters
-from processing.tools.tool import Needs, Tool
+from processing.scoring.scorers import VOLUME_SCORER
+from processing.tools.tool import Comparison, Needs, Tool
 
 VOLUME = Tool(
     id="volume",
@@ -19,5 +20,6 @@ VOLUME = Tool(
     group=Text("Earthwork", "土工"),
     needs=Needs.POINTS,
     parameters=VolumeParameters,
-    compare=compare,
+    method=Comparison(compare),
+    scorer=VOLUME_SCORER,
 )

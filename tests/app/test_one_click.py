@@ -21,7 +21,7 @@ from processing.project.importing.importing import ImportRequest
 from processing.recording.drive import Drive
 from processing.tools.normals import NormalsParameters
 from processing.tools.registry import TOOLS
-from processing.tools.tool import Candidate, CandidateResult, Needs
+from processing.tools.tool import Candidate, CandidateResult, Finder, Needs
 from tests.builders import simulated_drive, write_laz, write_trajectory_csv
 from tests.processing.project.candidates import FINDER
 
@@ -46,8 +46,14 @@ def find_lids(drive: Drive, _parameters: NormalsParameters, monitor: Monitor) ->
 def parts(qtbot: QtBot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[WindowParts]:
     """The window of a program that has a tool for gutters and none for curbs."""
     monkeypatch.delitem(TOOLS, "curbs", raising=False)
-    tool = replace(FINDER, id="gutters", find=find_lids, find_together=None)
-    monkeypatch.setitem(TOOLS, "gutters", replace(tool, needs=Needs.TRAJECTORY))
+    tool = replace(
+        FINDER,
+        id="gutters",
+        needs=Needs.TRAJECTORY,
+        method=Finder(find_lids),
+        button=TOOLS["gutters"].button,
+    )
+    monkeypatch.setitem(TOOLS, "gutters", tool)
     make_application()
     parts = build_window(Settings(tmp_path / "settings.ini"), tmp_path / "projects")
     parts.window.resize(1366, 768)

@@ -13,6 +13,7 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from processing.core.monitor import SilentMonitor
+from processing.image.neighbourhoods.segments import OVERLAP_ROWS
 from processing.image.point_image import PointCloudImage
 from processing.methods.road.curbs.edges.approximate_lines import ApproximateLine, outwards_of
 from processing.methods.road.curbs.edges.curb_points import LineCells
@@ -31,9 +32,9 @@ from processing.tools.ground import GROUND_TOOL, GroundParameters
 from processing.tools.gutters import GUTTERS
 from processing.tools.noise import NOISE, NoiseParameters
 from processing.tools.normals import NORMALS, NormalsParameters
-from processing.tools.registry import POINT_TOOLS, TOOLS
+from processing.tools.registry import TOOLS, point_tools
 from processing.tools.runner import RunRequest, columns_of, run
-from processing.tools.segments import SEGMENTS, SegmentsParameters
+from processing.tools.segments import SEGMENTS, SegmentsParameters, compute_segments
 from processing.tools.template import TEMPLATE
 from processing.tools.tool import FinishedColumns, PointBlock, PointResult
 from tests.builders import simulated_drive
@@ -73,7 +74,7 @@ CHUNKS = (TEMPLATE.id, CURBS.id, GUTTERS.id)
 
 def test_every_tool_is_shown_to_give_the_same_by_blocks() -> None:
     shown = {tool for tool, _ in (*BLOCKS, *WITH_IMAGES, *IN_SPACE)}
-    assert shown == set(POINT_TOOLS), "give a new tool a line in BLOCKS, WITH_IMAGES or IN_SPACE"
+    assert shown == set(point_tools()), "give a new tool a line in BLOCKS, WITH_IMAGES or IN_SPACE"
     assert shown | set(CHUNKS) == set(TOOLS), "a new tool that finds needs a test of its own"
 
 
@@ -256,11 +257,11 @@ def test_components_of_random_points_by_blocks_are_those_of_the_whole(
     parameters = SegmentsParameters(bend_deg=180.0)
 
     def components(rows: range) -> PointResult:
-        return SEGMENTS.compute(block_of(image, xyz, rows), parameters, SilentMonitor())
+        return compute_segments(block_of(image, xyz, rows), parameters, SilentMonitor())
 
     with TemporaryDirectory() as folder:
         results = JoinedResults(SEGMENTS.outputs, image.row_starts, Path(folder))
-        for block in blocks_of(image.row_starts, SEGMENTS.overlap_rows, points):
+        for block in blocks_of(image.row_starts, OVERLAP_ROWS, points):
             results.add(block, components(block.rows_with_overlap))
         joined = columns_of(results.finished(SilentMonitor()))
         assert_same(joined, components(range(image.rows)).columns)

@@ -13,8 +13,9 @@ from pathlib import Path
 import numpy as np
 
 from processing.formats.vectors.mapped_shapes import read_mapped
+from processing.scoring.file_scores import FeatureScorer
 from processing.scoring.mapped_features import MappedFeature, MappedFile
-from processing.scoring.scorers import FEATURE_SCORERS
+from processing.tools.registry import scorers
 
 Disturbance = Callable[[MappedFile], MappedFile]
 
@@ -78,7 +79,7 @@ def score_disturbed(folder: Path) -> Iterator[list[str]]:
         Truth of a simulated street.
     """
     yield ["truth", "F of", *DISTURBANCES]
-    for scorer in FEATURE_SCORERS:
+    for scorer in (one for one in scorers().values() if isinstance(one, FeatureScorer)):
         truth = read_mapped(folder / f"{scorer.tool}.geojson")
         if not truth.features:
             continue

@@ -18,8 +18,8 @@ from processing.project.store.runs import Run
 from processing.recording.columns.columns import ColumnWriter
 from processing.recording.columns.error_map import ERROR_MAP, map_errors
 from processing.recording.drive import Drive
-from processing.scoring.asked_classes import ASKED
 from processing.scoring.confusion_matrix import BinaryConfusionMatrix, is_one_of
+from processing.tools.registry import asked_classes
 from processing.tools.tool import FinishedColumns
 
 _AT_ONCE = 1 << 20
@@ -32,7 +32,7 @@ class ClassEvaluation:
     Attributes
     ----------
     tool : str
-        What was asked, a key of :data:`processing.scoring.asked_classes.ASKED`.
+        What was asked, a key of :func:`processing.tools.registry.asked_classes`.
     run : Run or None
         None: the classes as they stand now, corrections by hand and all.
     drives : tuple of str
@@ -78,7 +78,7 @@ def evaluate_classes(
     """
     known = [drive for drive in drives if has_truth(drive, truth)]
     wanted: list[tuple[str, Run | None, list[Drive]]] = []
-    for tool in ASKED:
+    for tool in asked_classes():
         evaluated_runs = []
         for run in runs:
             on = [
@@ -138,7 +138,7 @@ def evaluations_of(
     MissingInput
         What the run said isn't kept, or the truth is gone.
     """
-    tool, run, asked = evaluation.tool, evaluation.run, ASKED[evaluation.tool]
+    tool, run, asked = evaluation.tool, evaluation.run, asked_classes()[evaluation.tool]
     codes = read_truth(drive, truth, start, stop)
     is_true, is_found = is_one_of(codes, asked.codes), _found(drive, tool, run, start, stop)
     if not asked.removes:
@@ -163,7 +163,7 @@ def _counted(
         if is_known.any():
             is_found = _found(drive, tool, run, start, stop)[is_known]
             counts += BinaryConfusionMatrix.of(
-                is_one_of(codes[is_known], ASKED[tool].codes), is_found
+                is_one_of(codes[is_known], asked_classes()[tool].codes), is_found
             )
     return counts
 
@@ -171,4 +171,4 @@ def _counted(
 def _found(drive: Drive, tool: str, run: Run | None, start: int, stop: int) -> NDArray[np.bool_]:
     if run is not None:
         return read_finding(drive, run.tool, run.id, start, stop)
-    return is_one_of(classes_as_they_stand(drive, start, stop), ASKED[tool].codes)
+    return is_one_of(classes_as_they_stand(drive, start, stop), asked_classes()[tool].codes)

@@ -15,8 +15,8 @@ from processing.core.parameters import ParameterValue
 from processing.core.safe_write import write_safely
 from processing.project.evaluation.class_evaluation import ClassEvaluation
 from processing.project.evaluation.parameter_study import ParameterStudy
-from processing.scoring.asked_classes import ASKED
 from processing.scoring.confusion_matrix import BinaryConfusionMatrix
+from processing.tools.registry import asked_classes
 
 _DIGITS = 6
 
@@ -79,7 +79,7 @@ def write_study(path: Path, study: ParameterStudy, *, never: Iterable[Path] = ()
 
 
 def _scores(tool: str, counts: BinaryConfusionMatrix) -> dict[str, str]:
-    asked, turned = ASKED[tool], counts.turned()
+    asked, turned = asked_classes()[tool], counts.turned()
     found, other = _id(asked.found.en), _id(asked.other.en)
     return {
         "points": str(counts.count),

@@ -17,8 +17,8 @@ from processing.core.monitor import Monitor, PartMonitor
 from processing.core.parameters import Parameter, ParameterValue, fill_parameters, parameters_of
 from processing.core.text import Text
 from processing.recording.drive import Drive
-from processing.scoring.asked_classes import ASKED
 from processing.scoring.confusion_matrix import BinaryConfusionMatrix, is_one_of
+from processing.tools.registry import asked_classes
 from processing.tools.runner import RunRequest, drives_of, run_together, tool_of
 from processing.tools.tool import FinishedColumns
 
@@ -72,7 +72,7 @@ class StudyRequest:
     Attributes
     ----------
     tool : str
-        A key of :data:`processing.scoring.asked_classes.ASKED`.
+        A key of :func:`processing.tools.registry.asked_classes`.
     drives : tuple of Drive
         Counted together.
     fixed : mapping
@@ -159,7 +159,7 @@ def _tried(
     into: Path,
 ) -> BinaryConfusionMatrix:
     """What one setting does to all drives of a study."""
-    tool = tool_of(request.tool)
+    tool, codes = tool_of(request.tool), asked_classes()[request.tool].codes
     parameters = fill_parameters(tool.parameters, setting)
     everything = (*request.drives, *request.beside)
     counts, left = BinaryConfusionMatrix(0, 0, 0, 0), list(request.drives)
@@ -174,7 +174,7 @@ def _tried(
             found = run_together(wanted, PartMonitor(monitor, start, start + share), into=into)
             for drive, columns in zip(about, found.columns, strict=True):
                 if drive in left:
-                    counts += _counted(columns, drive, truth, ASKED[tool.id].codes, monitor)
+                    counts += _counted(columns, drive, truth, codes, monitor)
         finally:
             shutil.rmtree(into, ignore_errors=True)
         left = [one for one in left if one not in about]
@@ -189,7 +189,7 @@ def settings_of(request: StudyRequest) -> tuple[dict[str, ParameterValue], ...]:
     OutOfRange
         There is nothing to vary, or too much.
     """
-    if request.tool not in ASKED:
+    if request.tool not in asked_classes():
         raise _gives_no_classes(request.tool)
     names = [one.parameter for one in request.varied]
     cells = math.prod(len(one.values) for one in request.varied)
@@ -309,5 +309,5 @@ def _gives_no_classes(tool: str) -> OutOfRange:
             "There is no truth to judge this tool by.", "このツールは真値による評価の対象外です。"
         ),
         Text.same(tool),
-        use_one_of(ASKED),
+        use_one_of(asked_classes()),
     )

@@ -26,7 +26,6 @@ from processing.project.results.run_findings import labelled_by_runs
 from processing.recording.columns.columns import ColumnWriter
 from processing.recording.columns.ordering import read_chunk
 from processing.recording.drive import Drive
-from processing.scoring.asked_classes import ASKED
 from processing.tools.registry import TOOLS
 
 OTHER = 1
@@ -168,7 +167,7 @@ def _is_by_hand(drive: Drive, start: int, stop: int) -> NDArray[np.bool_]:
         return np.zeros(stop - start, np.bool_)
     points, labels = np.arange(start, stop), np.asarray(drive.columns[LABEL][start:stop])
     is_by_hand = labels > 0
-    for tool in ASKED:
-        if tool in TOOLS:
-            is_by_hand &= ~labelled_by_runs(drive, TOOLS[tool], points, labels)
+    for tool in TOOLS.values():
+        if tool.asked is not None:
+            is_by_hand &= ~labelled_by_runs(drive, tool, points, labels)
     return is_by_hand

@@ -20,7 +20,9 @@ from processing.recording.columns.columns import ColumnWriter, column_path
 from processing.recording.columns.source_order import damaged_sources
 from processing.recording.drive import Drive
 from processing.scoring.coded_points import CodedFile
-from processing.scoring.scorers import GROUND_SCORER, POINT_SCORERS
+from processing.scoring.point_scores import PointScorer
+from processing.scoring.scorers import GROUND_SCORER
+from processing.tools.registry import scorers
 
 _AT_ONCE = 1_000_000
 _READING = 0.5
@@ -34,7 +36,8 @@ def coded_truth(path: Path) -> CodedFile:
     MissingInput, NoSpace, BadFile
         It can't be read, is damaged, or has no classes.
     """
-    flags = {name: codes for one in POINT_SCORERS for name, codes in one.flags.items()}
+    known = [one for one in scorers().values() if isinstance(one, PointScorer)]
+    flags = {name: codes for one in known for name, codes in one.flags.items()}
     # Text with yes and no alone is that of the ISPRS filter test, which is about the ground.
     no, yes = GROUND_SCORER.if_false, GROUND_SCORER.if_true
     return read_truth(path, if_false=no, if_true=yes, flags=flags)

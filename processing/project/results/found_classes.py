@@ -20,7 +20,6 @@ from processing.project.store.label_filing import labels_as_change
 from processing.project.store.runs import Run, new_run_id
 from processing.recording.columns.ordering import read_chunk
 from processing.recording.drive import Drive
-from processing.scoring.asked_classes import ASKED
 from processing.tools.tool import FinishedColumns, Tool
 
 _CLASS = "classification"
@@ -150,7 +149,7 @@ def relabel_points(
     # Where it isn't kept what runs said, a label of the tool's own may be an earlier run's.
     is_own = (
         labelled_by_runs(drive, tool, points, before)
-        if tool.id in ASKED
+        if tool.asked is not None
         else np.isin(before, tool.gives_classes)
     )
     is_free = (before == 0) | is_own

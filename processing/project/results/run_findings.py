@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 
 from processing.core.errors import report_as_user_error
 from processing.recording.drive import Drive
-from processing.scoring.asked_classes import ASKED
 from processing.scoring.confusion_matrix import is_one_of
 from processing.tools.tool import FinishedColumns, Tool
 
@@ -109,7 +108,7 @@ def labelled_by_runs(
     Parameters
     ----------
     tool : Tool
-        One of :data:`processing.scoring.asked_classes.ASKED`.
+        One that is asked something.
     points : (n,) int64
         Rising.
     labels : (n,) uint8
@@ -120,9 +119,9 @@ def labelled_by_runs(
     (n,) bool
     """
     found = np.zeros(points.size, np.bool_)
-    if not points.size:
+    if not points.size or tool.asked is None:
         return found
-    yes, own = ASKED[tool.id].codes, frozenset(tool.gives_classes)
+    yes, own = tool.asked.codes, frozenset(tool.gives_classes)
     is_yes, is_no = is_one_of(labels, yes & own), is_one_of(labels, own - yes)
     first = int(points[0])
     for path in sorted((drive.folder / _FOLDER / tool.id).glob(f"*{_ENDING}")):

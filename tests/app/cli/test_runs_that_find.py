@@ -27,7 +27,7 @@ from processing.project.project import Project
 from processing.recording.drive import Drive
 from processing.tools.normals import NormalsParameters
 from processing.tools.registry import TOOLS
-from processing.tools.tool import Candidate, CandidateResult
+from processing.tools.tool import Candidate, CandidateResult, Finder, SurveyFinder
 from tests.builders import simulated_drive, write_laz, write_trajectory_csv
 from tests.processing.project.candidates import FINDER
 
@@ -77,10 +77,10 @@ def find_in_all(
 @pytest.fixture(autouse=True)
 def finder(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let the program know a tool that finds, and one that refuses."""
-    monkeypatch.setitem(TOOLS, "finder", replace(FINDER, find=find_every_thousandth))
-    together = replace(FINDER, id="together", find=None, find_together=find_in_all)
+    monkeypatch.setitem(TOOLS, "finder", replace(FINDER, method=Finder(find_every_thousandth)))
+    together = replace(FINDER, id="together", method=SurveyFinder(find_in_all))
     monkeypatch.setitem(TOOLS, "together", together)
-    monkeypatch.setitem(TOOLS, "refuser", replace(FINDER, id="refuser", find=refuse))
+    monkeypatch.setitem(TOOLS, "refuser", replace(FINDER, id="refuser", method=Finder(refuse)))
 
 
 @pytest.fixture

@@ -220,9 +220,8 @@ def test_a_truth_that_is_missing_cut_off_or_of_another_tool_is_refused(
     assert "point 2" in refused(capsys, "ground", result, tmp_path / "truth.txt")
     (tmp_path / "truth.txt").write_text("1 2 3 0\n1 2 3 0.5\n", "ascii")
     assert "point 2" in refused(capsys, "ground", result, tmp_path / "truth.txt")
-    assert "noise, ground, classify, curbs" in refused(
-        capsys, "walls", result, tmp_path / "truth.txt"
-    )
+    known = refused(capsys, "walls", result, tmp_path / "truth.txt").rpartition(": ")[2]
+    assert {"noise", "ground", "classify", "curbs", "trees"} <= set(known.rstrip(".").split(", "))
 
 
 def test_the_table_lines_up_in_japanese_too(

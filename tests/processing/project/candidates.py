@@ -9,7 +9,7 @@ import numpy as np
 from processing.core.text import Text
 from processing.project.results.found_features import FoundFeatures, found_features
 from processing.tools.normals import NormalsParameters
-from processing.tools.tool import Candidate, CandidateResult, Needs, Tool
+from processing.tools.tool import Candidate, CandidateResult, Finder, Needs, Tool
 
 STARTED = datetime(2026, 4, 1, 9, 30, tzinfo=UTC)
 
@@ -27,7 +27,7 @@ FINDER = Tool(
     needs=Needs.POINTS,
     parameters=NormalsParameters,
     version=3,
-    find=find_nothing,
+    method=Finder(find_nothing),
 )
 
 

@@ -20,7 +20,7 @@ from processing.recording.drive import Drive
 from processing.recording.drive_info import read_drive_info, write_drive_info
 from processing.recording.kinds import ImageKind
 from processing.tools.normals import NORMALS, NormalsParameters
-from processing.tools.registry import POINT_TOOLS, TOOLS
+from processing.tools.registry import TOOLS, point_tools
 from processing.tools.runner import RunRequest, check_needs, columns_of, run, tool_of
 from processing.tools.segments import SEGMENTS, SegmentsParameters
 from processing.tools.tool import Needs
@@ -60,7 +60,7 @@ def new_in(drive: Drive) -> Path:
     return drive.folder.parent / uuid4().hex
 
 
-@pytest.mark.parametrize("name", list(POINT_TOOLS))
+@pytest.mark.parametrize("name", list(point_tools()))
 def test_a_tool_gives_what_it_declares_and_the_drive_can_store_it(drive: Drive, name: str) -> None:
     tool = TOOLS[name]
     result = run(RunRequest(name, drive, tool.parameters()), SilentMonitor(), into=new_in(drive))
@@ -75,7 +75,7 @@ def test_a_tool_gives_what_it_declares_and_the_drive_can_store_it(drive: Drive, 
         np.testing.assert_array_equal(drive.columns[output.name], values)
 
 
-@pytest.mark.parametrize("name", list(POINT_TOOLS))
+@pytest.mark.parametrize("name", list(point_tools()))
 def test_a_tool_runs_on_a_cloud_without_turns(drive: Drive, name: str) -> None:
     flat = without_revolutions(drive)
     assert flat.image_kinds == (ImageKind.TOP_VIEW,)

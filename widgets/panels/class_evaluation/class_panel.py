@@ -26,8 +26,9 @@ from processing.image.attributes.colour_maps import ERROR_MAP_COLOURS
 from processing.project.evaluation.class_evaluation import ClassEvaluation
 from processing.project.evaluation.truth_store import Truth
 from processing.recording.columns.error_map import ERROR_MAP, ErrorMapValue
-from processing.scoring.asked_classes import ASKED
+from processing.scoring.asked_classes import NOISE_ASKED
 from processing.scoring.confusion_matrix import BinaryConfusionMatrix
+from processing.tools.registry import asked_classes
 from widgets.feature_drawing.swatch import SWATCH_PX, swatch_of
 from widgets.panels.class_evaluation.setting_words import moment_of, settings_words
 from widgets.panels.class_evaluation.truth_bar import TruthBar
@@ -152,13 +153,13 @@ class ClassPanel(QWidget):
 
     def _untouched_name(self, tool: str) -> str:
         name = name_of_tool(tool, self._language)
-        if ASKED[tool].removes:
+        if asked_classes()[tool].removes:
             return self.tr("{tool}: if nothing were removed").format(tool=name)
         return self.tr("{tool}: if everything were kept").format(tool=name)
 
     def _fill(self, row: int, name: str, counts: BinaryConfusionMatrix, *, is_run: bool) -> None:
         before = self._rows[row] or self._rows[row + 1]
-        asked = ASKED["noise" if before is None else before.tool]
+        asked = NOISE_ASKED if before is None else asked_classes()[before.tool]
         removed = counts if asked.removes else counts.turned()
         kept = removed.turned()
         words = (
@@ -251,7 +252,7 @@ class ClassPanel(QWidget):
         if self.truth is None:
             words = self.tr("Say first what is true: paint, check, then “New truth”.")
         elif chosen is not None:
-            asked = ASKED[chosen.tool]
+            asked = asked_classes()[chosen.tool]
             words = self.tr("kept: {kept}; removed: {removed}").format(
                 kept=asked.kept.in_language(self._language),
                 removed=asked.removed.in_language(self._language),
@@ -298,7 +299,7 @@ class ClassPanel(QWidget):
 
 def _untouched(one: ClassEvaluation) -> BinaryConfusionMatrix:
     """What the same truth gives where every point is kept."""
-    if ASKED[one.tool].removes:
+    if asked_classes()[one.tool].removes:
         return one.counts.if_nothing_was_positive()
     return one.counts.turned().if_nothing_was_positive().turned()
 

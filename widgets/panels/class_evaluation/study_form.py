@@ -23,8 +23,7 @@ from processing.project.evaluation.parameter_study import (
     steps_of,
     usual_range,
 )
-from processing.scoring.asked_classes import ASKED
-from processing.tools.registry import TOOLS
+from processing.tools.registry import asked_classes
 from widgets.panels.run_words import name_of_tool
 from widgets.parts.number_field import NumberField, decimals_for
 
@@ -117,9 +116,8 @@ class StudyForm(QWidget):
     def __init__(self, language: Language, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._tool = QComboBox(self)
-        for tool in ASKED:
-            if tool in TOOLS:
-                self._tool.addItem(name_of_tool(tool, language), tool)
+        for tool in asked_classes():
+            self._tool.addItem(name_of_tool(tool, language), tool)
         self.first = RangeRow(self, language, is_second=False)
         self.second = RangeRow(self, language, is_second=True)
         self._where = QComboBox(self)

@@ -22,7 +22,7 @@ from typing_extensions import override
 from processing.core.parameters import ParameterValue
 from processing.core.text import Language
 from processing.project.evaluation.study_store import KeptStudy
-from processing.scoring.asked_classes import ASKED
+from processing.tools.registry import asked_classes
 from widgets.panels.class_evaluation.setting_words import (
     parameter_name,
     settings_words,
@@ -231,8 +231,8 @@ class StudyPanel(QWidget):
         with QSignalBlocker(self._side):
             wanted = self._side.currentData()
             self._side.clear()
-            if kept is not None and kept.study.tool in ASKED:
-                asked = ASKED[kept.study.tool]
+            if kept is not None and kept.study.tool in asked_classes():
+                asked = asked_classes()[kept.study.tool]
                 self._side.addItem(asked.removed.in_language(self._language), _REMOVED)
                 self._side.addItem(asked.kept.in_language(self._language), _KEPT)
                 self._side.setCurrentIndex(max(0, self._side.findData(wanted)))

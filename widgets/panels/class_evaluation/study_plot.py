@@ -12,8 +12,8 @@ from PySide6.QtGui import QColor, QPainter, QPen
 from processing.core.parameters import ParameterValue
 from processing.core.text import Language
 from processing.project.evaluation.parameter_study import ParameterStudy, StudyCell
-from processing.scoring.asked_classes import ASKED
 from processing.scoring.confusion_matrix import BinaryConfusionMatrix
+from processing.tools.registry import asked_classes
 from widgets.panels.class_evaluation.setting_words import parameter_name, value_words
 from widgets.panels.reliability_plot import PlotColours
 
@@ -82,7 +82,7 @@ class StudyPlot:
 
     def counts_of(self, cell: StudyCell) -> BinaryConfusionMatrix:
         """A cell's counts with the points shown as the positive class."""
-        is_as_found = ASKED[self.study.tool].removes is self.shows_removed
+        is_as_found = asked_classes()[self.study.tool].removes is self.shows_removed
         return cell.counts if is_as_found else cell.counts.turned()
 
     def paint(self, painter: QPainter, area: QRectF, colours: PlotColours) -> None:

@@ -15,7 +15,7 @@ from processing.methods.ground.surface_line import SurfaceLine, remove_doubles, 
 from processing.project.results.run_findings import finding_of, newest_run
 from processing.recording.columns.counted_classes import class_columns
 from processing.recording.drive import Drive
-from processing.scoring.asked_classes import ASKED
+from processing.scoring.asked_classes import GROUND_ASKED
 from processing.scoring.confusion_matrix import is_one_of
 from processing.section.cut import Cut
 from processing.section.points_in_cut import SectionPoints
@@ -63,7 +63,7 @@ class FoundGround:
                     said = finding_of(drive, _GROUND, run, part.points)
                     codes = class_columns(drive.columns).codes_of(part.points)
                     sections.append(part.section)
-                    is_ground.append(is_one_of(codes, ASKED[_GROUND].codes))
+                    is_ground.append(is_one_of(codes, GROUND_ASKED.codes))
                     was_ground.append(said)
         return update_ground_lines(
             lines, np.concatenate(sections), np.concatenate(is_ground), np.concatenate(was_ground)

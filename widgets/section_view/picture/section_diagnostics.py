@@ -14,7 +14,7 @@ from processing.methods.road.diagnostics import Diagnostic
 from processing.methods.road.requested_position import RequestedPosition
 from processing.recording.drive import Drive
 from processing.section.cut import Cut
-from processing.tools.diagnostic_makers import DIAGNOSTIC_MAKERS
+from processing.tools.registry import TOOLS
 from widgets.section_view.picture.section_position import SectionPosition
 
 Floats = NDArray[np.float64]
@@ -81,10 +81,10 @@ def _shown(
     asked: RequestedPosition, cut: Cut, parameters: Mapping[str, object]
 ) -> SectionDiagnostics:
     diagnostics = [
-        ShownDiagnostic(tool, diagnostic, cut.to_section(diagnostic.xyz.reshape(1, 3))[0])
-        for tool, make in DIAGNOSTIC_MAKERS.items()
-        if tool in parameters
-        for diagnostic in make(asked, parameters[tool])
+        ShownDiagnostic(tool.id, diagnostic, cut.to_section(diagnostic.xyz.reshape(1, 3))[0])
+        for tool in TOOLS.values()
+        if tool.diagnostics is not None and tool.id in parameters
+        for diagnostic in tool.diagnostics(asked, parameters[tool.id])
     ]
     return SectionDiagnostics(
         asked.drive.info.name, _lines(asked.scanlines, cut), tuple(diagnostics)

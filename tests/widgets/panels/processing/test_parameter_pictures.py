@@ -13,7 +13,7 @@ from pytestqt.qtbot import QtBot
 from processing.core.parameters import angle, count, length, parameters_of, switch
 from processing.core.text import Text
 from processing.tools.registry import TOOLS
-from processing.tools.tool import Needs, Tool
+from processing.tools.tool import CandidateResult, Finder, Needs, Tool
 from resources import UnknownResource, path_of
 from widgets.panels.processing.parameter_form import ParameterForm
 from widgets.panels.processing.parameter_picture import PICTURE_PX, ParameterPicture, picture_source
@@ -34,7 +34,8 @@ class ShownForm:
 
 def tool(id_: str, parameters: type[object]) -> Tool:
     name = Text.same(id_)
-    return Tool(id_, name, name, Text("Road", "道路"), Needs.POINTS, parameters)
+    method = Finder(lambda *_: CandidateResult())
+    return Tool(id_, name, name, Text("Road", "道路"), Needs.POINTS, parameters, method)
 
 
 @dataclass(frozen=True)
