@@ -185,6 +185,18 @@ def test_every_tool_makes_kinds_that_the_catalogue_has() -> None:
         assert tool.gives_candidates or not tool.makes
 
 
+@pytest.mark.parametrize("name", [tool.id for tool in TOOLS.values() if tool.makes])
+def test_what_a_tool_finds_is_of_the_kinds_that_it_declares(
+    name: str, recorded: SimulatedDrive, cloud: Path, tmp_path: Path
+) -> None:
+    trajectory = write_trajectory_csv(recorded, tmp_path / "t.csv")
+    found = tmp_path / "found.geojson"
+    arguments = ["run", name, cloud, "--trajectory", trajectory, "--output", found]
+    assert run_in_terminal([*map(str, arguments)]) == DONE
+    features = json.loads(found.read_text("utf-8"))["features"]
+    assert {one["properties"]["kind"] for one in features} <= set(TOOLS[name].makes)
+
+
 def test_every_scorer_and_every_question_belongs_to_its_tool() -> None:
     for tool in every_tool().values():
         if tool.scorer is not None:
