@@ -16,6 +16,8 @@ from app.window.window_parts import WindowParts
 from processing.core.errors import UserError
 from processing.core.parameters import ParameterValue
 from processing.core.text import Text
+from processing.formats.format import Content
+from processing.formats.registry import FORMATS
 from processing.project.evaluation.class_evaluation import ClassEvaluation
 from processing.project.evaluation.parameter_study import can_vary
 from processing.project.evaluation.study_store import KeptStudy
@@ -100,9 +102,7 @@ class _ClassWiring(QObject):
             self._parts.window,
             QCoreApplication.translate("ClassWiring", "Take the truth from a file"),
             str(project.folder.parent),
-            QCoreApplication.translate(
-                "ClassWiring", "Classes of points (*.las *.laz *.npy *.npz *.txt);;All files (*)"
-            ),
+            FORMATS.filter_read(Content.CLASSES).in_language(self._parts.language),
         )
         if path:
             self._evaluations.load_truth(Path(path))
@@ -179,8 +179,9 @@ class _ClassWiring(QObject):
             return None
         title = QCoreApplication.translate("ViewWiring", "Write the evaluation")
         start = str(project.folder.parent / name)
-        files = f"*.{name.rpartition('.')[2]}"
-        chosen, _ = QFileDialog.getSaveFileName(self._parts.window, title, start, files)
+        files = next(one for one in FORMATS if Path(name).suffix in one.endings).file_filter
+        shown = files.in_language(self._parts.language)
+        chosen, _ = QFileDialog.getSaveFileName(self._parts.window, title, start, shown)
         return Path(chosen) if chosen else None
 
     def _write(self, path: Path, write: Callable[[], None]) -> None:

@@ -12,6 +12,8 @@ from PySide6.QtGui import QFont, QGuiApplication, QImage, QPageSize, QPainter, Q
 from processing.core.errors import NoSpace, Unsuitable
 from processing.core.safe_write import write_safely
 from processing.core.text import Text
+from processing.formats.format import Content
+from processing.formats.registry import FORMATS
 from processing.project.evaluation.class_evaluation import ClassEvaluation
 from processing.project.evaluation.class_tables import write_class_evaluations, write_study
 from processing.project.evaluation.evaluation_table import write_evaluation
@@ -20,7 +22,6 @@ from processing.project.evaluation.run_evaluation import RunEvaluation
 from widgets.panels.class_evaluation.study_plot import StudyPlot
 from widgets.panels.reliability_plot import PlotColours, ReliabilityPlot
 
-_PICTURES = (".png", ".pdf")
 _SIDE_MM = 150.0
 _PNG_PX = 1800
 _FONT_MM = 3.5
@@ -47,7 +48,7 @@ def write_evaluation_file(
     NoSpace, InUse, MissingInput, BadFile
         What stands against writing; what was there before stays.
     """
-    if path.suffix.lower() not in _PICTURES:
+    if path.suffix.lower() not in FORMATS.endings_written(Content.PLOT):
         write_evaluation(path, evaluations)
         return
     _write_plot(path, plot, "" if plot is None else plot.words.title)
@@ -85,7 +86,7 @@ def write_study_file(
     NoSpace, InUse, MissingInput, BadFile
         What stands against writing; what was there before stays.
     """
-    if path.suffix.lower() not in _PICTURES:
+    if path.suffix.lower() not in FORMATS.endings_written(Content.PLOT):
         write_study(path, study, never=never)
         return
     _write_plot(path, plot, "" if plot is None else plot.title)
@@ -104,7 +105,7 @@ def _write_plot(path: Path, plot: _Plot | None, title: str) -> None:
             Text("Judge some candidates first.", "先に候補を判定してください。"),
         )
     with write_safely(path) as temporary:
-        is_pdf = path.suffix.lower() == ".pdf"
+        is_pdf = FORMATS.format_to_write(path, Content.PLOT).id == "pdf"
         is_whole = _write_pdf(temporary, plot, title) if is_pdf else _write_png(temporary, plot)
         if not is_whole:
             raise NoSpace(

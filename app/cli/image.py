@@ -15,7 +15,9 @@ from app.cli.output import print_lines
 from processing.core.errors import name_with_type
 from processing.core.monitor import Monitor, SilentMonitor
 from processing.core.text import Text
+from processing.formats.format import Content
 from processing.formats.pictures.png import MOST_PIXELS, MOST_ROWS, write_png
+from processing.formats.registry import FORMATS
 from processing.image.attributes.attributes import ATTRIBUTES, colours
 from processing.image.images_of_drives import image_of
 from processing.image.point_image import PointCloudImage
@@ -30,6 +32,7 @@ def command(arguments: argparse.Namespace) -> int:
     """Write one image for each drive of the input."""
     kind = _word(arguments.kind, {kind.value: kind for kind in ImageKind})
     attribute = _word(arguments.attribute, {name: name for name in ATTRIBUTES})
+    FORMATS.format_to_write(arguments.output, Content.PICTURE)
     monitor = terminal_monitor()
     with opened_input(arguments, monitor) as opened:
         for number, drive in enumerate(opened.drives):

@@ -12,6 +12,7 @@ from typing import NoReturn, cast
 from app.cli.window_request import WindowRequest
 from processing.core.errors import OutOfRange
 from processing.core.text import Text
+from processing.formats.registry import FORMATS
 
 Command = Callable[[argparse.Namespace], int | WindowRequest]
 
@@ -146,8 +147,13 @@ def _add_working_commands(commands: _Commands[_Parser]) -> None:
     exporting.add_argument("project", type=Path, metavar="PROJECT")
     exporting.add_argument("--format", action="append", required=True, metavar="F")
     exporting.add_argument("--out", type=Path, required=True, metavar="DIR")
-    exporting.add_argument("--dxf-version", choices=["R2000", "R2018"], default="R2018")
-    exporting.add_argument("--encoding", choices=["utf-8", "cp932"], default="utf-8")
+    for option in FORMATS.map_options():
+        exporting.add_argument(
+            f"--{option.id.replace('_', '-')}",
+            choices=[one.value for one in option.choices] or None,
+            metavar=None if option.choices else option.id.upper(),
+            help=option.name.en,
+        )
     exporting.add_argument("--candidates", action="store_true", help="unchecked ones as well")
     exporting.set_defaults(module="export")
 

@@ -12,13 +12,15 @@ from pathlib import Path
 from app.cli.opened import OpenedInput, opened_input, terminal_monitor
 from app.cli.output import print_lines
 from app.cli.set_option import settings_of_words
-from processing.core.errors import MissingInput, OutOfRange
+from processing.core.errors import MissingInput
 from processing.core.monitor import Monitor, PartMonitor
 from processing.core.parameters import fill_parameters
 from processing.core.safe_write import refuse_inputs, write_safely
 from processing.core.scratch_folder import scratch_folder
 from processing.core.text import Text
-from processing.formats.vectors.feature_files import check_ending, write_feature_file
+from processing.formats.format import Content
+from processing.formats.registry import FORMATS
+from processing.formats.vectors.feature_files import write_feature_file
 from processing.map.feature import Feature
 from processing.methods.ground.stored_surface import StoredSurface
 from processing.project.results.found_features import found_features
@@ -30,7 +32,6 @@ from processing.tools.runner import RunRequest, check_needs, drives_of, run, run
 from processing.tools.tool import CandidateResult, FinishedColumns, Tool
 
 _RUNNING = 0.8
-_DRAWING = ".dxf"
 _NOTE = Text("{tool}: {note}", "{tool}: {note}")
 
 
@@ -96,7 +97,7 @@ def _found(request: _Wish, scratch: Path, monitor: Monitor) -> tuple[Path, ...]:
 
 def _for_file(result: CandidateResult, output: Path) -> CandidateResult:
     """What goes into a file: a drawing has all, other files what was found."""
-    if output.suffix.lower() == _DRAWING:
+    if Content.DRAWING in FORMATS.format_to_write(output, Content.FEATURES).writes:
         return result
     kept = tuple(one for one in result.candidates if not one.is_drawing)
     return replace(result, candidates=kept)
@@ -181,11 +182,5 @@ def _check_inputs(arguments: argparse.Namespace) -> None:
 
 
 def _check_output(tool: Tool, output: Path) -> None:
-    if tool.gives_candidates:
-        check_ending(output)
-    elif output.suffix.lower() not in (".las", ".laz"):
-        raise OutOfRange(
-            Text("Point results are LAS or LAZ files.", "点の処理結果はLASまたはLAZです。"),
-            Text.same(str(output)),
-            Text("Give a name ending in .las or .laz.", ".las または .laz の名前にしてください。"),
-        )
+    content = Content.FEATURES if tool.gives_candidates else Content.POINTS
+    FORMATS.format_to_write(output, content)

@@ -11,12 +11,13 @@ from app.cli.output import print_lines
 from app.cli.scores.aligned import align_lines
 from app.cli.set_option import settings_of_words
 from app.settings.language import system_language
-from processing.core.errors import OutOfRange
 from processing.core.monitor import Monitor, PartMonitor
 from processing.core.parameters import fill_parameters
 from processing.core.safe_write import refuse_inputs
 from processing.core.scratch_folder import scratch_folder
 from processing.core.text import Language, Text
+from processing.formats.format import Content
+from processing.formats.registry import FORMATS
 from processing.project.evaluation.class_tables import write_study
 from processing.project.evaluation.parameter_study import (
     ParameterStudy,
@@ -42,7 +43,7 @@ def command(arguments: argparse.Namespace) -> int:
     fixed = settings_of_words(arguments.set)
     fill_parameters(tool.parameters, fixed)
     varied = varied_of(tool.id, arguments.vary)
-    _check_output(arguments.output)
+    FORMATS.format_to_write(arguments.output, Content.TABLE)
     monitor = terminal_monitor()
     with (
         opened_input(arguments, monitor) as opened,
@@ -97,12 +98,3 @@ def _lines(found: ParameterStudy, language: Language) -> list[str]:
 
 def _delivered(opened: OpenedInput) -> list[Path]:
     return [path for drive in opened.drives for path in drive.delivered_files]
-
-
-def _check_output(output: Path) -> None:
-    if output.suffix.lower() != ".csv":
-        raise OutOfRange(
-            Text("A study is written as a table.", "検討結果は表として書き出します。"),
-            Text.same(str(output)),
-            Text("Give a name ending in .csv.", ".csv で終わる名前を指定してください。"),
-        )

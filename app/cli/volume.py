@@ -14,7 +14,7 @@ import shapely
 from app.cli.opened import terminal_monitor
 from app.cli.output import print_lines
 from app.cli.set_option import settings_of_words
-from app.cli.volume_reports import check_ending, check_report_options, volume_reports_of
+from app.cli.volume_reports import check_report_options, volume_reports_of
 from app.cli.volume_sides import NamedSide, named_side
 from processing.core.errors import MissingInput, Unsuitable
 from processing.core.monitor import parts_of
@@ -22,6 +22,8 @@ from processing.core.parameters import fill_parameters
 from processing.core.safe_write import write_safely
 from processing.core.scratch_folder import scratch_folder
 from processing.core.text import Text
+from processing.formats.format import Content
+from processing.formats.registry import FORMATS
 from processing.formats.vectors.boundary_files import file_and_layer, read_boundary
 from processing.formats.vectors.line_files import read_lines
 from processing.methods.earthwork.as_built.as_built import AsBuiltResult
@@ -31,8 +33,6 @@ from processing.methods.earthwork.surfaces.sides import EpochGround
 from processing.methods.earthwork.volumes.comparison import compare
 from processing.methods.earthwork.volumes.volume_parameters import VolumeParameters
 from processing.methods.earthwork.volumes.volume_result import VolumeResult
-
-_JSON = ".json"
 
 
 def command(arguments: argparse.Namespace) -> int:
@@ -77,7 +77,7 @@ def _check(arguments: argparse.Namespace, parameters: VolumeParameters) -> None:
                 "--before A と --after B に、点群・設計面（LandXML）・標高を指定してください。",
             ),
         )
-    check_ending(arguments.output, (_JSON,))
+    FORMATS.format_to_write(arguments.output, Content.NUMBERS)
     check_report_options(parameters, (arguments.before, arguments.after))
 
 

@@ -14,6 +14,8 @@ from processing.core.errors import MissingInput, OutOfRange, Unsuitable, use_one
 from processing.core.monitor import Monitor
 from processing.core.safe_write import refuse_inputs
 from processing.core.text import Text
+from processing.formats.format import Content
+from processing.formats.registry import FORMATS
 from processing.formats.reports.as_built_form import write_as_built_form
 from processing.formats.reports.as_built_rows import AsBuiltFacts
 from processing.formats.reports.as_built_tables import write_as_built_csv, write_as_built_xlsx
@@ -35,9 +37,6 @@ from processing.methods.earthwork.volumes.volume_result import VolumeResult
 from processing.project.project import is_project
 from processing.project.work_details import WorkDetails, read_work_details
 
-_MAPS = (".tif", ".tiff")
-_PAPERS = (".pdf", ".xlsx", ".csv")
-
 
 def check_report_options(parameters: VolumeParameters, sides: tuple[Path, Path]) -> None:
     """Refuse what can't be written before any work is done.
@@ -48,13 +47,13 @@ def check_report_options(parameters: VolumeParameters, sides: tuple[Path, Path])
         A name has another ending; there is nothing to judge; what stands on the papers, or by
         which limits is judged, can't be read.
     """
-    for name, endings in (
-        (parameters.map, _MAPS),
-        (parameters.report, _PAPERS),
-        (parameters.form, _PAPERS),
+    for name, content in (
+        (parameters.map, Content.GRID),
+        (parameters.report, Content.REPORT),
+        (parameters.form, Content.REPORT),
     ):
         if name:
-            check_ending(Path(name), endings)
+            FORMATS.format_to_write(Path(name), content)
     if parameters.work:
         read_work_details(Path(parameters.work))
     if parameters.limits:
@@ -75,23 +74,6 @@ def check_report_options(parameters: VolumeParameters, sides: tuple[Path, Path])
         )
     if parameters.form and not any(map(is_project, sides)):
         _limits(parameters, ())
-
-
-def check_ending(path: Path, endings: tuple[str, ...]) -> None:
-    """Refuse a name that doesn't say what the file is to be.
-
-    Raises
-    ------
-    OutOfRange
-    """
-    if path.suffix.lower() not in endings:
-        raise OutOfRange(
-            Text("The name has another ending.", "ファイル名の拡張子が違います。"),
-            Text.same(str(path)),
-            Text("Give a name ending in {endings}.", "{endings} の名前にしてください。").filled(
-                endings=" / ".join(endings)
-            ),
-        )
 
 
 def _check_different(form: Path, report: Path) -> None:
@@ -190,23 +172,29 @@ class VolumeReports:
             self._work_facts(), before, after, boundary, result.line, result.between
         )
         language = system_language()
-        if path.suffix.lower() == ".csv":
-            write_volume_csv(path, result, facts, language, never=self.never)
-        elif path.suffix.lower() == ".xlsx":
-            write_volume_xlsx(path, result, facts, language, never=self.never)
-        else:
-            write_volume_report(path, result, facts, language, monitor=monitor, never=self.never)
+        match FORMATS.format_to_write(path, Content.REPORT).id:
+            case "csv":
+                write_volume_csv(path, result, facts, language, never=self.never)
+            case "xlsx":
+                write_volume_xlsx(path, result, facts, language, never=self.never)
+            case _:
+                write_volume_report(
+                    path, result, facts, language, monitor=monitor, never=self.never
+                )
 
     def _write_form(self, path: Path, judged: AsBuiltResult, monitor: Monitor) -> None:
         ground, design = sorted(self.sides, key=lambda one: isinstance(one.side, TriangleSurface))
         facts = AsBuiltFacts(self._work_facts(), _side_facts(design), _side_facts(ground))
         language = system_language()
-        if path.suffix.lower() == ".csv":
-            write_as_built_csv(path, judged, facts, language, never=self.never)
-        elif path.suffix.lower() == ".xlsx":
-            write_as_built_xlsx(path, judged, facts, language, never=self.never)
-        else:
-            write_as_built_form(path, judged, facts, language, monitor=monitor, never=self.never)
+        match FORMATS.format_to_write(path, Content.REPORT).id:
+            case "csv":
+                write_as_built_csv(path, judged, facts, language, never=self.never)
+            case "xlsx":
+                write_as_built_xlsx(path, judged, facts, language, never=self.never)
+            case _:
+                write_as_built_form(
+                    path, judged, facts, language, monitor=monitor, never=self.never
+                )
 
     def _work_facts(self) -> WorkFacts:
         today = datetime.now().astimezone().date()

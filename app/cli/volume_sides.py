@@ -14,6 +14,8 @@ from app.cli.opened import OpenedInput, opened_input
 from processing.core.errors import MissingInput, Unsuitable
 from processing.core.monitor import Monitor, PartMonitor
 from processing.core.text import Text
+from processing.formats.format import Content
+from processing.formats.registry import FORMATS
 from processing.formats.surfaces.design import read_design
 from processing.methods.earthwork.surfaces.epoch_ground import ground_of_drives, has_ground
 from processing.methods.earthwork.surfaces.sides import Level, Side
@@ -24,7 +26,7 @@ from processing.recording.recorded_together import recordings_of
 from processing.tools.ground import GROUND_TOOL
 from processing.tools.runner import mark_all
 
-_DESIGN, _NAME_MARK = ".xml", "#"
+_NAME_MARK = "#"
 _FOUND = 0.7
 
 
@@ -114,10 +116,14 @@ def _level_of(words: str) -> float | None:
 
 def _design_of(words: Path) -> tuple[Path, str] | None:
     """A design's file and the name of its surface, empty for the only one."""
-    if words.suffix.lower() == _DESIGN:
+    endings = FORMATS.endings_read(Content.SURFACE)
+    if words.suffix.lower() in endings:
         return words, ""
-    file, mark, name = str(words).rpartition(f"{_DESIGN}{_NAME_MARK}")
-    return (Path(file + _DESIGN), name) if mark else None
+    for ending in endings:
+        file, mark, name = str(words).rpartition(f"{ending}{_NAME_MARK}")
+        if mark:
+            return Path(file + ending), name
+    return None
 
 
 def _read_design(path: Path, name: str, monitor: Monitor) -> NamedSide:

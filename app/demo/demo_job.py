@@ -18,10 +18,11 @@ from app.window.window_parts import WindowParts
 from processing.core.errors import InUse, MissingInput, UserError, report_as_user_error
 from processing.core.owned_files import mark, remove_marked
 from processing.core.text import Text
+from processing.formats.registry import FORMATS
 from processing.image.attributes.attributes import available
 from processing.image.search.nearest import nearest_point
 from processing.map.feature import Feature, PointReference
-from processing.operations.export import FORMATS, ExportRequest
+from processing.operations.export import ExportRequest
 from processing.project.importing.dropped_files import request_of_files
 from processing.project.project import is_project
 from processing.recording.drive import Drive
@@ -153,11 +154,9 @@ class _DemoJob:
 
     def export(self) -> None:
         request = ExportRequest(
-            formats=tuple(FORMATS),
+            formats=tuple(one.id for one in FORMATS.maps()),
             folder=self._out / "export",
             language=self._parts.language,
-            dxf_version="R2018",
-            encoding="utf-8",
             candidates=False,
         )
         self._wait_for_job(lambda: self._document.export(request))

@@ -10,6 +10,8 @@ from PySide6.QtWidgets import QFileDialog
 from app.window.action import Action
 from app.window.window_parts import WindowParts
 from processing.core.text import Text
+from processing.formats.format import Content
+from processing.formats.registry import FORMATS
 from processing.project.importing.import_request import ImportRequest
 
 
@@ -61,18 +63,14 @@ class DriveActions:
     def choose_trajectory(self, drive: str = "") -> None:
         """Ask for trajectory files, and complete a drive, or all that they cover, with them."""
         title = QCoreApplication.translate("DriveActions", "Add a trajectory")
-        kinds = QCoreApplication.translate(
-            "DriveActions", "Trajectories (*.csv *.out *.sbet *.txt)"
-        )
-        paths = self._chosen(title, kinds)
+        paths = self._chosen(title, Content.TRAJECTORY)
         if paths:
             self._add(ImportRequest((), trajectories=paths), drive)
 
     def choose_images(self, drive: str = "") -> None:
         """Ask for image lists, and add them to a drive, or to all on which they were taken."""
         title = QCoreApplication.translate("DriveActions", "Add camera images")
-        kinds = QCoreApplication.translate("DriveActions", "Image lists (*.csv *.txt)")
-        paths = self._chosen(title, kinds)
+        paths = self._chosen(title, Content.IMAGES)
         if paths:
             self._add(ImportRequest((), images=paths), drive)
 
@@ -86,11 +84,12 @@ class DriveActions:
     def _add(self, request: ImportRequest, drive: str) -> None:
         self._parts.document.import_files(request, (drive,) if drive else ())
 
-    def _chosen(self, title: str, kinds: str) -> tuple[Path, ...]:
+    def _chosen(self, title: str, content: Content) -> tuple[Path, ...]:
         document = self._parts.document
         if document.project is None:
             return ()
         files = [file for drive in document.drives() for file in drive.delivered_files]
         folder = files[0].parent if files else document.project.folder.parent
+        kinds = FORMATS.filter_read(content).in_language(self._parts.language)
         names, _ = QFileDialog.getOpenFileNames(self._parts.window, title, str(folder), kinds)
         return tuple(Path(name) for name in names)

@@ -19,17 +19,21 @@ from app.window.project_dialogs import ProjectDialogs
 from app.window.window_parts import WindowParts
 from processing.core.errors import UserError
 from processing.core.text import Text
-from processing.operations.export import FORMATS, ExportRequest
+from processing.formats.format import DELIVERED, Content
+from processing.formats.registry import FORMATS
+from processing.operations.export import ExportRequest
 from processing.project.importing.dropped_files import additions_of_files, request_of_files
 from processing.project.importing.importing import ImportRequest
 from processing.project.project import is_project
 from processing.project.work_details import WorkDetails
 from processing.project.work_store import WorkStore
 from resources import path_of
-from widgets.dialogs.export_map import ExportForm, ExportOptions
+from widgets.dialogs.export_map import ExportChoices, ExportForm, ExportOptions
 from widgets.dialogs.import_drive import ImportForm, ImportOptions
 from widgets.dialogs.reference_systems import ReferenceSystemForm
 from widgets.dialogs.work_details import WorkDetailsForm
+
+_DELIVERIES = Text("Deliveries", "納品ファイル")
 
 
 class FileActions:
@@ -205,7 +209,13 @@ class FileActions:
         folder = project.folder if project else self._new_project_for(files)
 
         def make() -> ImportForm:
-            form = ImportForm(folder, files, self._parts.window)
+            kinds = FORMATS.filter_read(*DELIVERED, name=_DELIVERIES)
+            form = ImportForm(
+                folder,
+                files,
+                self._parts.window,
+                kinds=kinds.in_language(self._parts.language),
+            )
             form.import_requested.connect(self._on_form_import_requested)
             TrajectoryOffer(form, self._parts.jobs)
             return form
@@ -217,13 +227,13 @@ class FileActions:
         project = self._parts.document.project
         if project is None:
             return
-        formats = tuple(
-            (id_, f.title.in_language(self._parts.language)) for id_, f in FORMATS.items()
-        )
+        language = self._parts.language
+        formats = tuple((one.id, one.map_title) for one in FORMATS.maps() if one.map_title)
         folder = project.folder.parent / f"{project.name}-export"
 
         def make() -> ExportForm:
-            form = ExportForm(folder, formats, self._parts.window)
+            choices = ExportChoices(formats, FORMATS.map_options())
+            form = ExportForm(folder, choices, language, self._parts.window)
             form.export_requested.connect(self._on_form_export_requested)
             return form
 
@@ -285,7 +295,7 @@ class FileActions:
     def choose_catalogue(self) -> None:
         """Ask for a catalogue file and use it in the project."""
         title = QCoreApplication.translate("FileActions", "Use an office's catalogue")
-        files = QCoreApplication.translate("FileActions", "Catalogues (*.toml)")
+        files = FORMATS.filter_read(Content.CATALOGUE).in_language(self._parts.language)
         name, _ = QFileDialog.getOpenFileName(
             self._parts.window, title, str(self._projects_folder), files
         )
@@ -295,7 +305,7 @@ class FileActions:
     def choose_catalogue_copy(self) -> None:
         """Ask where the project's catalogue is to be written."""
         title = QCoreApplication.translate("FileActions", "Write the catalogue")
-        files = QCoreApplication.translate("FileActions", "Catalogues (*.toml)")
+        files = FORMATS.filter_written(Content.CATALOGUE).in_language(self._parts.language)
         name, _ = QFileDialog.getSaveFileName(
             self._parts.window,
             title,
@@ -380,8 +390,7 @@ class FileActions:
                 formats=request.formats,
                 folder=request.folder,
                 language=self._parts.language,
-                dxf_version=request.dxf_version,
-                encoding=request.encoding,
+                options=request.options,
                 candidates=request.candidates,
             )
         )

@@ -14,6 +14,8 @@ from app.window.window_parts import WindowParts
 from processing.core.errors import UserError
 from processing.core.text import Text
 from processing.formats.drawings.profile_dxf import ProfileStyle, write_profile_dxf
+from processing.formats.format import Content
+from processing.formats.registry import FORMATS
 from processing.recording.camera_images.calibration import CameraOffset
 from processing.section.cut import Cut
 from processing.tools.registry import TOOLS
@@ -108,7 +110,7 @@ class _ViewWiring(QObject):
         path = self._asked_path(
             QCoreApplication.translate("ViewWiring", "Write the profile"),
             "profile.dxf",
-            QCoreApplication.translate("ViewWiring", "Drawings (*.dxf)"),
+            FORMATS.filter_written(Content.DRAWING).in_language(self._parts.language),
         )
         if path is None:
             return

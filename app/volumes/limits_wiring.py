@@ -11,6 +11,8 @@ from PySide6.QtWidgets import QFileDialog
 from app.window.window_parts import WindowParts
 from processing.core.errors import UserError
 from processing.core.text import Text
+from processing.formats.format import Content
+from processing.formats.registry import FORMATS
 from processing.methods.earthwork.as_built.limits_file import BUNDLED
 from processing.project.work_store import WorkStore
 
@@ -66,7 +68,7 @@ class _LimitsWiring(QObject):
             self._parts.window,
             QCoreApplication.translate("LimitsWiring", "Table of limits"),
             str(project.folder.parent),
-            QCoreApplication.translate("LimitsWiring", "Tables of limits (*.toml);;All files (*)"),
+            FORMATS.filter_read(Content.LIMITS).in_language(self._parts.language),
         )
         if chosen:
             self._keep(lambda store: store.adopt_limits(Path(chosen)))
@@ -79,7 +81,7 @@ class _LimitsWiring(QObject):
             self._parts.window,
             QCoreApplication.translate("LimitsWiring", "Write the table of limits"),
             str(project.folder.parent / Path(BUNDLED).name),
-            QCoreApplication.translate("LimitsWiring", "Tables of limits (*.toml);;All files (*)"),
+            FORMATS.filter_written(Content.LIMITS).in_language(self._parts.language),
         )
         if not chosen:
             return

@@ -26,7 +26,9 @@ from processing.core.monitor import Monitor
 from processing.core.text import Text
 from processing.formats.drawings.earthwork_dxf import EarthworkPlan, PlanStyle, write_earthwork_dxf
 from processing.formats.drawings.section_sheet_dxf import SectionStyle, write_section_sheet_dxf
+from processing.formats.format import Format
 from processing.formats.points.ground_las import write_ground_las
+from processing.formats.registry import FORMATS
 from processing.formats.surfaces.change_geotiff import write_change_geotiff
 from processing.formats.surfaces.landxml_writing import LandXmlFacts, WrittenSurface, write_landxml
 from processing.methods.earthwork.geometry.triangle_surface import TriangleSurface
@@ -38,6 +40,9 @@ from processing.methods.earthwork.volumes.volume_parameters import END_AREA, PRI
 from processing.project.volumes.volume import KeptVolume, SideKind
 
 _TITLE = Text("Cut {cut} m³, fill {fill} m³", "切土量 {cut} m³、盛土量 {fill} m³")
+_NAME = Text("{what} ({format})", "{what}（{format}）")
+_REPORT = Text("Volume report", "土量計算書")
+_FORM = Text("As-built form 31-2", "様式-31-2 出来形合否判定総括表")
 _AFTER = Text("Ground after", "変化後の地盤")
 _MOST_CORNERS = 200_000
 _LONGEST_CELLS = 3.0
@@ -63,17 +68,22 @@ class VolumeExport:
 
     Attributes
     ----------
-    ending : str
-        With its dot.
+    what : Text
+        What is in it.
     is_for : callable
         Whether it can be made of a volume.
     """
 
     id: str
-    name: Text
-    ending: str
+    what: Text
+    format: Format
     write: Write
     is_for: Callable[[KeptVolume], bool] = _always
+
+    @property
+    def name(self) -> Text:
+        """What is in it, and its format."""
+        return _NAME.filled(what=self.what, format=self.format.name)
 
 
 def _write_geotiff(path: Path, given: ExportedVolume, monitor: Monitor) -> None:
@@ -151,58 +161,27 @@ def _later_ground(
 
 
 VOLUME_EXPORTS: tuple[VolumeExport, ...] = (
-    VolumeExport("report", Text("Volume report (PDF)", "土量計算書（PDF）"), ".pdf", write_report),
+    VolumeExport("report", _REPORT, FORMATS["pdf"], write_report),
+    VolumeExport("report-table", _REPORT, FORMATS["xlsx"], write_report_xlsx),
+    VolumeExport("report-csv", _REPORT, FORMATS["csv"], write_report_csv),
+    VolumeExport("form", _FORM, FORMATS["pdf"], write_form, is_judged),
+    VolumeExport("form-table", _FORM, FORMATS["xlsx"], write_form_xlsx, is_judged),
+    VolumeExport("form-csv", _FORM, FORMATS["csv"], write_form_csv, is_judged),
+    VolumeExport("surface", _AFTER, FORMATS["landxml"], _write_surface),
     VolumeExport(
-        "report-table",
-        Text("Volume report (XLSX)", "土量計算書（XLSX）"),
-        ".xlsx",
-        write_report_xlsx,
+        "ground", Text("Ground points", "地面の点群"), FORMATS["laz"], _write_ground, _has_epoch
     ),
     VolumeExport(
-        "report-csv", Text("Volume report (CSV)", "土量計算書（CSV）"), ".csv", write_report_csv
-    ),
-    VolumeExport(
-        "form",
-        Text("As-built form 31-2 (PDF)", "様式-31-2 出来形合否判定総括表（PDF）"),
-        ".pdf",
-        write_form,
-        is_judged,
-    ),
-    VolumeExport(
-        "form-table",
-        Text("As-built form 31-2 (XLSX)", "様式-31-2 出来形合否判定総括表（XLSX）"),
-        ".xlsx",
-        write_form_xlsx,
-        is_judged,
-    ),
-    VolumeExport(
-        "form-csv",
-        Text("As-built form 31-2 (CSV)", "様式-31-2 出来形合否判定総括表（CSV）"),
-        ".csv",
-        write_form_csv,
-        is_judged,
-    ),
-    VolumeExport(
-        "surface", Text("Ground after (LandXML)", "変化後の地盤（LandXML）"), ".xml", _write_surface
-    ),
-    VolumeExport(
-        "ground",
-        Text("Ground points (LAZ)", "地面の点群（LAZ）"),
-        ".laz",
-        _write_ground,
-        _has_epoch,
-    ),
-    VolumeExport(
-        "geotiff", Text("Height difference (GeoTIFF)", "標高差（GeoTIFF）"), ".tif", _write_geotiff
+        "geotiff", Text("Height difference", "標高差"), FORMATS["geotiff"], _write_geotiff
     ),
     VolumeExport(
         "plan",
-        Text("Heat map and contours (DXF)", "ヒートマップ・等高線図（DXF）"),
-        ".dxf",
+        Text("Heat map and contours", "ヒートマップ・等高線図"),
+        FORMATS["dxf"],
         _write_plan,
     ),
     VolumeExport(
-        "sections", Text("Sections (DXF)", "断面図（DXF）"), ".dxf", _write_sections, _has_sections
+        "sections", Text("Sections", "断面図"), FORMATS["dxf"], _write_sections, _has_sections
     ),
 )
 """In the order in which they are offered."""

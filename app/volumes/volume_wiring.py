@@ -23,6 +23,8 @@ from app.volumes.volume_requests import (
 from app.window.window_parts import WindowParts
 from processing.core.errors import UserError
 from processing.core.text import Text
+from processing.formats.format import Content
+from processing.formats.registry import FORMATS
 from processing.formats.surfaces.landxml import read_landxml
 from processing.formats.vectors.boundary_files import boundary_layers
 from processing.map.feature import Feature
@@ -126,8 +128,8 @@ class _VolumeWiring(QObject):
         chosen, _ = QFileDialog.getSaveFileName(
             parts.window,
             QCoreApplication.translate("VolumeWiring", "Export the volume"),
-            str(project.folder.parent / f"{project.name}-{kind.id}{kind.ending}"),
-            f"*{kind.ending}",
+            str(project.folder.parent / f"{project.name}-{kind.id}{kind.format.ending}"),
+            kind.format.file_filter.in_language(parts.language),
         )
         if chosen:
             parts.of(Earthwork).export(kind, Path(chosen), parts.language)
@@ -135,9 +137,7 @@ class _VolumeWiring(QObject):
     def on_form_boundary_wanted(self) -> None:
         path = self._asked_file(
             QCoreApplication.translate("VolumeWiring", "The area that is computed within"),
-            QCoreApplication.translate(
-                "VolumeWiring", "Areas (*.geojson *.json *.gpkg *.dxf);;All files (*)"
-            ),
+            Content.AREAS,
         )
         if path is None:
             return
@@ -154,7 +154,7 @@ class _VolumeWiring(QObject):
         """The file is read beside the window: a large design takes seconds."""
         path = self._asked_file(
             QCoreApplication.translate("VolumeWiring", "Design surface"),
-            QCoreApplication.translate("VolumeWiring", "LandXML (*.xml *.landxml);;All files (*)"),
+            Content.SURFACE,
         )
         if path is None:
             return
@@ -196,10 +196,11 @@ class _VolumeWiring(QObject):
         chosen = sorted(document.shared.selection.features)
         return [one for id_ in chosen if (one := document.feature(id_)) is not None]
 
-    def _asked_file(self, title: str, files: str) -> Path | None:
+    def _asked_file(self, title: str, content: Content) -> Path | None:
         project = self._parts.document.project
         if project is None:
             return None
+        files = FORMATS.filter_read(content).in_language(self._parts.language)
         chosen, _ = QFileDialog.getOpenFileName(
             self._parts.window, title, str(project.folder.parent), files
         )

@@ -3,31 +3,31 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 
-from processing.core.errors import OutOfRange, Unsuitable, use_one_of
+from processing.core.errors import MissingInput, OutOfRange, Unsuitable, use_one_of
 from processing.core.monitor import Monitor, PartMonitor, SilentMonitor
+from processing.core.parameters import ParameterValue, fill_parameters, parameters_of
 from processing.core.safe_write import write_safely
 from processing.core.text import Language, Text
-from processing.formats.drawings.dxf import write_dxf
-from processing.formats.drawings.dxf_document import DxfVersion
-from processing.formats.ledgers.ledger_columns import TableStyle
-from processing.formats.ledgers.ledger_csv import write_features, write_ledger, write_vertices
-from processing.formats.vectors.geojson import write_geojson
-from processing.formats.vectors.geopackage import write_geopackage
+from processing.formats.format import MAP, Content, Format, function_of
+from processing.formats.format_list import FormatList
+from processing.formats.map_delivery import MapDelivery
+from processing.formats.registry import FORMATS
 from processing.map.catalogue import Catalogue, Geometry
 from processing.map.feature import Feature, Status
 from processing.project.results.label_export import write_labelled_points
 from processing.recording.drive import Drive
 
 _LEAST_VERTICES = {Geometry.POINT: 1, Geometry.LINE: 2, Geometry.AREA: 3}
-_ENCODINGS = ("utf-8", "cp932")
-_VERSIONS = ("R2000", "R2018")
-_MOST_DIGITS = 9
-_STEM = "features"
+_SET_SYSTEM = Text(
+    "Set the project's reference system, for instance EPSG:6677.",
+    "プロジェクトの座標参照系を設定してください（例: EPSG:6677）。",
+)
 
 
 @dataclass(frozen=True)
@@ -37,18 +37,15 @@ class ExportRequest:
     Attributes
     ----------
     formats : tuple of str
-        Keys of :data:`FORMATS`.
+        Ids of formats in which maps are handed in.
     folder : Path
         Made if it is missing; files of the same names in it are replaced.
     language : "en" or "ja"
         Of the ledgers' headers.
-    dxf_version : "R2000" or "R2018"
-    encoding : "utf-8" or "cp932"
-        Of the ledgers; a DXF's is fixed by its version.
+    options : mapping of str to value
+        What is chosen for the formats, by the ids that they declare; defaults for the rest.
     candidates : bool
         Whether features that nobody has judged are handed in too.
-    digits : int
-        Decimals of metres in the ledgers, 0 to 9: those of the delivered coordinates.
     never : tuple of Path
         Delivered files, which must not be overwritten.
     """
@@ -56,34 +53,9 @@ class ExportRequest:
     formats: tuple[str, ...]
     folder: Path
     language: Language = "ja"
-    dxf_version: str = "R2018"
-    encoding: str = "utf-8"
+    options: Mapping[str, ParameterValue] = field(default_factory=dict)
     candidates: bool = False
-    digits: int = 3
     never: tuple[Path, ...] = ()
-
-
-@dataclass(frozen=True)
-class _Job:
-    """What all writers are given."""
-
-    features: tuple[Feature, ...]
-    catalogue: Catalogue
-    crs: str
-    request: ExportRequest
-    drives: tuple[Drive, ...]
-
-
-Writer = Callable[[_Job, Callable[[str], Path], Monitor], None]
-
-
-@dataclass(frozen=True)
-class ExportFormat:
-    """A kind of file that can be handed in: its title, and what writes it."""
-
-    id: str
-    title: Text
-    write: Writer
 
 
 def export(
@@ -94,6 +66,7 @@ def export(
     monitor: Monitor | None = None,
     *,
     drives: tuple[Drive, ...] = (),
+    formats: FormatList = FORMATS,
 ) -> tuple[Path, ...]:
     """Write the map's accepted features in each format that is asked for.
 
@@ -109,6 +82,8 @@ def export(
         ``EPSG:n``; empty where it is not known: the files then say so, nothing is guessed.
     drives : tuple of Drive
         Whose points are written with their labels.
+    formats : FormatList
+        Those that can be asked for.
 
     Returns
     -------
@@ -118,19 +93,30 @@ def export(
     Raises
     ------
     OutOfRange
-        A format, version, encoding, number of digits or reference system that there is not; a
+        A format, option or reference system that there is not; an option outside its limits; a
         coordinate that is no number; a character that the encoding lacks.
     Unsuitable
         A feature with too few vertices or of a kind the catalogue lacks.
+    MissingInput
+        A format needs a reference system.
     InUse, NoSpace, MissingInput, BadFile, Cancelled
         What stands against writing; nothing was written.
     """
     monitor = monitor or SilentMonitor()
-    _check_request(request, crs)
+    chosen = check_formats(request.formats, formats)
+    _check_options(request.options, formats)
+    _check_needs(chosen, crs)
     wanted = tuple(feature for feature in features if _is_wanted(feature, request))
     for feature in wanted:
         _check_feature(feature, catalogue)
-    job = _Job(wanted, catalogue, crs, request, drives)
+    delivery = MapDelivery(
+        wanted,
+        catalogue,
+        crs,
+        request.language,
+        request.options,
+        partial(write_labelled_points, drives),
+    )
     paths: list[Path] = []
     with ExitStack() as whole:
 
@@ -140,63 +126,35 @@ def export(
             paths.append(path)
             return temporary
 
-        for number, name in enumerate(request.formats):
+        for number, one in enumerate(chosen):
             monitor.check()
-            monitor.report(number / len(request.formats), _saying(name, crs))
-            ends = (number / len(request.formats), (number + 1) / len(request.formats))
-            FORMATS[name].write(job, position, PartMonitor(monitor, *ends))
+            monitor.report(number / len(chosen), _saying(one, crs))
+            part = PartMonitor(monitor, number / len(chosen), (number + 1) / len(chosen))
+            if one.writes_map:
+                function_of(one.writes_map)(delivery, position, part)
+            else:
+                path = position(f"{MAP}{one.ending}")
+                one.writer(Content.FEATURES)(path, delivery, part)
     return tuple(paths)
 
 
-def _write_dxf(job: _Job, position: Callable[[str], Path], monitor: Monitor) -> None:
-    version: DxfVersion = "R2000" if job.request.dxf_version == "R2000" else "R2018"
-    write_dxf(
-        position(f"{_STEM}.dxf"),
-        job.features,
-        job.catalogue,
-        version=version,
-        encoding=job.request.encoding,
-        crs=job.crs,
-        monitor=monitor,
-    )
+def check_formats(ids: Sequence[str], formats: FormatList = FORMATS) -> tuple[Format, ...]:
+    """The formats of some ids, in their order.
 
-
-def _write_csv(job: _Job, position: Callable[[str], Path], monitor: Monitor) -> None:
-    request = job.request
-    style = TableStyle(request.language, request.encoding, request.digits, job.crs)
-    path = position(f"{_STEM}.csv")
-    write_features(path, job.features, job.catalogue, style, monitor=monitor)
-    write_vertices(position("vertices.csv"), job.features, style, monitor=monitor)
-    for kind in job.catalogue:
-        members = [feature for feature in job.features if feature.kind == kind.id]
-        if members:
-            write_ledger(position(f"ledger_{kind.id}.csv"), members, kind, style, monitor=monitor)
-
-
-def _write_geopackage(job: _Job, position: Callable[[str], Path], monitor: Monitor) -> None:
-    path = position(f"{_STEM}.gpkg")
-    write_geopackage(path, job.features, job.catalogue, crs=job.crs, monitor=monitor)
-
-
-def _write_geojson(job: _Job, position: Callable[[str], Path], monitor: Monitor) -> None:
-    write_geojson(position(f"{_STEM}.geojson"), job.features, crs=job.crs, monitor=monitor)
-
-
-def _write_points(job: _Job, position: Callable[[str], Path], monitor: Monitor) -> None:
-    write_labelled_points(job.drives, position, monitor)
-
-
-FORMATS: Mapping[str, ExportFormat] = {
-    one.id: one
-    for one in (
-        ExportFormat("dxf", Text("Drawing (DXF)", "図面（DXF）"), _write_dxf),
-        ExportFormat("csv", Text("Ledgers (CSV)", "台帳（CSV）"), _write_csv),
-        ExportFormat("gpkg", Text("GIS (GeoPackage)", "GIS（GeoPackage）"), _write_geopackage),
-        ExportFormat("geojson", Text("GIS (GeoJSON)", "GIS（GeoJSON）"), _write_geojson),
-        ExportFormat("las", Text("Labelled points (LAS)", "ラベル付き点群（LAS）"), _write_points),
-    )
-}
-"""What can be handed in, by name."""
+    Raises
+    ------
+    OutOfRange
+        There is no such format, or none is named; names those in which maps are handed in.
+    """
+    known = {one.id: one for one in formats.maps()}
+    for id_ in ids or ("",):
+        if id_ not in known:
+            raise OutOfRange(
+                Text("There is no such format.", "そのような形式はありません。"),
+                Text.same(id_ or "–"),
+                use_one_of(known),
+            )
+    return tuple(known[id_] for id_ in ids)
 
 
 def _is_wanted(feature: Feature, request: ExportRequest) -> bool:
@@ -205,37 +163,45 @@ def _is_wanted(feature: Feature, request: ExportRequest) -> bool:
     )
 
 
-def _saying(name: str, crs: str) -> Text:
+def _saying(one: Format, crs: str) -> Text:
+    title = one.map_title or one.name
     if not crs:
         return Text(
             "{title}; the reference system is not known",
             "{title}（座標参照系は不明のまま出力します）",
-        ).filled(title=FORMATS[name].title)
-    return FORMATS[name].title
+        ).filled(title=title)
+    return title
 
 
-def _check_request(request: ExportRequest, crs: str) -> None:
-    if not request.formats:
-        raise _no_such("", tuple(FORMATS))
-    for name in request.formats:
-        if name not in FORMATS:
-            raise _no_such(name, tuple(FORMATS))
-    if request.encoding not in _ENCODINGS:
-        raise _no_such(request.encoding, _ENCODINGS)
-    if request.dxf_version not in _VERSIONS:
-        raise _no_such(request.dxf_version, _VERSIONS)
-    if not 0 <= request.digits <= _MOST_DIGITS:
-        raise _no_such(str(request.digits), (f"0–{_MOST_DIGITS}",))
+def _check_options(options: Mapping[str, ParameterValue], formats: FormatList) -> None:
+    """Refuse options that no format has, and values outside their limits."""
+    known = {option.id for option in formats.map_options()}
+    for id_ in options:
+        if id_ not in known:
+            raise OutOfRange(
+                Text("No format has such an option.", "そのような設定のある形式はありません。"),
+                Text.same(id_),
+                use_one_of(sorted(known)),
+            )
+    for one in formats.maps():
+        if one.options is not None:
+            own = {option.id for option in parameters_of(one.options)}
+            fill_parameters(one.options, {id_: options[id_] for id_ in own & options.keys()})
+
+
+def _check_needs(chosen: Sequence[Format], crs: str) -> None:
+    for one in chosen:
+        if one.needs_crs and not crs:
+            raise MissingInput(
+                Text(
+                    "The format needs the reference system, which isn't known.",
+                    "この形式の書き出しには座標参照系が必要です。",
+                ),
+                one.name,
+                _SET_SYSTEM,
+            )
     if crs:
         _check_crs(crs)
-
-
-def _no_such(value: str, allowed: Sequence[str]) -> OutOfRange:
-    return OutOfRange(
-        Text("The export can't be written like this.", "この指定では書き出せません。"),
-        Text.same(value or "–"),
-        use_one_of(allowed),
-    )
 
 
 def _check_crs(crs: str) -> None:
@@ -248,10 +214,7 @@ def _check_crs(crs: str) -> None:
         raise OutOfRange(
             Text("There is no such reference system.", "そのような座標参照系はありません。"),
             Text.same(crs),
-            Text(
-                "Set the project's reference system, for instance EPSG:6677.",
-                "プロジェクトの座標参照系を設定してください（例: EPSG:6677）。",
-            ),
+            _SET_SYSTEM,
         ) from error
 
 

@@ -106,7 +106,7 @@ def _draw_points(user: WindowUser, truth: TrueStreet) -> None:
 
 def _exported(surveyor: Surveyor, folder: Path) -> dict[str, list[Floats]]:
     """Vertices of what stands on each layer of the exported drawing."""
-    request = ExportRequest(("dxf",), folder, "ja", "R2018", "utf-8", candidates=False)
+    request = ExportRequest(("dxf",), folder, "ja")
     surveyor.wait_for_job(lambda: surveyor.document.export(request))
     (path,) = folder.glob("*.dxf")
     space = ezdxf.readfile(path).modelspace()

@@ -122,7 +122,7 @@ def _change_range_and_contours(builder: Builder) -> None:
 def _give_out(builder: Builder, folder: Path, monkeypatch) -> None:
     """Every file that is offered is written; those that other tests don't read are read."""
     made = {
-        one.id: builder.give_out(one.id, folder / f"{one.id}{one.ending}", monkeypatch)
+        one.id: builder.give_out(one.id, folder / f"{one.id}{one.format.ending}", monkeypatch)
         for one in VOLUME_EXPORTS
         if builder.offers(one.id)
     }

@@ -42,8 +42,7 @@ def _export(surveyor, folder, version="R2018", encoding="utf-8"):
         formats=("dxf", "csv"),
         folder=folder,
         language="ja",
-        dxf_version=version,
-        encoding=encoding,
+        options={"dxf_version": version, "encoding": encoding},
         candidates=False,
     )
     surveyor.wait_for_job(lambda: surveyor.document.export(request))

@@ -83,7 +83,7 @@ def test_a_line_of_ten_thousand_vertices_is_drawn_edited_undone_and_exported(
     street.document.undo()
     assert list(street.document.features()) == [line]
     street.document.redo()
-    request = ExportRequest(("dxf",), tmp_path / "out", "ja", "R2018", "utf-8", candidates=False)
+    request = ExportRequest(("dxf",), tmp_path / "out", "ja")
     street.wait_for_job(lambda: street.document.export(request))
     (path,) = (tmp_path / "out").glob("*.dxf")
     (polyline,) = ezdxf.readfile(path).modelspace().query("POLYLINE")

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import (
     QCheckBox,
-    QComboBox,
     QDialog,
     QDialogButtonBox,
     QFileDialog,
@@ -20,6 +20,9 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from processing.core.parameters import Parameter, ParameterValue
+from processing.core.text import Language, Text
+from widgets.panels.processing.parameter_row import ParameterRow
 from widgets.parts.plain_buttons import remove_icons
 
 
@@ -30,14 +33,31 @@ class ExportOptions:
     Attributes
     ----------
     formats : tuple of str
-        Keys of :data:`processing.operations.export.FORMATS`.
+        Their ids.
+    options : mapping of str to value
+        What is chosen for them.
     """
 
     formats: tuple[str, ...]
     folder: Path
-    dxf_version: str
-    encoding: str
+    options: Mapping[str, ParameterValue]
     candidates: bool
+
+
+@dataclass(frozen=True)
+class ExportChoices:
+    """What the form offers.
+
+    Attributes
+    ----------
+    formats : tuple of (str, Text)
+        The id of each and its title.
+    options : tuple of Parameter
+        What can be chosen for them.
+    """
+
+    formats: tuple[tuple[str, Text], ...]
+    options: tuple[Parameter, ...]
 
 
 class ExportForm(QDialog):
@@ -46,35 +66,37 @@ class ExportForm(QDialog):
     export_requested = Signal(object)  # ExportOptions
 
     def __init__(
-        self, folder: Path, formats: tuple[tuple[str, str], ...], parent: QWidget | None = None
+        self,
+        folder: Path,
+        choices: ExportChoices,
+        language: Language,
+        parent: QWidget | None = None,
     ) -> None:
-        """Show the formats, each with its id and title."""
         super().__init__(parent)
         self.setWindowTitle(self.tr("Export"))
-        self._boxes = {id_: QCheckBox(title, self) for id_, title in formats}
+        self._boxes = {
+            id_: QCheckBox(title.in_language(language), self) for id_, title in choices.formats
+        }
         for id_ in ("dxf", "csv"):
             if id_ in self._boxes:
                 self._boxes[id_].setChecked(True)
         self._folder = QLineEdit(str(folder), self)
-        self._version = QComboBox(self)
-        self._version.addItem(self.tr("DXF 2018 (UTF-8)"), "R2018")
-        self._version.addItem(self.tr("DXF 2000"), "R2000")
-        self._encoding = QComboBox(self)
-        self._encoding.addItem(self.tr("UTF-8"), "utf-8")
-        self._encoding.addItem(self.tr("Shift_JIS (cp932)"), "cp932")
+        self._options = [
+            (option, ParameterRow(option, language, self)) for option in choices.options
+        ]
         self._candidates = QCheckBox(self.tr("Unchecked candidates as well"), self)
         self._buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Cancel, self)
         self._export = self._buttons.addButton(
             self.tr("Export"), QDialogButtonBox.ButtonRole.AcceptRole
         )
         remove_icons(self._buttons)
-        self._lay_out()
+        self._lay_out(language)
         self._buttons.accepted.connect(self._on_buttons_accepted)
         self._buttons.rejected.connect(self.close)
         for box in self._boxes.values():
             box.toggled.connect(self._on_boxes_toggled)
 
-    def _lay_out(self) -> None:
+    def _lay_out(self, language: Language) -> None:
         choose = QPushButton(self.tr("Choose…"), self)
         choose.clicked.connect(self._on_choose_clicked)
         folder = QHBoxLayout()
@@ -86,8 +108,9 @@ class ExportForm(QDialog):
         form = QFormLayout()
         form.addRow(self.tr("Files"), boxes)
         form.addRow(self.tr("Folder"), folder)
-        form.addRow(self.tr("Version of DXF"), self._version)
-        form.addRow(self.tr("Text of DXF and CSV"), self._encoding)
+        for option, row in self._options:
+            row.field.setToolTip(option.explanation.in_language(language))
+            form.addRow(option.name.in_language(language), row)
         form.addRow("", self._candidates)
         layout = QVBoxLayout(self)
         layout.addLayout(form)
@@ -107,8 +130,7 @@ class ExportForm(QDialog):
         request = ExportOptions(
             formats,
             Path(self._folder.text().strip()),
-            str(self._version.currentData()),
-            str(self._encoding.currentData()),
+            {option.id: row.value for option, row in self._options},
             self._candidates.isChecked(),
         )
         self.export_requested.emit(request)

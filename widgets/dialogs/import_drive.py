@@ -21,7 +21,6 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from processing.project.importing.dropped_files import DELIVERED_ENDINGS
 from widgets.dialogs.reference_systems import ReferenceSystemBox
 from widgets.parts.plain_buttons import remove_icons
 
@@ -55,9 +54,16 @@ class ImportForm(QDialog):
     files_changed = Signal(object)  # tuple[Path, ...]
 
     def __init__(
-        self, project: Path, files: tuple[Path, ...] = (), parent: QWidget | None = None
+        self,
+        project: Path,
+        files: tuple[Path, ...] = (),
+        parent: QWidget | None = None,
+        *,
+        kinds: str = "",
     ) -> None:
+        """Show files to be imported; ``kinds`` is the filter under which more are looked for."""
         super().__init__(parent)
+        self._kinds = kinds
         self.setWindowTitle(self.tr("Import a drive"))
         self.resize(620, 380)
         self._files = QListWidget(self)
@@ -133,12 +139,7 @@ class ImportForm(QDialog):
 
     def ask_for_files(self) -> None:
         """Ask for files to add; the list shows those that a delivery may have."""
-        kinds = "{} ({});;{} (*)".format(
-            self.tr("Deliveries"),
-            " ".join(f"*{ending}" for ending in DELIVERED_ENDINGS),
-            self.tr("All files"),
-        )
-        names, _ = QFileDialog.getOpenFileNames(self, self.tr("Add files"), "", kinds)
+        names, _ = QFileDialog.getOpenFileNames(self, self.tr("Add files"), "", self._kinds)
         self.add_files(tuple(Path(name) for name in names))
 
     def _lay_out(self) -> None:

@@ -25,6 +25,7 @@ from processing.formats.drawings.dxf_document import (
 from processing.formats.drawings.dxf_labels import LABEL_HEIGHT_M, label_of
 from processing.formats.drawings.dxf_symbols import add_symbol_block
 from processing.formats.drawings.dxf_text import dxf_strings, dxf_text
+from processing.formats.map_delivery import DxfOptions, MapDelivery
 from processing.map.catalogue import LINE_TYPES, Catalogue, FeatureKind, Geometry
 from processing.map.feature import AttributeValue, Feature, Position, Status
 from processing.map.solids import solid_of, thickness_of
@@ -88,6 +89,24 @@ def write_dxf(
     drawing.finish()
     with write_safely(path, never=never) as temporary:
         drawing.document.write(temporary, monitor)
+
+
+def write_dxf_features(
+    path: Path, delivery: MapDelivery, monitor: Monitor, *, never: Iterable[Path] = ()
+) -> None:
+    """Draw a map that is handed in, as :func:`write_dxf`."""
+    options = delivery.options_of(DxfOptions)
+    version: DxfVersion = "R2000" if options.dxf_version == "R2000" else "R2018"
+    write_dxf(
+        path,
+        delivery.features,
+        delivery.catalogue,
+        version=version,
+        encoding=options.encoding,
+        crs=delivery.crs,
+        monitor=monitor,
+        never=never,
+    )
 
 
 @dataclass(frozen=True)

@@ -12,6 +12,7 @@ from processing.core.errors import OutOfRange
 from processing.core.monitor import Monitor, SilentMonitor
 from processing.core.safe_write import write_safely
 from processing.core.text import Text
+from processing.formats.format import MAP
 from processing.formats.ledgers.ledger_columns import (
     FEATURE_ID,
     POSITION,
@@ -28,6 +29,7 @@ from processing.formats.ledgers.ledger_columns import (
     place_columns,
     status_columns,
 )
+from processing.formats.map_delivery import MapDelivery, Position, TableOptions
 from processing.map.catalogue import Catalogue, FeatureKind
 from processing.map.feature import Feature
 
@@ -131,6 +133,30 @@ def write_vertices(
                 cells = [guard_text(feature.id), str(position), *map(style.number, vertex.xyz)]
                 cells += [guard_text(point.drive), str(point.point)] if point else ["", ""]
                 table.write(cells, feature.id)
+
+
+def write_csv_features(
+    path: Path, delivery: MapDelivery, monitor: Monitor, *, never: Iterable[Path] = ()
+) -> None:
+    """Write a map that is handed in as one table, as :func:`write_features`."""
+    style = _style_of(delivery)
+    write_features(path, delivery.features, delivery.catalogue, style, monitor=monitor, never=never)
+
+
+def write_csv_map(delivery: MapDelivery, position: Position, monitor: Monitor) -> None:
+    """Write a map that is handed in as tables of all features, of vertices, and of each kind."""
+    features, style = delivery.features, _style_of(delivery)
+    write_csv_features(position(f"{MAP}.csv"), delivery, monitor)
+    write_vertices(position("vertices.csv"), features, style, monitor=monitor)
+    for kind in delivery.catalogue:
+        members = [feature for feature in features if feature.kind == kind.id]
+        if members:
+            write_ledger(position(f"ledger_{kind.id}.csv"), members, kind, style, monitor=monitor)
+
+
+def _style_of(delivery: MapDelivery) -> TableStyle:
+    options = delivery.options_of(TableOptions)
+    return TableStyle(delivery.language, options.encoding, options.digits, delivery.crs)
 
 
 def _write_rows(

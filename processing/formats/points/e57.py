@@ -19,7 +19,6 @@ from processing.formats.points.las_header import damaged
 if TYPE_CHECKING:
     from pye57 import E57, ScanHeader
 
-MAGIC = b"ASTM-E57"
 _BLOCK_POINTS = 500_000
 _MOST_POINTS_A_BYTE = 8
 _CARTESIAN = ("cartesianX", "cartesianY", "cartesianZ")

@@ -10,10 +10,10 @@ import numpy as np
 from pyproj import CRS
 from pyproj.exceptions import CRSError
 
-from processing.core.errors import OutOfRange
 from processing.core.monitor import Monitor
 from processing.core.safe_write import write_safely
-from processing.core.text import Text
+from processing.formats.format import Content
+from processing.formats.registry import FORMATS
 from processing.methods.earthwork.surfaces.sides import EpochGround
 
 if TYPE_CHECKING:  # imported where it is used: it takes its time
@@ -21,7 +21,6 @@ if TYPE_CHECKING:  # imported where it is used: it takes its time
 
 _GROUND = 2
 _SCALE_M = 0.001
-_ENDINGS = (".las", ".laz")
 
 
 def write_ground_las(
@@ -54,32 +53,26 @@ def write_ground_las(
     """
     import laspy
 
-    if path.suffix.lower() not in _ENDINGS:
-        raise OutOfRange(
-            Text(
-                "Ground points are written as LAS or LAZ.", "地面の点はLASまたはLAZで書き出します。"
-            ),
-            Text.same(str(path)),
-            Text("Give a name ending in .las or .laz.", "拡張子を .las か .laz にしてください。"),
-        )
+    is_compressed = FORMATS.format_to_write(path, Content.POINTS).id == "laz"
     count = 0
-    with write_safely(path, never=never) as temporary:
-        is_compressed = path.suffix.lower() == ".laz"
-        with laspy.open(
+    with (
+        write_safely(path, never=never) as temporary,
+        laspy.open(
             temporary, mode="w", header=_header_of(ground), do_compress=is_compressed
-        ) as writer:
-            for block in ground.blocks():
-                monitor.check()
-                if not len(block.xyz):
-                    continue
-                points = laspy.ScaleAwarePointRecord.zeros(len(block.xyz), header=writer.header)
-                points.x, points.y, points.z = block.xyz.T
-                points.classification[:] = _GROUND
-                points.return_number[:] = 1
-                points.number_of_returns[:] = 1
-                points.point_source_id[:] = block.station + 1
-                writer.write_points(points)
-                count += len(block.xyz)
+        ) as writer,
+    ):
+        for block in ground.blocks():
+            monitor.check()
+            if not len(block.xyz):
+                continue
+            points = laspy.ScaleAwarePointRecord.zeros(len(block.xyz), header=writer.header)
+            points.x, points.y, points.z = block.xyz.T
+            points.classification[:] = _GROUND
+            points.return_number[:] = 1
+            points.number_of_returns[:] = 1
+            points.point_source_id[:] = block.station + 1
+            writer.write_points(points)
+            count += len(block.xyz)
     return count
 
 

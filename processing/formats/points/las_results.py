@@ -12,10 +12,11 @@ import lazrs
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.core.errors import OutOfRange
 from processing.core.monitor import Monitor
 from processing.core.safe_write import write_safely
 from processing.core.text import Text
+from processing.formats.format import Content
+from processing.formats.map_delivery import MapDelivery, Position
 from processing.formats.points.las import read_records
 from processing.formats.points.las_header import RECORD_SIZES, read_header
 from processing.formats.points.las_output import LasFrame, frame_of, new_frame
@@ -36,6 +37,7 @@ from processing.formats.points.las_records import (
 )
 from processing.formats.points.point_files import is_las, read_chunks, read_info
 from processing.formats.points.reported_writes import ReportedWrites, report_write_failures
+from processing.formats.registry import FORMATS
 
 # Any: each column has its own type.
 ResultColumns = Mapping[str, NDArray[Any]]
@@ -141,7 +143,7 @@ def write_results(
     MissingInput, NoSpace, BadFile
         As the reader and the disk say; nothing is left behind then.
     """
-    is_compressed = _is_compressed(output)
+    is_compressed = FORMATS.format_to_write(output, Content.POINTS).id == "laz"
     part = results if callable(results) else _parts_of(results)
     with write_safely(output, never=(source,)) as temporary:
         plan = _plan_of(source, part, columns)
@@ -154,18 +156,9 @@ def write_results(
                 plan.frame.note_extent(file, written.low, written.high)
 
 
-def _is_compressed(output: Path) -> bool:
-    ending = output.suffix.lower()
-    if ending not in (".las", ".laz"):
-        raise OutOfRange(
-            Text("Points are written as LAS or LAZ.", "点群はLASまたはLAZで出力します。"),
-            Text.same(str(output)),
-            Text(
-                "Let the output's name end with .las or .laz.",
-                "出力ファイル名の末尾を .las または .laz にしてください。",
-            ),
-        )
-    return ending == ".laz"
+def write_points_map(delivery: MapDelivery, position: Position, monitor: Monitor) -> None:
+    """Write the points that a map is handed in with, a file for each delivered one."""
+    delivery.write_points(position, monitor)
 
 
 def _parts_of(results: ResultColumns) -> Callable[[int, int], ResultColumns]:

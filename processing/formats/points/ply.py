@@ -18,7 +18,7 @@ from processing.formats.points.field_names import block_of, has_position
 from processing.formats.points.las_header import damaged
 from processing.formats.points.text_numbers import TextPart, number_blocks
 
-MAGIC = b"ply"
+_MAGIC = b"ply"
 _LONGEST_HEADER = 1 << 16
 _BLOCK_POINTS = 500_000
 _TYPES = {
@@ -119,7 +119,7 @@ def _read_header(path: Path) -> _Header:
         start = file.read(_LONGEST_HEADER)
         file_size = path.stat().st_size
     end = re.search(rb"end_header[ \t]*(\r\n|\n|\r)", start)
-    if not start.startswith(MAGIC) or end is None:
+    if not start.startswith(_MAGIC) or end is None:
         raise _bad_header(path, "no end_header", "end_headerがない")
     order: str | None = None
     offset = (0.0, 0.0, 0.0)

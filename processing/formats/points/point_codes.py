@@ -12,13 +12,14 @@ from numpy.typing import NDArray
 
 from processing.core.errors import BadFile, MissingInput, report_as_user_error
 from processing.core.text import Text
+from processing.formats.format import Content
 from processing.formats.points.point_files import read_chunks, read_info
 from processing.formats.points.text_numbers import TextPart, number_blocks
+from processing.formats.registry import FORMATS
 from processing.recording.columns.array_files import read_arrays
 from processing.recording.columns.quantisation import Quantisation
 from processing.scoring.coded_points import CodedFile, CodedPoints
 
-_NPY_MAGIC, _ZIP_MAGIC = b"\x93NUMPY", b"PK\x03\x04"
 _LOOKED_AT = 4096
 _BLOCK = 1_000_000
 _CODES = ("code", "codes", "label", "labels", "classification")
@@ -85,10 +86,9 @@ def read_truth(
     """
     with report_as_user_error(path), path.open("rb") as file:
         start = file.read(_LOOKED_AT)
-    if start.startswith(_NPY_MAGIC):
-        return _of_arrays(path, _loaded_array(path), flags)
-    if start.startswith(_ZIP_MAGIC):
-        return _of_arrays(path, _loaded_arrays(path), flags)
+    found = FORMATS.recognised(start, Content.CLASSES)
+    if found is not None and found[0].id in _ARRAYS:
+        return _of_arrays(path, _ARRAYS[found[0].id](path), flags)
     if _is_isprs_text(start):
         return _of_text(path, if_false, if_true)
     return read_result(path)
@@ -117,6 +117,9 @@ def _loaded_arrays(path: Path) -> Arrays:
             return read_arrays(path)
     except (ValueError, EOFError, zipfile.BadZipFile, KeyError) as error:
         raise _damaged(path) from error
+
+
+_ARRAYS = {"npy": _loaded_array, "npz": _loaded_arrays}
 
 
 def _of_arrays(path: Path, arrays: Arrays, flags: Mapping[str, tuple[int, int]]) -> CodedFile:

@@ -13,22 +13,15 @@ from numpy.typing import NDArray
 
 from processing.core.errors import UNCHANGED, BadFile, UserError, report_as_user_error
 from processing.core.text import Text
+from processing.formats.format import Content
 from processing.formats.points import las
 from processing.formats.points.delivered_floats import FloatFile, chunks_of, info_of
-from processing.formats.points.e57 import MAGIC as E57_MAGIC
-from processing.formats.points.e57 import open_e57
-from processing.formats.points.pcd import is_pcd, open_pcd
-from processing.formats.points.ply import MAGIC as PLY_MAGIC
-from processing.formats.points.ply import open_ply
 from processing.formats.points.point_chunk import PointChunk, PointFileInfo
-from processing.formats.points.ptx import is_ptx, open_ptx
-from processing.formats.points.pulse_folder import is_pulse_folder, open_pulse_folder
 from processing.formats.points.text_header import ColumnsNeeded, read_heading
 from processing.formats.points.text_points import open_text_points
+from processing.formats.registry import FORMATS
 
 __all__ = [
-    "POINT_ENDINGS",
-    "TEXT_ENDINGS",
     "PointChunk",
     "PointFileInfo",
     "columns_needed",
@@ -38,17 +31,8 @@ __all__ = [
     "read_sample",
 ]
 
-POINT_ENDINGS = (".las", ".laz", ".ply", ".pcd", ".e57", ".ptx", ".pts", ".xyz")
-"""How the names of point files end.
-
-A file is opened by its content, but a folder is looked through, and a form lists files, by these.
-"""
-
-TEXT_ENDINGS = (".txt", ".csv")
-"""Text that may hold points as well as something else."""
-
 _LOOKED_AT = 4096
-_LAS_MAGIC = b"LASF"
+_LAS = "las"
 
 
 def read_info(path: Path, *, columns: tuple[str, ...] = ()) -> PointFileInfo:
@@ -182,8 +166,9 @@ def _ends_of(chunks: Iterator[PointChunk], points: int) -> list[PointChunk]:
 
 def _opener(path: Path, columns: tuple[str, ...] = ()) -> Callable[[Path], FloatFile] | None:
     """What opens the file; None for LAS, which needs no turning into integers."""
-    if path.is_dir() and is_pulse_folder(path):
-        return open_pulse_folder
+    folder = FORMATS.folder_format(path)
+    if folder is not None:
+        return folder.reader(Content.POINTS)
     with report_as_user_error(path), path.open("rb") as file:
         start = file.read(_LOOKED_AT)
     if not start:
@@ -195,12 +180,7 @@ def _opener(path: Path, columns: tuple[str, ...] = ()) -> Callable[[Path], Float
                 "納品データからファイルをコピーし直してください。{unchanged}",
             ).filled(unchanged=UNCHANGED),
         )
-    if start.startswith(_LAS_MAGIC):
-        return None
-    if start.startswith(PLY_MAGIC):
-        return open_ply
-    if start.startswith(E57_MAGIC):
-        return open_e57
-    if is_ptx(start):
-        return open_ptx
-    return open_pcd if is_pcd(start) else partial(open_text_points, columns=columns)
+    found = FORMATS.recognised(start, Content.POINTS)
+    if found is None:
+        return partial(open_text_points, columns=columns)
+    return None if found[0].id == _LAS else found[0].reader(Content.POINTS)

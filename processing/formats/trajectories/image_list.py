@@ -28,6 +28,12 @@ _NUMBERS: dict[str, tuple[float, float]] = {
 }
 _DISTORTION = ("k1", "k2", "p1", "p2", "k3")
 _PROJECTIONS = ("perspective", "equirectangular")
+_SAYS_SO = b"omega_deg"
+
+
+def is_image_list(start: bytes) -> bool:
+    """Whether a file's first line is the header of an image list."""
+    return _SAYS_SO in start.partition(b"\n")[0].lower()
 
 
 def read_image_list(path: Path) -> ImageList:

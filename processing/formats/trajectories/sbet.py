@@ -35,6 +35,15 @@ _LIMITS = {
     "wander": (-2 * np.pi, 4 * np.pi),
 }
 _NORTH_STEP_DEG = 1e-4
+_UTF16 = (b"\xff\xfe", b"\xfe\xff")
+
+
+def is_sbet(start: bytes) -> bool:
+    """Whether a file's first bytes are a record that a vehicle can have, and no text."""
+    if len(start) < RECORD_BYTES or b"\0" not in start or start.startswith(_UTF16):
+        return False
+    record = np.frombuffer(start[:RECORD_BYTES], _RECORD)[0]
+    return all(low <= record[name] <= high for name, (low, high) in _LIMITS.items())
 
 
 def read_sbet(path: Path, crs: str) -> Trajectory:

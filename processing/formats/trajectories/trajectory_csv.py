@@ -23,6 +23,18 @@ OWN_COLUMNS = (
 )
 _POSPAC_COLUMNS = ("GpsTime", "X", "Y", "Z", "Roll", "Pitch", "Azimuth")
 _FARTHEST_M = 1e8
+_SAY_SO = (b"time_s,easting_m", b"heading", b"azimuth")
+
+
+def is_trajectory_table(start: bytes) -> bool:
+    """Whether a file's first line is the header of a trajectory."""
+    first_line = start.partition(b"\n")[0].lower()
+    return any(word in first_line for word in _SAY_SO)
+
+
+def read_trajectory_table(path: Path, _crs: str) -> Trajectory:
+    """Read a table, as :func:`read_trajectory_csv`: its coordinates are taken as they are."""
+    return read_trajectory_csv(path)
 
 
 def read_trajectory_csv(path: Path) -> Trajectory:

@@ -5,13 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 from processing.core.errors import report_as_user_error
-from processing.formats.trajectories.sbet import RECORD_BYTES, read_sbet
-from processing.formats.trajectories.trajectory_csv import read_trajectory_csv
+from processing.formats.format import Content
+from processing.formats.registry import FORMATS
 from processing.recording.vehicle_path.trajectory import Trajectory
 
-TRAJECTORY_ENDINGS = (".out", ".sbet")
-"""How the names of trajectories end that are no text."""
-
+_LOOKED_AT = 4096
+_TABLE, _BINARY = "trajectory", "sbet"
 _TEXT_CONTROLS = frozenset(b"\t\n\v\f\r\x1a")
 
 
@@ -29,10 +28,12 @@ def read_trajectory(path: Path, crs: str) -> Trajectory:
         As the readers say.
     """
     with report_as_user_error(path), path.open("rb") as file:
-        start = file.read(4 * RECORD_BYTES)
-    if _is_binary(start):
-        return read_sbet(path, crs)
-    return read_trajectory_csv(path)
+        start = file.read(_LOOKED_AT)
+    found = FORMATS.recognised(start, Content.TRAJECTORY)
+    # What no format knows for certain is refused by the likelier one, with its reasons.
+    likely = FORMATS[_BINARY if _is_binary(start) else _TABLE] if found is None else found[0]
+    trajectory: Trajectory = likely.reader(Content.TRAJECTORY)(path, crs)
+    return trajectory
 
 
 def _is_binary(start: bytes) -> bool:

@@ -23,6 +23,8 @@ from processing.core.errors import (
 from processing.core.japanese_text import read_text
 from processing.core.text import Text
 from processing.formats.drawings.drawn_outlines import outlines_of_dxf
+from processing.formats.format import Content
+from processing.formats.registry import FORMATS
 from processing.formats.vectors.geojson_shapes import WHERE, read_collection, shapes_of, system_of
 from processing.map.catalogue import Geometry
 
@@ -74,14 +76,13 @@ def boundary_layers(path: Path) -> tuple[str, ...]:
     BadFile, OutOfRange, MissingInput, NoSpace
         As :func:`read_boundary`.
     """
-    match path.suffix.lower():
-        case ".gpkg":
+    match FORMATS.format_to_read(path, Content.AREAS).id:
+        case "gpkg":
             return tuple(_layers_of_geopackage(path)[0])
-        case ".dxf":
+        case "dxf":
             return tuple(outlines_of_dxf(path).by_layer)
-        case ".geojson" | ".json":
+        case _:
             return ()
-    raise _other_format(path)
 
 
 def read_boundary(path: Path, *, crs: str = "", layer: str = "") -> Boundary:
@@ -110,15 +111,8 @@ def read_boundary(path: Path, *, crs: str = "", layer: str = "") -> Boundary:
     MissingInput, NoSpace
         It can't be read.
     """
-    match path.suffix.lower():
-        case ".geojson" | ".json":
-            polygons, own = _of_geojson(path)
-        case ".gpkg":
-            polygons, own = _of_geopackage(path, layer)
-        case ".dxf":
-            polygons, own = _of_dxf(path, layer)
-        case _:
-            raise _other_format(path)
+    read = FORMATS.format_to_read(path, Content.AREAS).reader(Content.AREAS)
+    polygons, own = read(path, layer)
     if not polygons:
         raise Unsuitable(
             Text("The file has no closed polygon.", "閉じたポリゴンがありません。"),
@@ -132,18 +126,9 @@ def read_boundary(path: Path, *, crs: str = "", layer: str = "") -> Boundary:
     return Boundary(_rings_of(polygons), own, len(polygons))
 
 
-def _other_format(path: Path) -> OutOfRange:
-    return OutOfRange(
-        Text(
-            "A boundary is read from GeoJSON, GeoPackage or DXF.",
-            "境界はGeoJSON・GeoPackage・DXFから読み込みます。",
-        ),
-        Text.same(str(path)),
-        _AGAIN,
-    )
-
-
-def _of_geojson(path: Path) -> tuple[list[Any], str]:
+# Any: polygons of shapely, which is imported where it is used.
+def areas_of_geojson(path: Path, _layer: str) -> tuple[list[Any], str]:
+    """Give the polygons of a GeoJSON, which has no layers, and its system."""
     import shapely
 
     text = read_text(path)
@@ -173,7 +158,8 @@ def _of_geojson(path: Path) -> tuple[list[Any], str]:
     return [shapely.Polygon(outline, holes) for outline, *holes in rings], own
 
 
-def _of_geopackage(path: Path, layer: str) -> tuple[list[Any], str]:
+def areas_of_geopackage(path: Path, layer: str) -> tuple[list[Any], str]:
+    """Give the polygons of a layer of a GeoPackage, and its system."""
     found, systems = _layers_of_geopackage(path)
     chosen = _chosen_layer(path, found, layer)
     return found.get(chosen, []), systems.get(chosen, "")
@@ -222,7 +208,8 @@ def _flattened(parts: Iterable[Any]) -> Iterable[Any]:
             yield from _flattened(shapely.get_parts(part))
 
 
-def _of_dxf(path: Path, layer: str) -> tuple[list[Any], str]:
+def areas_of_dxf(path: Path, layer: str) -> tuple[list[Any], str]:
+    """Give the polygons of a layer of a drawing, and its system."""
     import shapely
 
     drawing = outlines_of_dxf(path)

@@ -5,42 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from processing.core.errors import OutOfRange
 from processing.core.monitor import Monitor
-from processing.core.text import Text
-from processing.formats.drawings.dxf import write_dxf
-from processing.formats.ledgers.ledger_columns import TableStyle
-from processing.formats.ledgers.ledger_csv import write_features
-from processing.formats.vectors.geojson import write_geojson
-from processing.formats.vectors.geopackage import write_geopackage
+from processing.formats.format import Content
+from processing.formats.format_list import FormatList
+from processing.formats.map_delivery import MapDelivery
+from processing.formats.registry import FORMATS
 from processing.map.catalogue import Catalogue
 from processing.map.feature import Feature
-
-ENDINGS = (".geojson", ".gpkg", ".csv", ".dxf")
-"""What a file of features may be called."""
-
-_DIGITS = 3
-
-
-def check_ending(path: Path) -> None:
-    """Refuse a name whose ending says no known format.
-
-    Raises
-    ------
-    OutOfRange
-    """
-    if path.suffix.lower() not in ENDINGS:
-        raise OutOfRange(
-            Text(
-                "What this tool finds is written as GeoJSON, GeoPackage, CSV or DXF.",
-                "このツールの結果はGeoJSON・GeoPackage・CSV・DXFで出力します。",
-            ),
-            Text.same(str(path)),
-            Text(
-                "Give a name ending in .geojson, .gpkg, .csv or .dxf.",
-                ".geojson・.gpkg・.csv・.dxf のいずれかで終わる名前にしてください。",
-            ),
-        )
 
 
 def write_feature_file(
@@ -51,6 +22,7 @@ def write_feature_file(
     monitor: Monitor,
     *,
     never: Iterable[Path] = (),
+    formats: FormatList = FORMATS,
 ) -> None:
     """Write features with kind, confidence, status and attributes.
 
@@ -70,14 +42,5 @@ def write_feature_file(
     UserError
         What stands against writing; `Cancelled`.
     """
-    check_ending(path)
-    match path.suffix.lower():
-        case ".geojson":
-            write_geojson(path, features, crs=crs, monitor=monitor, never=never)
-        case ".gpkg":
-            write_geopackage(path, features, catalogue, crs=crs, monitor=monitor, never=never)
-        case ".csv":
-            style = TableStyle(None, "utf-8", _DIGITS, crs)
-            write_features(path, features, catalogue, style, monitor=monitor, never=never)
-        case _:
-            write_dxf(path, features, catalogue, crs=crs, monitor=monitor, never=never)
+    write = formats.format_to_write(path, Content.FEATURES).writer(Content.FEATURES)
+    write(path, MapDelivery(tuple(features), catalogue, crs), monitor, never=never)

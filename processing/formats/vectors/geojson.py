@@ -13,6 +13,7 @@ from typing import Any
 
 from processing.core.monitor import Monitor, SilentMonitor
 from processing.core.safe_write import write_safely
+from processing.formats.map_delivery import MapDelivery
 from processing.map.catalogue import RESERVED_ATTRIBUTES, Geometry
 from processing.map.feature import AttributeValue, Feature, Position
 
@@ -49,6 +50,13 @@ def write_geojson(
     """
     members = (_member(feature) for feature in features)
     write_members(path, members, crs=crs, monitor=monitor, never=never)
+
+
+def write_geojson_features(
+    path: Path, delivery: MapDelivery, monitor: Monitor, *, never: Iterable[Path] = ()
+) -> None:
+    """Write a map that is handed in, as :func:`write_geojson`."""
+    write_geojson(path, delivery.features, crs=delivery.crs, monitor=monitor, never=never)
 
 
 def write_members(

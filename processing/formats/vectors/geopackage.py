@@ -16,6 +16,7 @@ from processing.core.errors import NoSpace
 from processing.core.monitor import Monitor, SilentMonitor
 from processing.core.safe_write import write_safely
 from processing.core.text import Text
+from processing.formats.map_delivery import MapDelivery
 from processing.map.catalogue import (
     RESERVED_ATTRIBUTES,
     AttributeField,
@@ -78,6 +79,20 @@ def write_geopackage(
             _write_layer(temporary, layer, members, crs)
         if not layers:  # a GeoPackage without any layer is none
             _write_layer(temporary, _Layer("features", "", "Unknown", ()), (), crs)
+
+
+def write_geopackage_features(
+    path: Path, delivery: MapDelivery, monitor: Monitor, *, never: Iterable[Path] = ()
+) -> None:
+    """Write a map that is handed in, as :func:`write_geopackage`."""
+    write_geopackage(
+        path,
+        delivery.features,
+        delivery.catalogue,
+        crs=delivery.crs,
+        monitor=monitor,
+        never=never,
+    )
 
 
 @dataclass(frozen=True)

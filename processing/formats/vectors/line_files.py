@@ -8,12 +8,12 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from processing.core.errors import BadFile, OutOfRange, Unsuitable, report_as_user_error
+from processing.core.errors import BadFile, Unsuitable, report_as_user_error
 from processing.core.text import Text
+from processing.formats.format import Content
+from processing.formats.registry import FORMATS
 
 Floats = NDArray[np.float64]
-
-_ENDINGS = (".geojson", ".json", ".gpkg", ".dxf")
 
 
 def read_lines(path: Path, *, crs: str = "") -> tuple[Floats, ...]:
@@ -40,15 +40,7 @@ def read_lines(path: Path, *, crs: str = "") -> tuple[Floats, ...]:
     Unsuitable
         No line in it, or another reference system.
     """
-    if path.suffix.lower() not in _ENDINGS:
-        raise OutOfRange(
-            Text("Lines are GeoJSON, GeoPackage or DXF.", "線のファイル形式が違います。"),
-            Text.same(str(path)),
-            Text(
-                "Give a .geojson, .gpkg or .dxf file.",
-                ".geojson・.gpkg・.dxf のファイルを指定してください。",
-            ),
-        )
+    FORMATS.format_to_read(path, Content.LINES)
     with report_as_user_error(path), path.open("rb"):
         pass
     shapes, own = _shapes(path)

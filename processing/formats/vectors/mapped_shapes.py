@@ -8,9 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from processing.core.errors import BadFile, OutOfRange, report_as_user_error
+from processing.core.errors import BadFile, report_as_user_error
 from processing.core.japanese_text import read_text
 from processing.core.text import Text
+from processing.formats.format import Content
+from processing.formats.registry import FORMATS
 from processing.formats.vectors.geojson_shapes import WHERE, read_collection, shapes_of, system_of
 from processing.scoring.mapped_features import Floats, GeometryType, MappedFeature, MappedFile
 
@@ -41,26 +43,14 @@ def read_mapped(path: Path) -> MappedFile:
     OutOfRange
         The ending says another format.
     """
-    match path.suffix.lower():
-        case ".geojson" | ".json":
-            return _of_geojson(path)
-        case ".gpkg":
-            return _of_geopackage(path)
-        case _:
-            raise OutOfRange(
-                Text(
-                    "A map is scored as GeoJSON or GeoPackage.",
-                    "地図の評価にはGeoJSONまたはGeoPackageが必要です。",
-                ),
-                Text.same(str(path)),
-                Text(
-                    "Write the result as .geojson or .gpkg.",
-                    "結果を .geojson または .gpkg で出力してください。",
-                ),
-            )
+    found: MappedFile = FORMATS.format_to_read(path, Content.FEATURES).reader(Content.FEATURES)(
+        path
+    )
+    return found
 
 
-def _of_geojson(path: Path) -> MappedFile:
+def read_geojson_features(path: Path) -> MappedFile:
+    """Read a GeoJSON, as :func:`read_mapped`."""
     text = read_text(path)
     if not text.lstrip("\ufeff \t\r\n").startswith("{"):
         raise BadFile(
@@ -99,7 +89,8 @@ def _of_geojson(path: Path) -> MappedFile:
         ) from error
 
 
-def _of_geopackage(path: Path) -> MappedFile:
+def read_geopackage_features(path: Path) -> MappedFile:
+    """Read a GeoPackage, as :func:`read_mapped`."""
     import pyogrio
     import pyogrio.raw
     from pyogrio.errors import DataLayerError, DataSourceError

@@ -11,11 +11,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.core.errors import UserError, report_as_user_error
+from processing.formats.format import Content
 from processing.formats.points.point_files import read_info, read_sample
-from processing.project.importing.dropped_files import TRAJECTORY, content_of
+from processing.formats.registry import FORMATS
+from processing.project.importing.dropped_files import content_of
 from processing.project.importing.trajectory_choice import match_trajectory, read_trajectories
 
-_ENDINGS = {".csv", ".out", ".sbet", ".txt"}
 _FOLDER = re.compile(r"traj|sbet|pos|nav|gnss|軌跡", re.IGNORECASE)
 _SAMPLE_POINTS = 2_000
 _MOST_FILES = 50
@@ -93,10 +94,10 @@ def _listed(folder: Path) -> list[Path]:
 
 
 def _is_trajectory(path: Path) -> bool:
-    if path.suffix.lower() not in _ENDINGS:
+    if path.suffix.lower() not in FORMATS.endings_read(Content.TRAJECTORY):
         return False
     with suppress(UserError), report_as_user_error(path):
-        return path.is_file() and content_of(path) == TRAJECTORY
+        return path.is_file() and content_of(path) is Content.TRAJECTORY
     return False
 
 

@@ -10,7 +10,9 @@ from numpy.typing import NDArray
 
 from processing.core.monitor import Monitor, PartMonitor
 from processing.core.scratch_folder import scratch_folder
+from processing.formats.format import Content
 from processing.formats.points.las_results import write_results
+from processing.formats.registry import FORMATS
 from processing.labels.label_column import LABEL
 from processing.project.results.delivered_order import DeliveredOrder, Values
 from processing.project.sources.source_check import require_delivered
@@ -19,7 +21,7 @@ from processing.recording.drive import Drive
 
 _DEALING = 0.2
 _CLASS = "classification"
-_ENDINGS = (".las", ".laz")
+_COMPRESSED = ".laz"
 _Codes = NDArray[np.uint8]
 
 
@@ -96,7 +98,9 @@ def _names_of(sources: Sequence[Path]) -> list[str]:
     """A name of its own for each: as delivered, numbered where folders have the same names."""
     names: list[str] = []
     for source in sources:
-        ending = source.suffix.lower() if source.suffix.lower() in _ENDINGS else ".laz"
+        ending = source.suffix.lower()
+        if ending not in FORMATS.endings_written(Content.POINTS):
+            ending = _COMPRESSED
         name, number = f"{source.stem}{ending}", 2
         while name.lower() in {one.lower() for one in names}:
             name, number = f"{source.stem}-{number}{ending}", number + 1

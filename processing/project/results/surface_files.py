@@ -8,16 +8,16 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.core.errors import OutOfRange
 from processing.core.monitor import Monitor
 from processing.core.safe_write import write_safely
 from processing.core.text import Text
+from processing.formats.format import Content
+from processing.formats.registry import FORMATS
 from processing.formats.surfaces.geotiff import TILE, Raster, write_geotiff
 from processing.methods.ground.stored_surface import StoredSurface
 from processing.recording.drive import Drive
 
 _BANDS = ("ground height (m)", "filled in: 1, measured: 0")
-_ENDINGS = (".tif", ".tiff")
 _WRITING = Text("Writing {name}", "{name} を書き込み中")
 
 
@@ -33,12 +33,7 @@ def surface_file_of(parameters: object) -> Path | None:
     if not given:
         return None
     path = Path(given)
-    if path.suffix.lower() not in _ENDINGS:
-        raise OutOfRange(
-            Text("A surface is a GeoTIFF.", "地表面の出力形式はGeoTIFFです。"),
-            Text.same(str(path)),
-            Text("Give a name ending in .tif.", ".tif で終わる名前にしてください。"),
-        )
+    FORMATS.format_to_write(path, Content.GRID)
     return path
 
 

@@ -13,12 +13,13 @@ from app.cli.opened import request_of
 from app.cli.parser import read_arguments
 from app.settings.settings import Settings
 from processing.core.errors import MissingInput
-from processing.formats.points.point_files import POINT_ENDINGS, TEXT_ENDINGS
+from processing.formats.format import DELIVERED, Content
+from processing.formats.registry import FORMATS
 from processing.project.importing.dropped_files import request_of_files
 from widgets.dialogs.import_drive import ImportForm
 from widgets.dialogs.point_columns import ColumnsForm
 
-ENDINGS = (*POINT_ENDINGS, *TEXT_ENDINGS)
+ENDINGS = FORMATS.endings_read(Content.POINTS)
 
 
 def _delivered(folder: Path, ending: str) -> Path:
@@ -47,7 +48,7 @@ def test_the_import_form_lists_a_point_file(
         return [], ""
 
     monkeypatch.setattr(QFileDialog, "getOpenFileNames", choose)
-    form = ImportForm(tmp_path / "a.zuka")
+    form = ImportForm(tmp_path / "a.zuka", kinds=FORMATS.filter_read(*DELIVERED).en)
     qtbot.addWidget(form)
     form.ask_for_files()
     assert f"*{ending} " in filters[0].replace(")", " ")

@@ -128,7 +128,7 @@ def test_a_density_is_written_as_a_picture_and_as_a_table(
     [
         (("vq250", "0", "d.png"), "A density needs a speed"),
         (("p40", "30", "d.png"), "no such sensor"),
-        (("vq250", "30", "d.pdf"), "picture or a table"),
+        (("vq250", "30", "d.pdf"), "Pictures and tables are written as PNG or CSV"),
         (("vq250", "fast", "d.png"), "can't be read"),
     ],
 )

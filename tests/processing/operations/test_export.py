@@ -18,10 +18,11 @@ import shapely
 from processing.core.errors import Cancelled, InUse, OutOfRange, Unsuitable, UserError
 from processing.core.monitor import SilentMonitor
 from processing.core.text import Text
+from processing.formats.registry import FORMATS
 from processing.map.catalogue import Catalogue, Geometry
 from processing.map.catalogue_file import read_catalogue
 from processing.map.feature import Feature, PointReference, Position, Provenance, Status, Vertex
-from processing.operations.export import FORMATS, ExportRequest, export
+from processing.operations.export import ExportRequest, export
 from resources import path_of
 
 _ALL = ("dxf", "csv", "gpkg", "geojson")
@@ -116,7 +117,9 @@ def test_candidates_are_handed_in_only_when_asked_for_and_rejected_ones_never(
 def test_the_language_the_digits_and_the_encoding_are_those_asked_for(
     tmp_path: Path, catalogue: Catalogue, street: tuple[Feature, ...]
 ) -> None:
-    request = replace(_request(tmp_path, "csv"), language="en", digits=4, encoding="cp932")
+    request = replace(
+        _request(tmp_path, "csv"), language="en", options={"digits": 4, "encoding": "cp932"}
+    )
     export(street, catalogue, "EPSG:6677", request)
     text = (tmp_path / "ledger_street_tree.csv").read_bytes().decode("cp932")
     assert text.startswith("Number,Route,Species")
@@ -152,9 +155,10 @@ def test_an_unknown_reference_system_is_said_while_working_and_in_the_files(
     [
         ({"formats": ("pdf",)}, "pdf"),
         ({"formats": ()}, "–"),
-        ({"encoding": "latin-1"}, "latin-1"),
-        ({"dxf_version": "R12"}, "R12"),
-        ({"digits": 12}, "12"),
+        ({"options": {"encoding": "latin-1"}}, "encoding=latin-1"),
+        ({"options": {"dxf_version": "R12"}}, "dxf_version=R12"),
+        ({"options": {"digits": 12}}, "digits=12"),
+        ({"options": {"scale": 500}}, "scale"),
     ],
 )
 def test_a_request_that_cannot_be_met_is_refused_before_anything_is_written(
@@ -212,7 +216,7 @@ def test_an_empty_map_gives_whole_files_without_features(
 def test_a_late_failure_leaves_the_files_of_the_last_export_as_they_were(
     tmp_path: Path, catalogue: Catalogue, street: tuple[Feature, ...]
 ) -> None:
-    request = replace(_request(tmp_path), encoding="cp932")
+    request = replace(_request(tmp_path), options={"encoding": "cp932"})
     export(street, catalogue, "EPSG:6677", request)
     before = {path.name: path.read_bytes() for path in tmp_path.iterdir()}
     changed = (*street, _feature("new", "street_tree", Geometry.POINT, _EDGE[0], species="𠮷"))
@@ -298,7 +302,7 @@ def test_a_disk_that_takes_no_more_is_told_and_nothing_is_half_written(
 
 
 def test_every_format_has_a_title_in_both_languages() -> None:
-    assert tuple(FORMATS) == (*_ALL, "las")
-    for id_, one in FORMATS.items():
-        assert one.id == id_
-        assert one.title.en != one.title.ja
+    assert tuple(one.id for one in FORMATS.maps()) == (*_ALL, "las")
+    for one in FORMATS.maps():
+        assert one.map_title is not None
+        assert one.map_title.en != one.map_title.ja

@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from processing.core.errors import OutOfRange
 from processing.core.safe_write import write_safely
-from processing.core.text import Text
+from processing.formats.format import Content
 from processing.formats.pictures.png import write_png
+from processing.formats.registry import FORMATS
 from processing.image.attributes.colour_maps import UNKNOWN_COLOUR, height_ramp
 from processing.laboratory.simulate.scanning.density import DensityMap
 
@@ -63,18 +63,11 @@ def write_density(path: Path, found: DensityMap, title: str) -> None:
         The name ends in something else.
     NoSpace
     """
-    ending = path.suffix.lower()
-    if ending == ".png":
-        picture = density_picture(found, title)
-        write_png(path, (picture.shape[0], picture.shape[1]), [picture])
-    elif ending == ".csv":
+    if Content.TABLE in FORMATS.format_to_write(path, Content.PICTURE, Content.TABLE).writes:
         _write_table(path, found)
-    else:
-        raise OutOfRange(
-            Text("A density map is a picture or a table.", "点密度図は画像または表です。"),
-            Text.same(str(path)),
-            Text("Give a name ending in .png or .csv.", ".png または .csv の名前にしてください。"),
-        )
+        return
+    picture = density_picture(found, title)
+    write_png(path, (picture.shape[0], picture.shape[1]), [picture])
 
 
 def density_picture(found: DensityMap, title: str) -> Picture:

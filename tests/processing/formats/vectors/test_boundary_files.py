@@ -270,7 +270,7 @@ def test_the_layers_that_have_polygons_are_told(tmp_path: Path, name: str) -> No
 
 def test_a_file_without_layers_has_none_and_a_bad_one_is_told(tmp_path: Path) -> None:
     assert boundary_layers(as_geojson(tmp_path / "a.geojson", [box(0, 10)])) == ()
-    with pytest.raises(OutOfRange, match="GeoJSON, GeoPackage or DXF"):
+    with pytest.raises(OutOfRange, match="Areas are read from DXF, GeoPackage"):
         boundary_layers(tmp_path / "a.shp")
     for name in ("bad.dxf", "bad.gpkg"):
         (tmp_path / name).write_bytes(b"nothing")
@@ -314,7 +314,7 @@ def test_a_file_that_ends_early_is_damaged(tmp_path: Path, name: str) -> None:
 
 
 def test_other_endings_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(OutOfRange, match="GeoJSON, GeoPackage or DXF"):
+    with pytest.raises(OutOfRange, match="Areas are read from DXF, GeoPackage"):
         read_boundary(tmp_path / "a.shp")
 
 

@@ -14,7 +14,9 @@ import pytest
 
 from processing.core.errors import InUse, OutOfRange
 from processing.core.monitor import SilentMonitor
-from processing.formats.vectors.feature_files import check_ending, write_feature_file
+from processing.formats.format import Content
+from processing.formats.registry import FORMATS
+from processing.formats.vectors.feature_files import write_feature_file
 from processing.map.catalogue import Geometry
 from processing.map.catalogue_file import read_catalogue
 from processing.map.feature import PointReference, Status
@@ -121,7 +123,7 @@ def test_a_dxf_has_every_candidate(tmp_path: Path) -> None:
 
 def test_another_ending_is_refused_with_those_there_are() -> None:
     with pytest.raises(OutOfRange) as refusal:
-        check_ending(Path("curbs.las"))
+        FORMATS.format_to_write(Path("curbs.las"), Content.FEATURES)
     assert ".geojson" in refusal.value.remedy.en
 
 

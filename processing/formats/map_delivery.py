@@ -1,0 +1,113 @@
+"""What writers of the map are given, and what can be chosen for them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from processing.core.monitor import Monitor
+from processing.core.parameters import (
+    ParameterChoice,
+    ParameterValue,
+    choice,
+    count,
+    fill_parameters,
+    parameters_of,
+)
+from processing.core.text import Language, Text
+
+if TYPE_CHECKING:  # the command line asks for the options alone
+    from processing.map.catalogue import Catalogue
+    from processing.map.feature import Feature
+
+OptionsT = TypeVar("OptionsT")
+Position = Callable[[str], Path]
+"""From a file's name to where it is written for the time being."""
+
+_MOST_DIGITS = 9
+
+
+# Any: as the declarations of processing.core.parameters.
+def _encoding() -> Any:
+    return choice(
+        "utf-8",
+        choices=(
+            ParameterChoice("utf-8", Text.same("UTF-8")),
+            ParameterChoice("cp932", Text.same("Shift_JIS (cp932)")),
+        ),
+        name=Text("Text of DXF and CSV", "DXF・CSVの文字コード"),
+        explanation=Text("A DXF 2018 is always UTF-8.", "DXF 2018は常にUTF-8です。"),
+    )
+
+
+@dataclass(frozen=True)
+class DxfOptions:
+    """What can be chosen for a drawing."""
+
+    dxf_version: str = choice(
+        "R2018",
+        choices=(
+            ParameterChoice("R2018", Text.same("DXF 2018 (UTF-8)")),
+            ParameterChoice("R2000", Text.same("DXF 2000")),
+        ),
+        name=Text("Version of DXF", "DXFのバージョン"),
+    )
+    encoding: str = _encoding()
+
+
+@dataclass(frozen=True)
+class TableOptions:
+    """What can be chosen for tables."""
+
+    encoding: str = _encoding()
+    digits: int = count(
+        3,
+        low=0,
+        high=_MOST_DIGITS,
+        name=Text("Decimals of coordinates", "座標の小数点以下の桁数"),
+        explanation=Text("Of metres, in CSV.", "CSVに書き出す座標（m）の桁数です。"),
+    )
+
+
+def _no_points(_position: Position, _monitor: Monitor) -> None:
+    """Write nothing: the map was given without drives."""
+
+
+@dataclass(frozen=True)
+class MapDelivery:
+    """A map as it is handed in.
+
+    Attributes
+    ----------
+    features : tuple of Feature
+        In the order in which they are written.
+    crs : str
+        ``EPSG:n``; empty where it is not known, which the file then says.
+    language : "en", "ja" or None
+        Of headers of tables; None for their ids.
+    options : mapping of str to value
+        What was chosen, by the ids of :meth:`FormatList.map_options`; defaults for the rest.
+    write_points : callable
+        Writes the points of the drives with their labels.
+    """
+
+    features: tuple[Feature, ...]
+    catalogue: Catalogue
+    crs: str
+    language: Language | None = None
+    options: Mapping[str, ParameterValue] = field(default_factory=dict)
+    write_points: Callable[[Position, Monitor], None] = _no_points
+
+    def options_of(self, options: type[OptionsT]) -> OptionsT:
+        """What was chosen for a format.
+
+        Raises
+        ------
+        OutOfRange
+            A value outside its limits.
+        """
+        known = {one.id for one in parameters_of(options)}
+        chosen = {id_: value for id_, value in self.options.items() if id_ in known}
+        return fill_parameters(options, chosen)

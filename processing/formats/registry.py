@@ -1,0 +1,240 @@
+"""Every format that the program reads or writes: what dialogs, drops and commands know of files.
+
+A new format is a file of its own and an entry here. The order is that in which files are
+recognised, and in which maps are offered.
+"""
+
+from __future__ import annotations
+
+from processing.core.text import Text
+from processing.formats.format import BY_MAKER, Content, Format
+from processing.formats.format_list import FormatList
+from processing.formats.map_delivery import DxfOptions, TableOptions
+
+_POINTS = "processing.formats.points"
+_PATHS = "processing.formats.trajectories"
+_VECTORS = "processing.formats.vectors"
+_SURFACES = "processing.formats.surfaces"
+_DRAWINGS = "processing.formats.drawings"
+_LEDGERS = "processing.formats.ledgers.ledger_csv"
+_LAS = f"{_POINTS}.las:read_chunks"
+_RESULTS = f"{_POINTS}.las_results:write_results"
+_TRUTH = f"{_POINTS}.point_codes:read_truth"
+_LINES = f"{_VECTORS}.line_files:read_lines"
+
+_POINT_FORMATS = (
+    Format(
+        "las",
+        Text.same("LAS"),
+        (".las",),
+        reads={Content.POINTS: _LAS, Content.CLASSES: _TRUTH},
+        writes={Content.POINTS: _RESULTS},
+        magic=b"LASF",
+        map_title=Text("Labelled points (LAS)", "ラベル付き点群（LAS）"),
+        writes_map=f"{_POINTS}.las_results:write_points_map",
+    ),
+    Format(
+        "laz",
+        Text.same("LAZ"),
+        (".laz",),
+        reads={Content.POINTS: _LAS, Content.CLASSES: _TRUTH},
+        writes={Content.POINTS: _RESULTS},
+        magic=b"LASF",
+    ),
+    Format(
+        "ply",
+        Text.same("PLY"),
+        (".ply",),
+        reads={Content.POINTS: f"{_POINTS}.ply:open_ply"},
+        magic=b"ply",
+    ),
+    Format(
+        "e57",
+        Text.same("E57"),
+        (".e57",),
+        reads={Content.POINTS: f"{_POINTS}.e57:open_e57"},
+        magic=b"ASTM-E57",
+    ),
+    Format(
+        "ptx",
+        Text.same("PTX"),
+        (".ptx",),
+        reads={Content.POINTS: f"{_POINTS}.ptx:open_ptx"},
+        sniff=f"{_POINTS}.ptx:is_ptx",
+    ),
+    Format(
+        "pcd",
+        Text.same("PCD"),
+        (".pcd",),
+        reads={Content.POINTS: f"{_POINTS}.pcd:open_pcd"},
+        sniff=f"{_POINTS}.pcd:is_pcd",
+    ),
+    Format(
+        "text",
+        Text("Text", "テキスト"),
+        (".pts", ".xyz", ".txt", ".csv"),
+        reads={Content.POINTS: f"{_POINTS}.text_points:open_text_points", Content.CLASSES: _TRUTH},
+    ),
+    Format(
+        "pulses",
+        Text("Folder of pulses", "パルスとエコーのフォルダ"),
+        (),
+        reads={Content.POINTS: f"{_POINTS}.pulse_folder:open_pulse_folder"},
+        sniff_folder=f"{_POINTS}.pulse_folder:is_pulse_folder",
+    ),
+    Format(
+        "npy",
+        Text.same("NPY"),
+        (".npy",),
+        reads={Content.CLASSES: _TRUTH},
+        magic=b"\x93NUMPY",
+    ),
+    Format(
+        "npz",
+        Text.same("NPZ"),
+        (".npz",),
+        reads={Content.CLASSES: _TRUTH},
+        magic=b"PK\x03\x04",
+    ),
+)
+
+_PATH_FORMATS = (
+    Format(
+        "image-list",
+        Text("Image list (CSV)", "画像一覧（CSV）"),
+        (".csv", ".txt"),
+        reads={Content.IMAGES: f"{_PATHS}.image_list:read_image_list"},
+        sniff=f"{_PATHS}.image_list:is_image_list",
+    ),
+    Format(
+        "trajectory",
+        Text("Trajectory (CSV, POSPac text)", "走行軌跡（CSV・POSPacのテキスト）"),
+        (".csv", ".txt"),
+        reads={Content.TRAJECTORY: f"{_PATHS}.trajectory_csv:read_trajectory_table"},
+        sniff=f"{_PATHS}.trajectory_csv:is_trajectory_table",
+    ),
+    Format(
+        "sbet",
+        Text.same("SBET"),
+        (".out", ".sbet"),
+        reads={Content.TRAJECTORY: f"{_PATHS}.sbet:read_sbet"},
+        sniff=f"{_PATHS}.sbet:is_sbet",
+        needs_crs=True,
+    ),
+)
+
+_VECTOR_FORMATS = (
+    Format(
+        "dxf",
+        Text.same("DXF"),
+        (".dxf",),
+        reads={Content.AREAS: f"{_VECTORS}.boundary_files:areas_of_dxf", Content.LINES: _LINES},
+        writes={
+            Content.FEATURES: f"{_DRAWINGS}.dxf:write_dxf_features",
+            Content.DRAWING: BY_MAKER,
+        },
+        map_title=Text("Drawing (DXF)", "図面（DXF）"),
+        options=DxfOptions,
+    ),
+    Format(
+        "csv",
+        Text.same("CSV"),
+        (".csv",),
+        writes={
+            Content.FEATURES: f"{_LEDGERS}:write_csv_features",
+            Content.TABLE: BY_MAKER,
+            Content.REPORT: BY_MAKER,
+        },
+        map_title=Text("Ledgers (CSV)", "台帳（CSV）"),
+        writes_map=f"{_LEDGERS}:write_csv_map",
+        options=TableOptions,
+    ),
+    Format(
+        "gpkg",
+        Text.same("GeoPackage"),
+        (".gpkg",),
+        reads={
+            Content.FEATURES: f"{_VECTORS}.mapped_shapes:read_geopackage_features",
+            Content.AREAS: f"{_VECTORS}.boundary_files:areas_of_geopackage",
+            Content.LINES: _LINES,
+        },
+        writes={Content.FEATURES: f"{_VECTORS}.geopackage:write_geopackage_features"},
+        map_title=Text("GIS (GeoPackage)", "GIS（GeoPackage）"),
+    ),
+    Format(
+        "geojson",
+        Text.same("GeoJSON"),
+        (".geojson",),
+        reads={
+            Content.FEATURES: f"{_VECTORS}.mapped_shapes:read_geojson_features",
+            Content.AREAS: f"{_VECTORS}.boundary_files:areas_of_geojson",
+            Content.LINES: _LINES,
+        },
+        writes={Content.FEATURES: f"{_VECTORS}.geojson:write_geojson_features"},
+        map_title=Text("GIS (GeoJSON)", "GIS（GeoJSON）"),
+    ),
+)
+
+_OTHER_FORMATS = (
+    Format(
+        "landxml",
+        Text.same("LandXML"),
+        (".xml", ".landxml"),
+        reads={Content.SURFACE: f"{_SURFACES}.landxml:read_landxml"},
+        writes={Content.SURFACE: BY_MAKER},
+    ),
+    Format(
+        "geotiff",
+        Text.same("GeoTIFF"),
+        (".tif", ".tiff"),
+        writes={Content.GRID: BY_MAKER},
+    ),
+    Format(
+        "pdf",
+        Text.same("PDF"),
+        (".pdf",),
+        writes={
+            Content.REPORT: BY_MAKER,
+            Content.PLOT: BY_MAKER,
+        },
+    ),
+    Format(
+        "xlsx",
+        Text.same("XLSX"),
+        (".xlsx",),
+        writes={Content.REPORT: BY_MAKER},
+    ),
+    Format(
+        "png",
+        Text.same("PNG"),
+        (".png",),
+        writes={
+            Content.PICTURE: BY_MAKER,
+            Content.PLOT: BY_MAKER,
+        },
+    ),
+    Format(
+        "json",
+        Text.same("JSON"),
+        (".json",),
+        reads={
+            Content.FEATURES: f"{_VECTORS}.mapped_shapes:read_geojson_features",
+            Content.AREAS: f"{_VECTORS}.boundary_files:areas_of_geojson",
+            Content.LINES: _LINES,
+        },
+        writes={Content.NUMBERS: BY_MAKER},
+    ),
+    Format(
+        "toml",
+        Text.same("TOML"),
+        (".toml",),
+        reads={
+            Content.CATALOGUE: "processing.map.catalogue_file:read_catalogue",
+            Content.LIMITS: "processing.methods.earthwork.as_built.limits_file:read_limits",
+        },
+        writes={Content.CATALOGUE: BY_MAKER, Content.LIMITS: BY_MAKER},
+    ),
+)
+
+FORMATS = FormatList((*_VECTOR_FORMATS, *_POINT_FORMATS, *_PATH_FORMATS, *_OTHER_FORMATS))
+"""The formats of the program."""
