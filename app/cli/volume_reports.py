@@ -48,7 +48,7 @@ def check_report_options(parameters: VolumeParameters, sides: tuple[Path, Path])
         which limits is judged, can't be read.
     """
     for name, content in (
-        (parameters.map, Content.GRID),
+        (parameters.map, Content.RASTER),
         (parameters.report, Content.REPORT),
         (parameters.form, Content.REPORT),
     ):

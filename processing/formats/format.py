@@ -22,7 +22,7 @@ class Content(Enum):
     AREAS = Text("Areas", "範囲")
     LINES = Text("Lines", "線")
     SURFACE = Text("Surfaces", "サーフェス")
-    GRID = Text("Grids", "格子データ")
+    RASTER = Text("Rasters", "ラスタ")
     DRAWING = Text("Drawings", "図面")
     TABLE = Text("Tables", "表")
     REPORT = Text("Reports", "帳票")

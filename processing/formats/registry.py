@@ -187,7 +187,7 @@ _OTHER_FORMATS = (
         "geotiff",
         Text.same("GeoTIFF"),
         (".tif", ".tiff"),
-        writes={Content.GRID: BY_MAKER},
+        writes={Content.RASTER: BY_MAKER},
     ),
     Format(
         "pdf",

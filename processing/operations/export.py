@@ -117,25 +117,7 @@ def export(
         request.options,
         partial(write_labelled_points, drives),
     )
-    paths: list[Path] = []
-    with ExitStack() as whole:
-
-        def position(name: str) -> Path:
-            path = request.folder / name
-            temporary = whole.enter_context(write_safely(path, never=request.never))
-            paths.append(path)
-            return temporary
-
-        for number, one in enumerate(chosen):
-            monitor.check()
-            monitor.report(number / len(chosen), _saying(one, crs))
-            part = PartMonitor(monitor, number / len(chosen), (number + 1) / len(chosen))
-            if one.writes_map:
-                function_of(one.writes_map)(delivery, position, part)
-            else:
-                path = position(f"{MAP}{one.ending}")
-                one.writer(Content.FEATURES)(path, delivery, part)
-    return tuple(paths)
+    return _write(delivery, chosen, request, monitor)
 
 
 def check_formats(ids: Sequence[str], formats: FormatList = FORMATS) -> tuple[Format, ...]:
@@ -155,6 +137,31 @@ def check_formats(ids: Sequence[str], formats: FormatList = FORMATS) -> tuple[Fo
                 use_one_of(known),
             )
     return tuple(known[id_] for id_ in ids)
+
+
+def _write(
+    delivery: MapDelivery, chosen: Sequence[Format], request: ExportRequest, monitor: Monitor
+) -> tuple[Path, ...]:
+    """Write the files under temporary names, and give them their own in the end."""
+    paths: list[Path] = []
+    with ExitStack() as whole:
+
+        def position(name: str) -> Path:
+            path = request.folder / name
+            temporary = whole.enter_context(write_safely(path, never=request.never))
+            paths.append(path)
+            return temporary
+
+        for number, one in enumerate(chosen):
+            monitor.check()
+            monitor.report(number / len(chosen), _saying(one, delivery.crs))
+            part = PartMonitor(monitor, number / len(chosen), (number + 1) / len(chosen))
+            if one.writes_map:
+                function_of(one.writes_map)(delivery, position, part)
+            else:
+                path = position(f"{MAP}{one.ending}")
+                one.writer(Content.FEATURES)(path, delivery, part)
+    return tuple(paths)
 
 
 def _is_wanted(feature: Feature, request: ExportRequest) -> bool:

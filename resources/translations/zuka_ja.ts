@@ -319,10 +319,6 @@ kept</source>
         <translation>ファイルから正解を登録</translation>
     </message>
     <message>
-        <source>Classes of points (*.las *.laz *.npy *.npz *.txt);;All files (*)</source>
-        <translation>点のクラス (*.las *.laz *.npy *.npz *.txt);;すべてのファイル (*)</translation>
-    </message>
-    <message>
         <source>Forget a truth</source>
         <translation>正解の削除</translation>
     </message>
@@ -433,16 +429,8 @@ kept</source>
         <translation>走行軌跡を追加</translation>
     </message>
     <message>
-        <source>Trajectories (*.csv *.out *.sbet *.txt)</source>
-        <translation>走行軌跡 (*.csv *.out *.sbet *.txt)</translation>
-    </message>
-    <message>
         <source>Add camera images</source>
         <translation>カメラ画像を追加</translation>
-    </message>
-    <message>
-        <source>Image lists (*.csv *.txt)</source>
-        <translation>画像一覧 (*.csv *.txt)</translation>
     </message>
 </context>
 <context>
@@ -604,22 +592,6 @@ kept</source>
         <translation>書き出し</translation>
     </message>
     <message>
-        <source>DXF 2018 (UTF-8)</source>
-        <translation>DXF 2018（UTF-8）</translation>
-    </message>
-    <message>
-        <source>DXF 2000</source>
-        <translation>DXF 2000</translation>
-    </message>
-    <message>
-        <source>UTF-8</source>
-        <translation>UTF-8</translation>
-    </message>
-    <message>
-        <source>Shift_JIS (cp932)</source>
-        <translation>Shift_JIS（cp932）</translation>
-    </message>
-    <message>
         <source>Unchecked candidates as well</source>
         <translation>未確認の候補も含める</translation>
     </message>
@@ -634,14 +606,6 @@ kept</source>
     <message>
         <source>Folder</source>
         <translation>フォルダ</translation>
-    </message>
-    <message>
-        <source>Version of DXF</source>
-        <translation>DXFのバージョン</translation>
-    </message>
-    <message>
-        <source>Text of DXF and CSV</source>
-        <translation>DXFとCSVの文字コード</translation>
     </message>
 </context>
 <context>
@@ -762,10 +726,6 @@ kept</source>
     <message>
         <source>Use an office&apos;s catalogue</source>
         <translation>事務所のカタログを使う</translation>
-    </message>
-    <message>
-        <source>Catalogues (*.toml)</source>
-        <translation>カタログ (*.toml)</translation>
     </message>
     <message>
         <source>Write the catalogue</source>
@@ -925,14 +885,6 @@ kept</source>
         <translation>座標参照系</translation>
     </message>
     <message>
-        <source>Deliveries</source>
-        <translation>納品ファイル</translation>
-    </message>
-    <message>
-        <source>All files</source>
-        <translation>すべてのファイル</translation>
-    </message>
-    <message>
         <source>Add files</source>
         <translation>ファイルの追加</translation>
     </message>
@@ -1069,10 +1021,6 @@ kept</source>
     <message>
         <source>Table of limits</source>
         <translation>規格値表</translation>
-    </message>
-    <message>
-        <source>Tables of limits (*.toml);;All files (*)</source>
-        <translation>規格値表 (*.toml);;すべてのファイル (*)</translation>
     </message>
     <message>
         <source>Write the table of limits</source>
@@ -2337,10 +2285,6 @@ kept</source>
         <translation>断面図の書き出し</translation>
     </message>
     <message>
-        <source>Drawings (*.dxf)</source>
-        <translation>図面 (*.dxf)</translation>
-    </message>
-    <message>
         <source>Write the evaluation</source>
         <translation>評価の書き出し</translation>
     </message>
@@ -2489,16 +2433,8 @@ kept</source>
         <translation>計算する範囲</translation>
     </message>
     <message>
-        <source>Areas (*.geojson *.json *.gpkg *.dxf);;All files (*)</source>
-        <translation>範囲 (*.geojson *.json *.gpkg *.dxf);;すべてのファイル (*)</translation>
-    </message>
-    <message>
         <source>Design surface</source>
         <translation>設計面</translation>
-    </message>
-    <message>
-        <source>LandXML (*.xml *.landxml);;All files (*)</source>
-        <translation>LandXML (*.xml *.landxml);;すべてのファイル (*)</translation>
     </message>
 </context>
 <context>

@@ -15,8 +15,11 @@ from app.cli.parser import read_arguments
 from app.drawing.tool_entries import TOOL_ENTRIES
 from app.keys.shortcuts import FIXED
 from app.settings.settings import Settings
+from app.volumes.volume_exports import VOLUME_EXPORTS
 from app.window.action import MENUS, SUBMENUS, Action
-from processing.core.text import Language
+from processing.core.text import Language, Text
+from processing.formats.format import Format
+from processing.formats.registry import FORMATS
 from processing.map.catalogue_file import read_catalogue
 from processing.tools.registry import TOOLS
 from resources import path_of
@@ -25,6 +28,8 @@ from tests.house_rules.sources import python_files, text_of
 
 MODIFIERS = {"Shift", "Ctrl", "Alt"}
 _MARKS = re.compile(r"\(&\w\)|&(?=\w)")
+NONE = Text("", "")
+NEEDS_SYSTEM = Text(" (needs the reference system)", "（座標参照系が必要）")
 _LEAST_WORDS = {"en": 20, "ja": 12}
 COMMANDS = (
     "open", "demo", "info", "import", "image", "tools", "run", "score", "study", "export", "bench",
@@ -84,6 +89,7 @@ def words_of_the_program() -> str:
         path = path_of(f"translations/zuka_{language}.ts")
         sources.append(path.read_text(encoding="utf-8"))
     sources.append(path_of("catalogue/level500.toml").read_text(encoding="utf-8"))
+    sources += [word for one in VOLUME_EXPORTS for word in (one.name.en, one.name.ja)]
     return "\n".join(sources).replace("&apos;", "'").replace("&amp;", "&")
 
 
@@ -204,6 +210,37 @@ def test_every_processing_tool_is_explained() -> None:
     for language in LANGUAGES:
         named = {name.action for name in page_of(language, "processing").names}
         assert {f"process-{tool}" for tool in TOOLS} <= named
+
+
+def format_row(one: Format, language: Language) -> str:
+    """A line of the manual's table of formats."""
+    between = "、" if language == "ja" else ", "
+    system = (
+        Text(" (needs the reference system)", "（座標参照系が必要）") if one.needs_crs else NONE
+    )
+    endings = between.join(f"<code>{ending}</code>" for ending in one.endings)
+    read, written = (
+        between.join(content.value.in_language(language) for content in contents)
+        for contents in (one.reads, one.writes)
+    )
+    map_id = f"<code>{one.id}</code>" if one.map_title is not None else ""
+    cells = (endings, read and read + system.in_language(language), written, map_id)
+    told = "".join(f"<td>{cell or '–'}</td>" for cell in cells)
+    return f"<tr><th>{one.name.in_language(language)}</th>{told}</tr>"
+
+
+def test_the_table_of_formats_is_that_of_the_program() -> None:
+    for language in LANGUAGES:
+        expected = "\n".join(format_row(one, language) for one in FORMATS)
+        page = (MANUAL / language / "start.html").read_text(encoding="utf-8")
+        assert expected in page, f"{language}/start.html lacks:\n{expected}"
+
+
+def test_every_format_of_maps_is_named_with_the_command() -> None:
+    for language in LANGUAGES:
+        page = (MANUAL / language / "command_line.html").read_text(encoding="utf-8")
+        (line,) = [one for one in page.splitlines() if "<code>zuka export " in one]
+        assert all(f"<code>{one.id}</code>" in line for one in FORMATS.maps())
 
 
 def test_every_command_is_listed_with_its_options(capsys: pytest.CaptureFixture[str]) -> None:

@@ -33,7 +33,7 @@ def surface_file_of(parameters: object) -> Path | None:
     if not given:
         return None
     path = Path(given)
-    FORMATS.format_to_write(path, Content.GRID)
+    FORMATS.format_to_write(path, Content.RASTER)
     return path
 
 

@@ -1,0 +1,42 @@
+"""The export form offers the formats that it is given, and what can be chosen for them."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from PySide6.QtWidgets import QCheckBox, QComboBox, QDialogButtonBox, QLabel
+from pytestqt.qtbot import QtBot
+
+from processing.formats.registry import FORMATS
+from tests.processing.formats.tiny_format import TINY
+from widgets.dialogs.export_map import ExportChoices, ExportForm, ExportOptions
+
+
+def _form(qtbot: QtBot, folder: Path) -> ExportForm:
+    formats = FORMATS.including(TINY)
+    titles = tuple((one.id, one.map_title) for one in formats.maps() if one.map_title)
+    form = ExportForm(folder, ExportChoices(titles, formats.map_options()), "en")
+    qtbot.addWidget(form)
+    return form
+
+
+def test_an_added_format_is_offered_with_its_option(qtbot: QtBot, tmp_path: Path) -> None:
+    form = _form(qtbot, tmp_path)
+    assert "Tiny drawing" in [box.text() for box in form.findChildren(QCheckBox)]
+    assert "Decimals of TINY" in [label.text() for label in form.findChildren(QLabel)]
+
+
+def test_what_is_chosen_is_asked_for(qtbot: QtBot, tmp_path: Path) -> None:
+    form = _form(qtbot, tmp_path)
+    for box in form.findChildren(QCheckBox):
+        box.setChecked(box.text() == "Tiny drawing")
+    version, *_ = form.findChildren(QComboBox)
+    version.setCurrentIndex(version.findData("R2000"))
+    (buttons,) = form.findChildren(QDialogButtonBox)
+    with qtbot.waitSignal(form.export_requested) as asked:
+        buttons.accepted.emit()
+    (request,) = asked.args
+    assert isinstance(request, ExportOptions)
+    assert request.formats == ("tiny",)
+    expected = {"dxf_version": "R2000", "encoding": "utf-8", "digits": 3, "tiny_decimals": 1}
+    assert request.options == expected
