@@ -75,6 +75,8 @@ class Format:
         ``(start: bytes) -> bool`` on a file's first bytes, where a magic isn't enough.
     sniff_folder : str
         ``(folder: Path) -> bool``, of a format that is a folder.
+    layers : str
+        ``(path) -> tuple of str``, of a format whose areas lie on layers: those that have any.
     map_title : Text or None
         What the map is called that is handed in so; None where it isn't.
     writes_map : str
@@ -94,6 +96,7 @@ class Format:
     magic: bytes = b""
     sniff: str = ""
     sniff_folder: str = ""
+    layers: str = ""
     map_title: Text | None = None
     writes_map: str = ""
     options: type[object] | None = None

@@ -133,6 +133,7 @@ _VECTOR_FORMATS = (
             Content.FEATURES: f"{_DRAWINGS}.dxf:write_dxf_features",
             Content.DRAWING: BY_MAKER,
         },
+        layers=f"{_VECTORS}.boundary_files:layers_of_dxf",
         map_title=Text("Drawing (DXF)", "図面（DXF）"),
         options=DxfOptions,
     ),
@@ -159,6 +160,7 @@ _VECTOR_FORMATS = (
             Content.LINES: _LINES,
         },
         writes={Content.FEATURES: f"{_VECTORS}.geopackage:write_geopackage_features"},
+        layers=f"{_VECTORS}.boundary_files:layers_of_geopackage",
         map_title=Text("GIS (GeoPackage)", "GIS（GeoPackage）"),
     ),
     Format(

@@ -23,7 +23,7 @@ from processing.core.errors import (
 from processing.core.japanese_text import read_text
 from processing.core.text import Text
 from processing.formats.drawings.drawn_outlines import outlines_of_dxf
-from processing.formats.format import Content
+from processing.formats.format import Content, function_of
 from processing.formats.registry import FORMATS
 from processing.formats.vectors.geojson_shapes import WHERE, read_collection, shapes_of, system_of
 from processing.map.catalogue import Geometry
@@ -32,7 +32,10 @@ Floats = NDArray[np.float64]
 
 _LEAST_AREA_M2 = 1e-4
 _POSITION = re.compile(r"\[(\S+) (\S+)\]")
-_WITH_LAYER = re.compile(r"(.+\.(?:gpkg|dxf))#(.+)", re.IGNORECASE | re.DOTALL)
+_LAYERED = "|".join(
+    re.escape(ending) for one in FORMATS.read(Content.AREAS) if one.layers for ending in one.endings
+)
+_WITH_LAYER = re.compile(rf"(.+(?:{_LAYERED}))#(.+)", re.IGNORECASE | re.DOTALL)
 _AGAIN = Text(
     "Draw the boundary as a closed polygon and save it as GeoJSON, GeoPackage or DXF.",
     "境界を閉じたポリゴンで作図し、GeoJSON・GeoPackage・DXFで保存してください。",
@@ -76,13 +79,19 @@ def boundary_layers(path: Path) -> tuple[str, ...]:
     BadFile, OutOfRange, MissingInput, NoSpace
         As :func:`read_boundary`.
     """
-    match FORMATS.format_to_read(path, Content.AREAS).id:
-        case "gpkg":
-            return tuple(_layers_of_geopackage(path)[0])
-        case "dxf":
-            return tuple(outlines_of_dxf(path).by_layer)
-        case _:
-            return ()
+    layers = FORMATS.format_to_read(path, Content.AREAS).layers
+    found: tuple[str, ...] = function_of(layers)(path) if layers else ()
+    return found
+
+
+def layers_of_geopackage(path: Path) -> tuple[str, ...]:
+    """Give the layers of a GeoPackage that have polygons."""
+    return tuple(_layers_of_geopackage(path)[0])
+
+
+def layers_of_dxf(path: Path) -> tuple[str, ...]:
+    """Give the layers of a drawing that have closed outlines."""
+    return tuple(outlines_of_dxf(path).by_layer)
 
 
 def read_boundary(path: Path, *, crs: str = "", layer: str = "") -> Boundary:
