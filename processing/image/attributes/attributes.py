@@ -101,7 +101,7 @@ ATTRIBUTES: Mapping[str, Attribute] = {
 }
 """By id, those of the thesis first, in its order."""
 
-SHOWS_LABELS = frozenset({"label", "class", ERROR_MAP})
+SHOWS_LABELS = frozenset({"label", "class", "judged"})
 """Attributes that show what was painted, or found by a tool that classifies."""
 
 

@@ -107,7 +107,7 @@ def evaluate_classes(
 def error_map_columns(
     drive: Drive, truth: str, evaluation: ClassEvaluation, into: Path, monitor: Monitor
 ) -> FinishedColumns:
-    """A picture of one evaluation: the column ``map_errors`` of a drive.
+    """A picture of one evaluation: the column ``judged`` of a drive.
 
     Parameters
     ----------

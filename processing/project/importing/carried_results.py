@@ -14,10 +14,11 @@ from numpy.typing import NDArray
 from processing.core.errors import report_as_user_error
 from processing.core.monitor import Monitor
 from processing.recording.columns.columns import COLUMN_TYPES, column_path
+from processing.recording.columns.error_map import ERROR_MAP
 from processing.recording.columns.ordering import chunk_ranges
 from processing.recording.drive import Drive
 
-_COLUMNS = ("label", "judged", "seen_color", "is_seen", "height_above_ground")
+_COLUMNS = ("label", ERROR_MAP, "seen_color", "is_seen", "height_above_ground")
 _WHOLE = ("camera_offsets.json", "ground_surface.tiles")
 _TRUTHS, _FINDINGS = "truths/*/truth.bin", "runs/*/*.bits"
 _BYTE = 8

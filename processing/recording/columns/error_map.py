@@ -1,4 +1,4 @@
-"""The column ``map_errors``: what a run did with each point, where the truth is known."""
+"""The column ``judged``: what a run did with each point, where the truth is known."""
 
 from __future__ import annotations
 
