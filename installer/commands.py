@@ -88,10 +88,10 @@ def _warm_kernels(environment: Environment, *, only_for_demo: bool) -> None:
     mark = _kernels_mark(environment)
     if stamp.fits(mark) or (only_for_demo and some.fits(mark)):
         return
-    made, wish = (some, ("--demo",)) if only_for_demo else (stamp, ())
+    made, options = (some, ("--demo",)) if only_for_demo else (stamp, ())
     made.lift()
     tell("compiling the kernels" + (" that the demo uses" if only_for_demo else ""))
-    environment.run("python", "-m", "installer.warm_kernels", *wish)
+    environment.run("python", "-m", "installer.warm_kernels", *options)
     made.set(mark)
 
 

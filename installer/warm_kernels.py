@@ -92,11 +92,11 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--demo", action="store_true", help="only what the demo uses")
     parser.add_argument("--processes", type=int, default=os.cpu_count() or 1)
-    wish = parser.parse_args()
-    without = LATER if wish.demo else ()
+    options = parser.parse_args()
+    without = LATER if options.demo else ()
     start = time.perf_counter()
     folders = folders_of(importlib.import_module("processing"), without)
-    warmed = warm_beside(folders, wish.processes)
+    warmed = warm_beside(folders, options.processes)
     seconds = time.perf_counter() - start
     sys.stderr.write(f"zuka: kernels of {len(warmed)} modules are ready after {seconds:.0f} s\n")
     return 0

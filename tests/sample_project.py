@@ -22,8 +22,8 @@ def make_sample_project(folder: Path) -> Path:
         found = import_drives(request, project.temporary_folder(), SilentMonitor())
         for drive in project.adopt_drives(found):
             for tool in point_tools().values():
-                wish = RunRequest(tool.id, drive, tool.parameters())
-                result = run(wish, SilentMonitor(), into=project.temporary_folder())
+                request = RunRequest(tool.id, drive, tool.parameters())
+                result = run(request, SilentMonitor(), into=project.temporary_folder())
                 assert isinstance(result, FinishedColumns)
                 result.hand_over(drive.columns)
     return folder

@@ -52,14 +52,14 @@ def command(arguments: argparse.Namespace) -> int:
         scratch_folder(arguments.output.parent) as scratch,
     ):
         _check_first(tool, opened, arguments.output, monitor)
-        request = _Wish(tool, parameters, opened, arguments.output)
+        request = _RequestedRun(tool, parameters, opened, arguments.output)
         paths = (_found if tool.gives_candidates else _points)(request, scratch, monitor)
     print_lines(*(str(path) for path in paths))
     return 0
 
 
 @dataclass(frozen=True)
-class _Wish:
+class _RequestedRun:
     """What is to be run on what, and where the result goes."""
 
     tool: Tool
@@ -73,7 +73,7 @@ class _Wish:
         return RunRequest(self.tool.id, drive, self.parameters, beside)
 
 
-def _found(request: _Wish, scratch: Path, monitor: Monitor) -> tuple[Path, ...]:
+def _found(request: _RequestedRun, scratch: Path, monitor: Monitor) -> tuple[Path, ...]:
     """What a tool finds on each drive, as one file."""
     drives, done = request.opened.drives, set[str]()
     features: list[Feature] = []
@@ -108,7 +108,7 @@ def _report(tool: Tool, note: Text, monitor: Monitor, at: float) -> None:
         monitor.report(at, _NOTE.filled(tool=tool.name, note=note))
 
 
-def _points(request: _Wish, scratch: Path, monitor: Monitor) -> tuple[Path, ...]:
+def _points(request: _RequestedRun, scratch: Path, monitor: Monitor) -> tuple[Path, ...]:
     """What a tool says about points, beside the points of each file; surfaces where wanted."""
     drives = request.opened.drives
     wanted = surface_file_of(request.parameters)

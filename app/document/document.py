@@ -15,11 +15,10 @@ from app.document.label_news import report_labels
 from app.document.label_steps import LabelSteps
 from app.document.long_work import export_work, exported_words
 from app.document.preparation import Preparation
-from app.document.refusals import refuse_changed
 from app.document.run_results import RunResultApplier
 from app.document.undo import UndoStack
 from app.jobs.jobs import JobLane, JobQueue
-from processing.core.errors import UserError
+from processing.core.errors import OutOfRange, UserError
 from processing.core.text import Text
 from processing.image.attributes.tile_cache import TileCache
 from processing.map.catalogue import Catalogue
@@ -398,3 +397,15 @@ class Document(QObject):
         self.shared.map_changes.features_changed.emit(tuple(f.id for f in self.features()))
         self._prepare_drives()
         return True
+
+
+def refuse_changed() -> UserError:
+    """What a change is about has become something else."""
+    return OutOfRange(
+        Text(
+            "The feature was changed while you edited it; it stays as it is now.",
+            "編集中に地物が変更されたため、現在の状態のままにしました。",
+        ),
+        Text("the map", "地図"),
+        Text("Do your edit again.", "もう一度編集してください。"),
+    )

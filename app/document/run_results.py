@@ -26,7 +26,7 @@ class RunResultApplier:
 
     Attributes
     ----------
-    adoption : Adoption
+    adoption : JobResultApplier
     label_steps : LabelSteps
     store_run : callable
         Gets a run with its candidates or labels.

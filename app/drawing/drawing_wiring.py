@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QObject, Qt
-from PySide6.QtGui import QCursor
+from PySide6.QtGui import QAction, QCursor, QKeySequence
 from PySide6.QtWidgets import QMenu
 
 from app.drawing.draw_actions import NUMBER_KEYS, kind_title
-from app.drawing.kind_palette import show_kind_palette
 from app.window.window_parts import WindowParts
-from processing.map.catalogue import Geometry
+from processing.map.catalogue import FeatureKind, Geometry
+from widgets.feature_drawing.swatch import swatch_of
 from widgets.mouse_tools.drawing.draw_parallel import DrawParallel
 from widgets.mouse_tools.drawing.measure import MeasureTool
 from widgets.mouse_tools.gesture import REACH_PX
 from widgets.mouse_tools.menu_request import MenuRequest
+from widgets.parts.command_palette import CommandPalette, NamedAction
 from widgets.parts.literal_text import literal
 from widgets.shared.mouse_shape import drawing_cursor
 from widgets.shared.snap_state import SnapMode
@@ -130,3 +131,27 @@ class _DrawingWiring(QObject):
             request.menu.insertActions(own[0], [actions[name] for name in group])
             request.menu.insertSeparator(own[0])
         request.menu.popup(request.where)
+
+
+def show_kind_palette(parts: WindowParts) -> None:
+    """Let the user choose what to draw by typing a part of its name in either language."""
+    recent = [kind.id for kind in parts.toolbox.recent_kinds]
+    kinds = named_kinds(parts)
+    palette = CommandPalette(kinds, parts.language, parts.window.centralWidget(), used=recent)
+    for one in kinds:
+        one.action.setParent(palette)  # a hundred actions that would stay behind each time
+    palette.setWindowTitle(parts.window.tr("What to draw"))
+    palette.show()
+
+
+def named_kinds(parts: WindowParts) -> list[NamedAction]:
+    """All kinds as actions that choose them."""
+    return [_named(parts, kind) for kind in parts.document.catalogue()]
+
+
+def _named(parts: WindowParts, kind: FeatureKind) -> NamedAction:
+    action = QAction(literal(kind.name.in_language(parts.language)), parts.window.centralWidget())
+    action.setIcon(swatch_of(kind.colour))
+    action.setShortcut(QKeySequence(kind.key))
+    action.triggered.connect(lambda: parts.toolbox.choose_kind(kind))
+    return NamedAction(f"kind-{kind.id}", kind.name, action)

@@ -22,10 +22,10 @@ _NOISE_SHOWN = Text("Noise is shown again.", "ノイズを再び表示してい�
 
 def sight_actions(parts: WindowParts) -> tuple[Action, ...]:
     """What images and 3D show of the recording."""
-    return (*_lays(parts), *_beside(parts), *_clips(parts), _hide_noise(parts))
+    return (*_orientations(parts), *_beside(parts), *_clips(parts), _hide_noise(parts))
 
 
-def _lays(parts: WindowParts) -> tuple[Action, ...]:
+def _orientations(parts: WindowParts) -> tuple[Action, ...]:
     settings = parts.document.shared.view_settings
     fields = {
         "image-upwards": ("is_vertical", Text("Street upwards", "道路を上向きに表示")),

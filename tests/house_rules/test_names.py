@@ -4,18 +4,55 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from importlib.metadata import packages_distributions
 from pathlib import PurePosixPath
 
+from tests.house_rules.imports import program
 from tests.house_rules.sources import PARTS, python_files, text_of, tracked
 
+FORMER_WORDS = {
+    *("wish", "wishes", "doubts", "tails", "trial", "trials", "darkroom", "pilot", "likings"),
+    *("lay", "lays", "guides", "adopter"),
+}
+"""Words of our own that standard terms replaced: request, diagnostics, orientation …"""
+ALLOWED_PARTS = ("lay_out", "lay_stones", "what_lay_beside")  # the verb
 DRAWERS = {"utils", "util", "helpers", "helper", "misc", "common", "manager", "managers"}
 
 
 def drawers(names: Iterable[str]) -> list[str]:
     """Give the paths of which a folder or file name holds a forbidden word."""
     return [name for name in names if DRAWERS & set(re.split(r"[^a-z]+", name.lower()))]
+
+
+def former_words(source: str) -> list[str]:
+    """Give the names of a source, of any kind, that hold a word which was replaced."""
+    names = {name for node in ast.walk(ast.parse(source)) for name in _names_in(node)}
+    return sorted(name for name in names if _words_of(name) & FORMER_WORDS)
+
+
+def _names_in(node: ast.AST) -> Iterator[str]:
+    match node:
+        case ast.Name(id=name) | ast.Attribute(attr=name) | ast.arg(arg=name):
+            yield name
+        case ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name) | ast.ClassDef(name=name):
+            yield name
+
+
+def _words_of(name: str) -> set[str]:
+    for part in ALLOWED_PARTS:
+        name = name.replace(part, "")
+    return set(re.sub(r"(?<=[a-z])(?=[A-Z])", "_", name).lower().split("_"))
+
+
+def public_classes(sources: Mapping[str, str]) -> dict[str, list[str]]:
+    """Give the public classes that stand in several modules, with these."""
+    found: dict[str, list[str]] = {}
+    for path, source in sources.items():
+        for node in ast.parse(source).body:
+            if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
+                found.setdefault(node.name, []).append(path)
+    return {name: paths for name, paths in found.items() if len(paths) > 1}
 
 
 def is_front_matter_only(source: str) -> bool:
@@ -38,6 +75,31 @@ def test_a_drawer_is_caught_wherever_the_word_stands() -> None:
     caught = ["app/utils.py", "widgets/misc/x.py", "app/jobs_manager.py", "tests/common_data.py"]
     assert drawers(caught) == caught
     assert drawers(["processing/commons.py", "app/commands.py"]) == []
+
+
+def test_no_name_holds_a_word_that_was_replaced() -> None:
+    found = {name: former_words(text_of(name)) for name in python_files()}
+    assert {name: names for name, names in found.items() if names} == {}
+    files = (name for name in python_files() if _words_of(PurePosixPath(name).stem) & FORMER_WORDS)
+    assert list(files) == []
+
+
+def test_a_word_that_was_replaced_is_caught() -> None:
+    assert former_words("class RunWish:\n    def trials(self, a_lay): ...") == [
+        "RunWish",
+        "a_lay",
+        "trials",
+    ]
+    assert former_words("class Layer:\n    def _lay_out(self): ...") == []
+
+
+def test_no_public_class_stands_for_two_things() -> None:
+    assert public_classes(program()) == {}
+
+
+def test_a_class_of_two_modules_is_caught() -> None:
+    sources = {"app/a.py": "class Run: ...\nclass _Part: ...", "app/b.py": "class Run: ..."}
+    assert public_classes(sources) == {"Run": ["app/a.py", "app/b.py"]}
 
 
 def test_package_files_hold_a_docstring_only() -> None:

@@ -59,7 +59,7 @@ def test_info_tells_what_a_file_holds():
     assert reported["waveforms"] is False
 
 
-def test_an_image_is_written_with_a_row_for_each_turn(project, tmp_path):
+def test_an_image_is_written_with_a_row_for_each_revolution(project, tmp_path):
     import cv2
 
     out = tmp_path / "画像.png"

@@ -230,10 +230,10 @@ def test_the_import_form_offers_the_trajectory_beside_the_points(surveyor, deliv
     surveyor.bot.waitUntil(box.isVisible, timeout=WAIT_MS)
     assert box.isChecked()
     assert "trajectory.csv" in box.text()
-    wishes = []
-    form.import_requested.connect(wishes.append)
+    requests = []
+    form.import_requested.connect(requests.append)
     buttons = form.findChild(QDialogButtonBox)
     with surveyor.bot.waitSignal(surveyor.document.drive_results.taken, timeout=WAIT_MS):
         buttons.accepted.emit()
-    assert wishes[0].files == (delivery / "left.laz", delivery / "trajectory.csv")
+    assert requests[0].files == (delivery / "left.laz", delivery / "trajectory.csv")
     assert surveyor.drive.trajectory is not None

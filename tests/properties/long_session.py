@@ -30,23 +30,23 @@ def main() -> int:
     wanted.add_argument("--actions", type=int, default=5000)
     wanted.add_argument("--seed", type=int, default=0)
     wanted.add_argument("--told-each", type=int, default=500)
-    wishes = wanted.parse_args()
+    options = wanted.parse_args()
     with TemporaryDirectory(prefix="zuka-session-") as folder:
         home = Path(folder)
         street = make_sample_project(home / "street.zuka")
-        choice = random.Random(wishes.seed)  # noqa: S311 - chance, no secret
+        choice = random.Random(options.seed)  # noqa: S311 - chance, no secret
         started = time.perf_counter()
         with Session.on(street, home / "work") as session:
-            for number in range(1, wishes.actions + 1):
+            for number in range(1, options.actions + 1):
                 action = any_action(choice)
                 try:
                     session.do(action, choice)
                     if number % _CHECKED_EACH == 0:
                         session.check_all()
                 except BaseException:
-                    _report(f"action {number} of seed {wishes.seed}: {action.__name__}")
+                    _report(f"action {number} of seed {options.seed}: {action.__name__}")
                     raise
-                if number % wishes.told_each == 0:
+                if number % options.told_each == 0:
                     passed = time.perf_counter() - started
                     _report(f"{number} actions, {passed:.0f} s, {_counted(session)}")
             _report(str(dict(session.done.most_common())))

@@ -54,7 +54,7 @@ class OffsetForm(QWidget):
         self._view = view
         self._language = language
         self._camera = ""
-        self._trial: dict[str, CameraOffset] = {}
+        self._tried: dict[str, CameraOffset] = {}
         self._pixel: tuple[CameraImage, tuple[float, float]] | None = None
         self._pairs: dict[str, list[PixelPair]] = {}
         self._title = QLabel(self)
@@ -83,12 +83,12 @@ class OffsetForm(QWidget):
         """Show images as they are kept; what was not saved is dropped, pairs stay."""
         self._points.setChecked(False)
         self._pixel = None
-        self._trial = {}
+        self._tried = {}
         self._view.try_offsets({})
 
     def show_kept(self) -> None:
         """What was to be saved is kept now: nothing is tried out any more."""
-        self._trial = {}
+        self._tried = {}
         self._view.try_offsets({})
         self._show()
 
@@ -177,7 +177,7 @@ class OffsetForm(QWidget):
         self._title.setText(
             self.tr("Camera “{name}”: added to what was delivered").format(name=taken.camera)
         )
-        offset = self._trial.get(taken.camera, self._kept(taken))
+        offset = self._tried.get(taken.camera, self._kept(taken))
         for name, field in self._fields.items():
             with QSignalBlocker(field):
                 field.setValue(getattr(offset, name))
@@ -207,7 +207,7 @@ class OffsetForm(QWidget):
         self._facts.setText("   ".join(words))
         self._facts.setVisible(bool(words))
         self._reset.setEnabled(not offset.is_zero)
-        self._save.setEnabled(bool(self._trial) and self._trial != self._all_kept(self._trial))
+        self._save.setEnabled(bool(self._tried) and self._tried != self._all_kept(self._tried))
 
     def _all_kept(self, cameras: Mapping[str, CameraOffset]) -> dict[str, CameraOffset]:
         kept: dict[str, CameraOffset] = {}
@@ -216,8 +216,8 @@ class OffsetForm(QWidget):
         return {camera: kept.get(camera, NO_OFFSET) for camera in cameras}
 
     def _try(self, offset: CameraOffset) -> None:
-        self._trial[self._camera] = offset
-        self._view.try_offsets(self._trial)
+        self._tried[self._camera] = offset
+        self._view.try_offsets(self._tried)
         self._show()
 
     def _on_fields_changed(self) -> None:
@@ -228,7 +228,7 @@ class OffsetForm(QWidget):
         self._try(NO_OFFSET)
 
     def _on_save_clicked(self) -> None:
-        self.save_requested.emit(dict(self._trial))
+        self.save_requested.emit(dict(self._tried))
         self._show()
 
     def _on_view_pixel_pointed(self, image: CameraImage, pixel: tuple[float, float]) -> None:

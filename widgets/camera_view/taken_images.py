@@ -42,7 +42,7 @@ class TakenImages:
     ----------
     drives : tuple of Drive
         Drives of one import share their images.
-    trial : mapping of str to CameraOffset
+    tried : mapping of str to CameraOffset
         Offsets by camera that are tried out in place of those that are kept.
 
     Attributes
@@ -54,12 +54,12 @@ class TakenImages:
         Why they can't belong to the points, if they are far away.
     """
 
-    def __init__(self, drives: tuple[Drive, ...], trial: Mapping[str, CameraOffset]) -> None:
+    def __init__(self, drives: tuple[Drive, ...], tried: Mapping[str, CameraOffset]) -> None:
         self.drives = drives
         found: dict[CameraImage, TakenImage] = {}
         for drive in drives:
             delivered = drive.delivered_images or ImageList(())
-            offsets = {**drive.camera_offsets, **trial}
+            offsets = {**drive.camera_offsets, **tried}
             images = apply_offsets(delivered, offsets, drive.trajectory if offsets else None)
             for before, image in zip(delivered, images, strict=True):
                 if before not in found:

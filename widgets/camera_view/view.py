@@ -77,7 +77,7 @@ class CameraView(PlaneView):
         language: Language = "en",
     ) -> None:
         super().__init__(source, shared, parent, language=language)
-        self._trial: Mapping[str, CameraOffset] = {}
+        self._tried: Mapping[str, CameraOffset] = {}
         self._projection: CameraProjection | None = None
         self._name = ""
         self._whole_scale = 0.0
@@ -110,14 +110,14 @@ class CameraView(PlaneView):
     def read_images(self) -> None:
         """Take over the images of all drives, as they are kept now."""
         self._image_loader.forget_troubles()
-        self.showing.use(TakenImages(tuple(self._source.drives()), self._trial))
+        self.showing.use(TakenImages(tuple(self._source.drives()), self._tried))
         self.showing.look_at(self._shared.cursor.position)
         self._show()
 
-    def try_offsets(self, trial: Mapping[str, CameraOffset]) -> None:
+    def try_offsets(self, tried: Mapping[str, CameraOffset]) -> None:
         """Show images with these offsets, by camera, without keeping them; empty: as kept."""
-        self._trial = dict(trial)
-        self.showing.use(TakenImages(tuple(self._source.drives()), self._trial))
+        self._tried = dict(tried)
+        self.showing.use(TakenImages(tuple(self._source.drives()), self._tried))
         self.showing.stay(self.showing.position)
         self._show()
 

@@ -178,14 +178,14 @@ class StartPage(QWidget):
     def _buttons(self) -> QHBoxLayout:
         row = QHBoxLayout()
         row.setSpacing(8)
-        wishes = (
+        choices = (
             (self.tr("Import a delivery…"), self.import_requested),
             (self.tr("Open a project…"), self.open_requested),
             (self.tr("Sample street"), self.demo_requested),
             (self.tr("Simulate a recording…"), self.simulation_requested),
         )
         buttons = []
-        for words, request in wishes:
+        for words, request in choices:
             button = QPushButton(words, self)
             button.setAutoDefault(True)  # Enter presses it, as Space does
             button.clicked.connect(_without_argument(request.emit))

@@ -2,25 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 
+import numpy as np
 from PySide6.QtCore import QPointF, Qt, Signal
 from PySide6.QtGui import QCloseEvent, QKeyEvent
 from PySide6.QtWidgets import QVBoxLayout, QWidget
 from typing_extensions import override
 
 from processing.core.text import Language, Text
+from processing.image.search.nearest import nearest_point
+from processing.map.catalogue import Catalogue, Geometry
+from processing.map.feature import Feature, Status
+from processing.recording.drive import Drive
 from processing.section.cut import Cut
-from processing.section.profile import SectionProfile, profile_of
+from processing.section.points_in_cut import ground_near
+from processing.section.profile import DrawnLine, SectionProfile, profile_of
 from widgets.mouse_tools.mouse_tool import MouseTool
 from widgets.section_view.bar import SectionBar
-from widgets.section_view.drawn_lines import drawn_lines
-from widgets.section_view.ground_position import position_of_step
 from widgets.section_view.lines import SectionLines
 from widgets.section_view.live import LiveLine
 from widgets.section_view.pane import SectionPane
 from widgets.section_view.panes import SectionPanes
+from widgets.section_view.picture.point_search import can_search, position_of
 from widgets.section_view.picture.section_position import SectionPosition
 from widgets.section_view.picture.settings import SectionSettings
 from widgets.section_view.picture.titles import line_title
@@ -28,6 +33,10 @@ from widgets.section_view.pinned import PinnedSections
 from widgets.shared.cursor import PickedPosition
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
+
+_SAME_M = 0.1
+
+_UNKNOWN_LAYER, _UNKNOWN_ACI = "0", 7
 
 NO_LINE = Text(
     "Select a line first: the section then stands on it.",
@@ -386,3 +395,41 @@ class SectionView(QWidget):
     def _take_down(self) -> None:
         self._live.stop()
         self._panes.take_down()
+
+
+def drawn_lines(features: Iterable[Feature], catalogue: Catalogue) -> tuple[DrawnLine, ...]:
+    """The features that nobody rejected, by the layer and the colour of their kind."""
+    return tuple(
+        _line_of(feature, catalogue)
+        for feature in features
+        if feature.status is not Status.REJECTED
+    )
+
+
+def _line_of(feature: Feature, catalogue: Catalogue) -> DrawnLine:
+    name, layer, aci = Text.same(feature.kind), _UNKNOWN_LAYER, _UNKNOWN_ACI
+    if feature.kind in catalogue:
+        kind = catalogue[feature.kind]
+        name, layer, aci = kind.name, kind.layer, kind.aci
+    positions = np.array([vertex.xyz for vertex in feature.vertices])
+    return DrawnLine(name, layer, aci, positions, is_closed=feature.geometry is Geometry.AREA)
+
+
+def position_of_step(standing: SectionPosition, drives: Sequence[Drive]) -> PickedPosition:
+    """The line's own place, or the measured point that stands for it.
+
+    Below a trajectory it is a point of the ground; on a drawn line one within a decimetre. Drives
+    whose tiles aren't there yet are not waited for.
+    """
+    cut = standing.turned(is_along=False).cut
+    own = sorted(drives, key=lambda drive: drive.id != standing.line.drive)
+    for drive in own:
+        if not can_search(drive):
+            continue
+        if standing.line.feature:
+            point = nearest_point(drive, np.array(cut.middle), _SAME_M)
+        else:
+            point = ground_near(drive, replace(cut, width_m=min(cut.width_m, 1.0)))
+        if point >= 0:
+            return position_of(drive, point)
+    return PickedPosition(cut.middle)

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+from xml.etree import ElementTree as ET
 
 import numpy as np
 
@@ -23,12 +24,14 @@ from processing.formats.drawings.dxf_document import (
     check_one_of,
 )
 from processing.formats.drawings.dxf_labels import LABEL_HEIGHT_M, label_of
-from processing.formats.drawings.dxf_symbols import add_symbol_block
 from processing.formats.drawings.dxf_text import dxf_strings, dxf_text
 from processing.formats.map_delivery import DxfOptions, MapDelivery
 from processing.map.catalogue import LINE_TYPES, Catalogue, FeatureKind, Geometry
 from processing.map.feature import AttributeValue, Feature, Position, Status
 from processing.map.solids import solid_of, thickness_of
+from resources import path_of
+
+_SVG = "{http://www.w3.org/2000/svg}"
 
 CANDIDATE_SUFFIX = "_候補"
 LABEL_SUFFIX = "_文字"
@@ -284,3 +287,31 @@ def _tags(value: AttributeValue, encoding: str) -> list[tuple[int, Any]]:
 def _refusal(feature: Feature, what: Text, remedy: Text) -> Unsuitable:
     where = Text(f"{feature.kind}, feature {feature.id}", f"{feature.kind}、地物 {feature.id}")
     return Unsuitable(what, where, remedy)
+
+
+def add_symbol_block(doc: Any, symbol: str) -> str:  # an ezdxf drawing; ezdxf is not typed here
+    """Give the name of the block for a symbol; it is made if the drawing lacks it.
+
+    The SVG's unit is a metre on the ground at 1:500, its y axis looks south; what has a direction
+    looks north. Lines, polylines, polygons and circles are drawn, by the layer's colour.
+    """
+    name = f"ZUKA_{symbol.upper()}"
+    if name in doc.blocks:
+        return name
+    block = doc.blocks.new(name)
+    # The file comes with the program.
+    root = ET.parse(path_of(f"symbols/{symbol}.svg")).getroot()  # noqa: S314
+    looks = {"layer": "0", "color": 0, "linetype": "BYBLOCK"}
+    for shape in root.iter():
+        match shape.tag.removeprefix(_SVG):
+            case "circle":
+                x, y, radius = (float(shape.attrib[key]) for key in ("cx", "cy", "r"))
+                block.add_circle((x, -y), radius, dxfattribs=looks)
+            case "line":
+                x1, y1, x2, y2 = (float(shape.attrib[key]) for key in ("x1", "y1", "x2", "y2"))
+                block.add_line((x1, -y1), (x2, -y2), dxfattribs=looks)
+            case "polyline" | "polygon" as tag:
+                pairs = [pair.split(",") for pair in shape.attrib["points"].split()]
+                points = [(float(x), -float(y)) for x, y in pairs]
+                block.add_lwpolyline(points, close=tag == "polygon", dxfattribs=looks)
+    return name

@@ -43,7 +43,7 @@ _LEAST_POINTS = 20
 _CURB_FROM_M, _CURB_TO_M, _CURB_PIECE_M, _ALONE_PX = 3.0, 12.0, 0.5, 8.0
 _POLE_TO_M, _POLE_HEIGHTS_M = 20.0, (0.7, 1.7)
 _CLICK_TO_M = 30.0
-_FORETOLD_M, _NOISE_PX, _TRIALS = 0.1, 0.5, 50
+_FORETOLD_M, _NOISE_PX, _REPETITIONS = 0.1, 0.5, 50
 
 
 @dataclass(frozen=True)
@@ -245,7 +245,7 @@ def _stereo_noisy(photographs: list[Photograph], signs: list[TruePlate]) -> Iter
     for plate in signs:
         middle = plate.xyz + 0.05 * plate.normal
         cameras = [p.camera for p in photographs if p.sees(middle[None])]
-        for _ in range(_TRIALS):
+        for _ in range(_REPETITIONS):
             noisy = [
                 (camera, camera.pixels_of(plate.xyz[None])[0] + random.normal(0, _NOISE_PX, 2))
                 for camera in cameras

@@ -74,7 +74,7 @@ def test_reversible_rows_have_one_length_and_begin_anew_after_a_stop() -> None:
     assert rows[165] == 2
 
 
-def test_trajectory_based_reversible_rows_are_as_wide_as_their_turns() -> None:
+def test_trajectory_based_reversible_rows_are_as_wide_as_their_revolutions() -> None:
     image = image_of(ImageKind.TRAJECTORY_REVERSIBLE, np.arange(100, 540))
     assert image.row_widths.tolist() == [110, 110, 108, 112]
     assert image.width == 112
@@ -154,7 +154,7 @@ def test_an_image_without_points_is_empty() -> None:
 
 
 @pytest.mark.parametrize("kind", [ImageKind.TRAJECTORY_REVERSIBLE, ImageKind.FEATURE_CENTER])
-def test_rows_of_a_street_are_its_turns(kind: ImageKind) -> None:
+def test_rows_of_a_street_are_its_revolutions(kind: ImageKind) -> None:
     street = simulated_drive(3, length_m=3.0, multi_return_share=0.1)
     image = PointCloudImage(kind, street.pulse, true_revolutions(street))
     rows, columns = image.pixel_of(np.arange(street.count))

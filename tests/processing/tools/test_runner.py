@@ -76,7 +76,7 @@ def test_a_tool_gives_what_it_declares_and_the_drive_can_store_it(drive: Drive, 
 
 
 @pytest.mark.parametrize("name", list(point_tools()))
-def test_a_tool_runs_on_a_cloud_without_turns(drive: Drive, name: str) -> None:
+def test_a_tool_runs_on_a_cloud_without_revolutions(drive: Drive, name: str) -> None:
     flat = without_revolutions(drive)
     assert flat.image_kinds == (ImageKind.TOP_VIEW,)
     result = run(
@@ -109,7 +109,7 @@ def test_an_unknown_tool_is_refused_with_the_known_ones() -> None:
     assert "normals" in refusal.value.remedy.en
 
 
-def test_a_tool_that_needs_turns_refuses_a_cloud_without_them(drive: Drive) -> None:
+def test_a_tool_that_needs_revolutions_refuses_a_cloud_without_them(drive: Drive) -> None:
     flat = without_revolutions(drive)
     tool = dataclasses.replace(NORMALS, needs=Needs.REVOLUTIONS)
     with pytest.raises(Unsuitable) as refusal:

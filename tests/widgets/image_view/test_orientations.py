@@ -36,7 +36,7 @@ def turn(user: ImageViewUser, orientation: ImageOrientation) -> None:
 
 
 @every_orientation
-def test_a_vertex_clicked_has_the_same_coordinate_in_every_lay(
+def test_a_vertex_clicked_has_the_same_coordinate_in_every_orientation(
     user: ImageViewUser, orientation: ImageOrientation
 ) -> None:
     turn(user, orientation)
@@ -51,7 +51,7 @@ def test_a_vertex_clicked_has_the_same_coordinate_in_every_lay(
 
 
 @every_orientation
-def test_a_vertex_under_the_mouse_is_hit_in_every_lay(
+def test_a_vertex_under_the_mouse_is_hit_in_every_orientation(
     user: ImageViewUser, orientation: ImageOrientation
 ) -> None:
     points = user.points_across(3)
@@ -63,7 +63,7 @@ def test_a_vertex_under_the_mouse_is_hit_in_every_lay(
 
 
 @every_orientation
-def test_the_street_runs_as_the_lay_says(
+def test_the_street_runs_as_the_orientation_says(
     user: ImageViewUser, orientation: ImageOrientation
 ) -> None:
     turn(user, orientation)
@@ -97,7 +97,7 @@ def test_what_is_painted_turns_with_the_picture(
 
 
 @every_orientation
-def test_a_box_holds_the_same_points_in_every_lay(
+def test_a_box_holds_the_same_points_in_every_orientation(
     user: ImageViewUser, orientation: ImageOrientation
 ) -> None:
     points = user.points_across(3)

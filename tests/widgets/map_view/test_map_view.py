@@ -114,7 +114,7 @@ def test_the_picture_is_never_blank_while_the_wheel_turns(user: MapViewUser) -> 
         assert sum(pixel != BACKGROUND for pixel in pixels) > 0.02 * len(pixels)
 
 
-def test_a_wish_that_is_overtaken_still_ends_in_a_sharp_picture(user: MapViewUser) -> None:
+def test_a_request_that_is_overtaken_still_ends_in_a_sharp_picture(user: MapViewUser) -> None:
     with user.qtbot.waitSignal(user.view.sharpened, timeout=30_000):
         for _ in range(12):
             user.view.set_viewport(user.view.viewport.panned(5.0, 3.0))

@@ -11,8 +11,7 @@ from PySide6.QtWidgets import QLineEdit, QTreeWidget, QWidget
 from pytestqt.qtbot import QtBot
 
 from processing.core.text import Text
-from widgets.parts.command_palette import CommandPalette, NamedAction
-from widgets.parts.name_match import match_rank
+from widgets.parts.command_palette import CommandPalette, NamedAction, match_rank
 
 NAMES = (
     ("open", Text("Open project", "プロジェクトを開く")),

@@ -192,10 +192,10 @@ def test_another_project_is_shown_whole(user: SceneViewUser) -> None:
 
 
 def test_the_menu_offers_what_can_be_shown(user: SceneViewUser) -> None:
-    wishes: list[MenuRequest] = []
-    user.view.menu_requested.connect(wishes.append)
+    requests: list[MenuRequest] = []
+    user.view.menu_requested.connect(requests.append)
     user.click(QPoint(300, 300), button=RIGHT)
-    menu = wishes[0].menu
+    menu = requests[0].menu
     (part,) = (one for one in menu.findChildren(QMenu) if one.title() == "Show only")
     choices = {action.text(): action for action in part.actions() if action.text()}
     assert {text for text, action in choices.items() if action.isEnabled()} == {

@@ -332,10 +332,10 @@ def test_chosen_points_are_marked(user: SceneViewUser) -> None:
 
 
 def test_the_right_button_opens_a_menu_when_nothing_is_being_drawn(user: SceneViewUser) -> None:
-    wishes: list[MenuRequest] = []
-    user.view.menu_requested.connect(wishes.append)
+    requests: list[MenuRequest] = []
+    user.view.menu_requested.connect(requests.append)
     user.click(MIDDLE, button=RIGHT)
-    (request,) = wishes
+    (request,) = requests
     assert len(request.menu.actions()) >= 5
     assert request.where == user.view.mapToGlobal(MIDDLE)
     request.menu.popup(request.where)

@@ -88,9 +88,9 @@ class LimitsBox(QComboBox):
             self.work_type_chosen.emit(self._chosen)
             return
         self._choose()  # nothing else counts before there is a table
-        wishes = {
+        signals = {
             _Other.FILE: self.table_wanted,
             _Other.BUNDLED: self.bundled_wanted,
             _Other.COPY: self.copy_wanted,
         }
-        wishes[data].emit()
+        signals[data].emit()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import shutil
 import tempfile
 from pathlib import Path
 
@@ -11,8 +12,11 @@ from processing.laboratory.bench.cases.large_import import import_watched, measu
 from processing.laboratory.bench.cases.large_window import window_rows
 from processing.laboratory.bench.cases.start_case import no_window
 from processing.laboratory.bench.large_street import write_long_delivery
-from processing.laboratory.bench.project_copy import link_project
 from processing.laboratory.bench.watched_run import run_watched
+from processing.project.store.project_lock import LOCK_FILES
+
+_CHANGING = "label.bin"
+_COMPUTED = "tile_bounds_*.npy"
 
 _POINTS = 300_000_000
 _POINTS_PER_FILE = 30_000_000
@@ -52,3 +56,34 @@ def measure_large(options: BenchmarkOptions) -> tuple[Measurement, ...]:
             raise RuntimeError(run.complaints)
         steps = [json.loads(line) for line in run.lines if line.startswith("{")]
         return rows + window_rows(run, steps)
+
+
+def link_project(folder: Path, copy: Path) -> None:
+    """Make a project beside another one, which stays as it is.
+
+    Columns are hard links where the disk allows it, otherwise symbolic ones; nothing writes into
+    a column. Facts on tiles are left out, so that the copy is opened as if for the first time.
+
+    Parameters
+    ----------
+    folder : Path
+        The project.
+    copy : Path
+        Does not exist.
+    """
+
+    def ignored(_: str, names: list[str]) -> list[str]:
+        return [name for name in names if name in LOCK_FILES or Path(name).match(_COMPUTED)]
+
+    shutil.copytree(folder, copy, ignore=ignored, copy_function=_link_or_copy)
+
+
+def _link_or_copy(source: str, target: str) -> None:
+    path, new = Path(source).resolve(), Path(target)
+    if path.suffix != ".bin" or path.name == _CHANGING:
+        shutil.copy2(path, new)
+        return
+    try:
+        new.hardlink_to(path)
+    except OSError:  # another disk, or one that knows no hard links
+        new.symlink_to(path)

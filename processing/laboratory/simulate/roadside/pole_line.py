@@ -139,14 +139,14 @@ def _pole_line(seed: int, style: Style, length_m: float) -> PoleLine:
         beside = [by_number.get(plan.index + one) for one in (-1, 1)]
         sides = [None if one is None else one.side(side) for one in beside]
         near = free_from_m(plan.side(side), *sides)
-        pole = _pole(seed, number, plan, _Wish(side, at, high, of_walk, near))
+        pole = _pole(seed, number, plan, _PoleOptions(side, at, high, of_walk, near))
         if pole is not None:
             poles.append(pole)
     return PoleLine(tuple(poles), cables)
 
 
 @dataclass(frozen=True)
-class _Wish:
+class _PoleOptions:
     side: int
     chainage_m: float
     high_m: float
@@ -154,7 +154,7 @@ class _Wish:
     near_m: float
 
 
-def _pole(seed: int, number: int, plan: SectionPlan, options: _Wish) -> LinePole | None:
+def _pole(seed: int, number: int, plan: SectionPlan, options: _PoleOptions) -> LinePole | None:
     random = chance(seed, "utility pole", number)
     side = plan.side(options.side)
     at = float(np.clip(options.chainage_m, plan.start_m + _END_GAP_M, plan.end_m - _END_GAP_M))

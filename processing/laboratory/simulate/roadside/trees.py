@@ -93,7 +93,7 @@ def add_tree(
         shape, pieces = stem_shape(stem)
         girths.append(girth_of_stem_m(stem, shape))
         built.mesh.add((shape[0] + foot, shape[1]), Material.BARK, TRUNK, instance, piece=pieces)
-    crown = _crown_wish(random, options, leaf_share(section, growth))
+    crown = _crown_options(random, options, leaf_share(section, growth))
     keeps = _clear_of_road(section, spot)
     branches, leafy = branches_of(random, growth, stems, crown, keeps)
     leaves = leaves_of(random, growth, leafy, crown, keeps)
@@ -161,7 +161,7 @@ def _stems(random: Generator, options: TreeOptions) -> list[Stem]:
     return stems
 
 
-def _crown_wish(random: Generator, options: TreeOptions, share: float) -> CrownOptions:
+def _crown_options(random: Generator, options: TreeOptions, share: float) -> CrownOptions:
     growth = options.growth
     base = max(
         options.high_m * float(random.uniform(*growth.base)), min(1.6, options.high_m * 0.45)

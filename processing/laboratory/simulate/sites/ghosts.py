@@ -143,7 +143,7 @@ def ghosts_of(
     parts = [_dust(random, beams, met, cloud) for cloud in ghost_sources.dust]
     parts.append(_mirrored(random, beams, met, *seen))
     parts.append(_twice(random, beams, met, ghost_sources))
-    parts.append(_tails(random, beams, met, ghost_sources))
+    parts.append(_mixed_points(random, beams, met, ghost_sources))
     parts.append(_in_the_air(random, met, ghost_sources))
     parts += [_arc(random, beams, arc) for arc in ghost_sources.arcs]
     rays = np.concatenate([one.rays for one in parts])
@@ -254,7 +254,9 @@ def _twice(random: Generator, beams: Beams, met: BeamHits, ghost_sources: GhostS
     return _ghosts(rays, ranges, 0.03 * (10 / ranges) ** 2)
 
 
-def _tails(random: Generator, beams: Beams, met: BeamHits, ghost_sources: GhostSources) -> Ghosts:
+def _mixed_points(
+    random: Generator, beams: Beams, met: BeamHits, ghost_sources: GhostSources
+) -> Ghosts:
     """Ranges between an edge and what lies behind it, of beams that meet both."""
     here, beside = met.ranges[:-1], met.ranges[1:]
     rays = np.flatnonzero(np.isfinite(here) & np.isfinite(beside))

@@ -194,10 +194,10 @@ def test_the_page_has_every_table_and_the_plot_is_a_picture(tmp_path: Path) -> N
 
 
 def test_streets_take_turns_and_stay_the_same_for_a_seed() -> None:
-    wishes = [options_of(number, 401 + number) for number in range(12)]
-    assert {one.style for one in wishes} == {"urban", "rural", "highway"}
-    assert len({one.sensor for one in wishes}) == 5
-    assert sum(one.passes == 2 for one in wishes) == 3
+    requests = [options_of(number, 401 + number) for number in range(12)]
+    assert {one.style for one in requests} == {"urban", "rural", "highway"}
+    assert len({one.sensor for one in requests}) == 5
+    assert sum(one.passes == 2 for one in requests) == 3
     assert TOOLS == ("curbs", "gutters")
 
 

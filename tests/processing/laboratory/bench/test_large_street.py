@@ -32,7 +32,7 @@ def test_times_go_on_from_file_to_file_and_the_trajectory_covers_them(tmp_path: 
         last = times[-1]
 
 
-def test_files_of_two_scanners_become_two_drives_with_unbroken_turns(tmp_path: Path) -> None:
+def test_files_of_two_scanners_become_two_drives_with_unbroken_revolutions(tmp_path: Path) -> None:
     points = 2 * 2 * sample_points()
     delivery = write_long_delivery(tmp_path, points, files=2)
     request = ImportRequest(delivery.clouds, (delivery.trajectory,))

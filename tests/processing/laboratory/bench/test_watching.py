@@ -7,8 +7,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+from processing.laboratory.bench.cases.large_case import link_project
 from processing.laboratory.bench.memory_watch import MemorySample, MemoryWatch, memory_of_tree
-from processing.laboratory.bench.project_copy import link_project
 from processing.project.project import Project
 
 HOLDING = (

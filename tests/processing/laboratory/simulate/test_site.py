@@ -129,7 +129,7 @@ def test_a_folder_with_files_is_refused_and_stays_as_it_is(tmp_path: Path) -> No
 @pytest.mark.parametrize(
     "wrong", [{"length_m": 5.0}, {"style": "harbour"}, {"sensor": "vq250"}, {"stations": 13}]
 )
-def test_a_wish_beyond_its_limits_is_refused(tmp_path: Path, wrong: dict[str, object]) -> None:
+def test_a_request_beyond_its_limits_is_refused(tmp_path: Path, wrong: dict[str, object]) -> None:
     with pytest.raises(OutOfRange):
         simulate_site(dataclasses.replace(REQUEST, **wrong), tmp_path / "site", SilentMonitor())
     assert list(tmp_path.iterdir()) == []

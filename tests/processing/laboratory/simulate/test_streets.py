@@ -18,7 +18,7 @@ from processing.laboratory.simulate.requests import StreetRequest
 from processing.laboratory.simulate.streets import simulate_street
 from processing.laboratory.simulate.truth import TRUTH_FILES
 
-_WISH = StreetRequest(
+_REQUEST = StreetRequest(
     seed=11, length_m=15.0, sensor="vq250", pulses=500, turns_per_s=40.0, images=False
 )
 DeliveryMaker = Callable[[StreetRequest], Path]
@@ -46,13 +46,13 @@ def _files(folder: Path) -> dict[str, bytes]:
 
 
 def test_the_same_seed_gives_the_same_bytes(made: DeliveryMaker, tmp_path: Path) -> None:
-    simulate_street(_WISH, tmp_path / "again", SilentMonitor())
-    assert _files(made(_WISH)) == _files(tmp_path / "again")
+    simulate_street(_REQUEST, tmp_path / "again", SilentMonitor())
+    assert _files(made(_REQUEST)) == _files(tmp_path / "again")
 
 
 def test_another_seed_gives_another_street(made: DeliveryMaker) -> None:
     one, other = (
-        laspy.read(made(request) / "left.laz") for request in (_WISH, replace(_WISH, seed=12))
+        laspy.read(made(request) / "left.laz") for request in (_REQUEST, replace(_REQUEST, seed=12))
     )
     assert not np.array_equal(one.x[:1000], other.x[:1000])
 
@@ -60,7 +60,7 @@ def test_another_seed_gives_another_street(made: DeliveryMaker) -> None:
 def test_a_longer_street_begins_like_a_shorter_one(made: DeliveryMaker) -> None:
     short, long = (
         laspy.read(made(request) / "right.laz")
-        for request in (_WISH, replace(_WISH, length_m=25.0))
+        for request in (_REQUEST, replace(_REQUEST, length_m=25.0))
     )
     same = int(0.95 * len(short.points))
     assert len(long.points) > 1.3 * len(short.points)
@@ -68,7 +68,7 @@ def test_a_longer_street_begins_like_a_shorter_one(made: DeliveryMaker) -> None:
 
 
 def test_files_are_as_deliveries_are(made: DeliveryMaker) -> None:
-    folder = made(_WISH)
+    folder = made(_REQUEST)
     trajectory = read_trajectory_csv(folder / "trajectory.csv")
     for number, name in enumerate(("left", "right"), start=1):
         points = laspy.read(folder / f"{name}.laz")
@@ -86,7 +86,7 @@ def test_files_are_as_deliveries_are(made: DeliveryMaker) -> None:
 
 def test_beams_leave_from_where_the_trajectory_says(made: DeliveryMaker) -> None:
     """Seen from the head, pulses of one turn lie in the plane square to its axis."""
-    folder = made(_WISH)
+    folder = made(_REQUEST)
     trajectory = read_trajectory_csv(folder / "trajectory.csv")
     head = json.loads((folder / "truth" / "scene.json").read_text())["heads"]["left"]
     points = laspy.read(folder / "left.laz")
@@ -98,10 +98,10 @@ def test_beams_leave_from_where_the_trajectory_says(made: DeliveryMaker) -> None
 
 
 def test_every_point_has_its_truth(made: DeliveryMaker) -> None:
-    truth = made(_WISH) / "truth"
+    truth = made(_REQUEST) / "truth"
     kinds = json.loads((truth / "instance_kinds.json").read_text())
     for name in ("left", "right"):
-        count = len(laspy.read(made(_WISH) / f"{name}.laz").points)
+        count = len(laspy.read(made(_REQUEST) / f"{name}.laz").points)
         labels = np.load(truth / f"{name}.labels.npy")
         instances = np.load(truth / f"{name}.instances.npy")
         assert labels.shape == instances.shape == (count,)
@@ -113,7 +113,7 @@ def test_every_point_has_its_truth(made: DeliveryMaker) -> None:
 
 
 def test_counts_of_the_truth_are_those_of_the_points(made: DeliveryMaker) -> None:
-    truth = made(_WISH) / "truth"
+    truth = made(_REQUEST) / "truth"
     instances = np.concatenate(
         [np.load(truth / f"{one}.instances.npy") for one in ("left", "right")]
     )
@@ -131,7 +131,7 @@ def test_counts_of_the_truth_are_those_of_the_points(made: DeliveryMaker) -> Non
 
 
 def test_a_second_pass_is_another_delivery_of_the_same_street(made: DeliveryMaker) -> None:
-    folder = made(replace(_WISH, passes=2))
+    folder = made(replace(_REQUEST, passes=2))
     assert {one.name for one in folder.glob("*.laz")} == {
         "left.laz",
         "right.laz",
@@ -146,7 +146,7 @@ def test_a_second_pass_is_another_delivery_of_the_same_street(made: DeliveryMake
 
 
 def test_phase_scanners_record_too(made: DeliveryMaker) -> None:
-    folder = made(replace(_WISH, sensor="zf9012", style="rural"))
+    folder = made(replace(_REQUEST, sensor="zf9012", style="rural"))
     points = laspy.read(folder / "scan.laz")
     assert (points.number_of_returns == 1).all()
     assert len(points.points) > 5000
@@ -155,7 +155,7 @@ def test_phase_scanners_record_too(made: DeliveryMaker) -> None:
 def test_the_shortest_and_fastest_pass_of_the_slowest_sensor_is_recorded(
     made: DeliveryMaker,
 ) -> None:
-    request = replace(_WISH, style="highway", length_m=10.0, speed_km_h=130.0, pulses=1)
+    request = replace(_REQUEST, style="highway", length_m=10.0, speed_km_h=130.0, pulses=1)
     folder = made(replace(request, turns_per_s=0.5))
     assert len(laspy.read(folder / "left.laz").points) <= 4
 
@@ -170,14 +170,14 @@ def test_a_stopped_simulation_leaves_nothing(tmp_path: Path) -> None:
                 raise Cancelled
 
     with pytest.raises(Cancelled):
-        simulate_street(_WISH, tmp_path / "street", Stopping())
+        simulate_street(_REQUEST, tmp_path / "street", Stopping())
     assert not list(tmp_path.iterdir())
 
 
-def test_wrong_wishes_are_told(tmp_path: Path) -> None:
-    for request in (replace(_WISH, style="moon"), replace(_WISH, sensor="p40")):
+def test_wrong_requests_are_told(tmp_path: Path) -> None:
+    for request in (replace(_REQUEST, style="moon"), replace(_REQUEST, sensor="p40")):
         with pytest.raises(OutOfRange):
             simulate_street(request, tmp_path / "street", SilentMonitor())
     (tmp_path / "mine").write_text("x")
     with pytest.raises(InUse):
-        simulate_street(_WISH, tmp_path, SilentMonitor())
+        simulate_street(_REQUEST, tmp_path, SilentMonitor())

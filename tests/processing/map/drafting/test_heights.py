@@ -180,7 +180,7 @@ def test_no_drive_no_line_and_one_place(tmp_path: Path) -> None:
     assert set_on_ground(far, [drive])[0].is_occluded
 
 
-def test_a_recording_with_turns_gives_the_road_below_its_vehicle(tmp_path: Path) -> None:
+def test_a_recording_with_revolutions_gives_the_road_below_its_vehicle(tmp_path: Path) -> None:
     drive, simulated = small_drive(tmp_path / "a", 3)
     road = simulated.xyz[simulated.surface == 0]
     chosen = road[:: len(road) // 50]

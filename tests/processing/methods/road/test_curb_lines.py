@@ -98,7 +98,7 @@ def measures_of(count: int, *, across_m: float = 0.0, step_m: float = 0.15) -> F
     return measures
 
 
-def test_curbs_that_meet_at_a_corner_are_one_guide() -> None:
+def test_curbs_that_meet_at_a_corner_are_one_approximate_line() -> None:
     along = run_of(0.0, 10.0)
     ahead = along.lower[:, 0]
     # From the corner at (10, 5) into the side street, the higher ground on the left.
@@ -112,7 +112,7 @@ def test_curbs_that_meet_at_a_corner_are_one_guide() -> None:
     assert np.hypot(*(approximate_line.xyz[-1, :2] - [10.2, 15.3])) < 0.3
 
 
-def test_runs_there_and_back_are_one_guide_along_the_first_drive() -> None:
+def test_runs_there_and_back_are_one_approximate_line_along_the_first_drive() -> None:
     approximate_lines = approximate_lines_of(
         [run_of(0, 30), run_of(10, 50, drive=1, is_back=True)], 8.0
     )

@@ -170,7 +170,7 @@ def test_cancelling_leaves_nothing(street: Drive, checks: int) -> None:
     assert {path.name: path.stat().st_mtime_ns for path in street.folder.iterdir()} == before
 
 
-def test_a_cloud_without_turns_is_followed_too(tmp_path: Path) -> None:
+def test_a_cloud_without_revolutions_is_followed_too(tmp_path: Path) -> None:
     straight = simulated_drive(
         3, pulses_per_revolution=1200.0, length_m=12.0, lost_share=0.0, range_noise_m=0.0
     )

@@ -198,19 +198,19 @@ from datetime import UTC, datetime
 from pathlib import Path
 from processing.project.volumes.volume import new_volume
 from processing.project.volumes.volume_store import VolumeStore, write_volume
-from tests.processing.project.volumes.test_volume_store import large_result, wish_of_a_site
+from tests.processing.project.volumes.test_volume_store import large_result, request_of_a_site
 
 project = Path(sys.argv[1])
 result = large_result()
 while True:
-    kept = new_volume(wish_of_a_site(), result, crs="", version=1, made=datetime.now(UTC))
+    kept = new_volume(request_of_a_site(), result, crs="", version=1, made=datetime.now(UTC))
     write_volume(kept, result, project / "tmp" / kept.id)
     VolumeStore(project).add(kept, project / "tmp" / kept.id)
     print(kept.id, flush=True)
 """
 
 
-def wish_of_a_site() -> VolumeRequest:
+def request_of_a_site() -> VolumeRequest:
     """Give what was compared."""
     return _request()
 

@@ -66,7 +66,7 @@ HEADS = [
 
 
 @pytest.mark.parametrize("head", HEADS, ids=str)
-def test_every_point_gets_the_pulse_that_was_fired_and_its_turn(head):
+def test_every_point_gets_the_pulse_that_was_fired_and_its_revolution(head):
     drive = simulated_drive(11, **head)
     revolutions, pulses = found_in(drive)
     assert revolutions.method == "trajectory"
@@ -121,7 +121,7 @@ def test_a_wrong_trajectory_gives_way_to_the_points_themselves():
     assert share_at_one_distance(found[1], drive.pulse) == 1.0
 
 
-def test_a_stop_begins_a_new_segment_and_its_row_ends_with_its_own_turn():
+def test_a_stop_begins_a_new_segment_and_its_row_ends_with_its_own_revolution():
     drive = simulated_drive(3, stop_at=4.0, stop_s=3.0)
     revolutions, pulses = found_in(drive)
     assert revolutions.segments.tolist() == sorted(revolutions.segments.tolist())
@@ -147,7 +147,7 @@ def test_a_second_without_returns_is_no_stop(stop_s):
     assert share_at_one_distance(rows_of(revolutions, pulses), drive.turn) > 0.99
 
 
-def test_a_standing_vehicle_with_the_laser_on_gets_a_row_for_every_turn():
+def test_a_standing_vehicle_with_the_laser_on_gets_a_row_for_every_revolution():
     drive = simulated_drive(3, stop_at=4.0, stop_s=2.0, fires_at_stop=True)
     revolutions, pulses = found_in(drive)
     assert share_at_one_distance(rows_of(revolutions, pulses), drive.turn) > 0.99
@@ -242,7 +242,7 @@ def _swinging(drive: SimulatedDrive) -> PointColumns:
         (lambda drive: columns_of(drive).chunk(0, 300), "few"),
     ],
 )
-def test_recordings_without_turns_say_why_in_one_sentence(made, words):
+def test_recordings_without_revolutions_say_why_in_one_sentence(made, words):
     found = find_revolutions(made(simulated_drive(1)), None, SilentMonitor())
     assert isinstance(found, NoRevolutions)
     assert words in found.reason.en
@@ -250,7 +250,7 @@ def test_recordings_without_turns_say_why_in_one_sentence(made, words):
     assert found.reason.ja.endswith("。")
 
 
-def test_points_out_of_time_order_have_no_turns():
+def test_points_out_of_time_order_have_no_revolutions():
     drive = simulated_drive(1)
     drive.columns["time"] = drive.columns["time"][::-1].copy()
     found = find_revolutions(columns_of(drive), None, SilentMonitor())

@@ -216,7 +216,7 @@ def test_templates_are_renamed_removed_imported_and_exported(
     assert len(refused) == 2
 
 
-def test_the_newest_wish_for_a_look_counts(
+def test_the_newest_request_for_a_look_counts(
     qtbot: QtBot, open_map: OpenMap, store: TemplateStore
 ) -> None:
     waiting: list[tuple[Callable[[], object], Callable[[object | None], None]]] = []

@@ -14,8 +14,8 @@ from processing.laboratory.simulate.scanning.simulated_passes import Driving, Si
 from processing.laboratory.simulate.scene.mesh import Floats
 from processing.laboratory.simulate.scene.things import Mover
 from processing.laboratory.simulate.street.styles import HIGHWAY, RURAL, STYLES, URBAN
-from processing.laboratory.simulate.traffic.footprints import Footprint
 from processing.laboratory.simulate.traffic.lanes import TrafficLane
+from processing.laboratory.simulate.traffic.parked_vehicles import Footprint
 
 OWN_HALF_M = (2.4, 0.9)
 

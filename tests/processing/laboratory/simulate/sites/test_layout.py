@@ -102,6 +102,6 @@ def test_large_things_keep_apart_and_stations_keep_off_them() -> None:
     assert len(np.unique(positions, axis=0)) == 4
 
 
-def test_larger_sites_get_more_stations_and_a_wish_is_kept() -> None:
+def test_larger_sites_get_more_stations_and_a_request_is_kept() -> None:
     assert [count_for(length, 0) for length in (20, 60, 200, 500)] == [3, 5, 8, 8]
     assert count_for(60, 12) == 12

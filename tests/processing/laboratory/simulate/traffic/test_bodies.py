@@ -8,8 +8,8 @@ import pytest
 from processing.laboratory.simulate.scanning.casting import RaycastScene
 from processing.laboratory.simulate.scene.chance import chance
 from processing.laboratory.simulate.scene.materials import Material
-from processing.laboratory.simulate.traffic.footprints import Footprint
 from processing.laboratory.simulate.traffic.kinds import KINDS
+from processing.laboratory.simulate.traffic.parked_vehicles import Footprint
 
 VEHICLES = ("kei_car", "saloon", "van", "small_truck", "truck", "bus")
 
