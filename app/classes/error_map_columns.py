@@ -45,7 +45,7 @@ class ErrorMapColumns(QObject):
     Parameters
     ----------
     document : Document
-    adoption : Adoption
+    adoption : JobResultApplier
         Of whoever owns this; gives up when the project is closed.
     """
 

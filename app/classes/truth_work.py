@@ -35,7 +35,7 @@ class StudyOptions:
         Id of the truth that judges.
     fixed : tuple of (str, value)
         The other parameters.
-    varied : tuple of Varied
+    varied : tuple of VariedParameter
     is_part : bool
         Only around the points whose truth is known.
     """

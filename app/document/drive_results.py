@@ -33,7 +33,7 @@ class DriveResults(QObject):
 
     Parameters
     ----------
-    adoption : Adoption
+    adoption : JobResultApplier
     label_steps : LabelSteps
     tiles : TileCache
     shared : SharedState

@@ -1,4 +1,4 @@
-"""Adoption: what jobs give is taken over by the project they were started for, or not at all."""
+"""JobResultApplier: what jobs give is taken over by the project they were started for, or not."""
 
 from __future__ import annotations
 

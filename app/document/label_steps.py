@@ -76,7 +76,7 @@ class LabelSteps(QObject):
 
     Parameters
     ----------
-    adoption : Adoption
+    adoption : JobResultApplier
     undo_stack : UndoStack
     changed : callable
         Does a change and tells everybody; says whether it could.

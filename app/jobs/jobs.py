@@ -154,7 +154,7 @@ class JobQueue(QObject):
         ----------
         work : callable
             Called in a worker thread with a monitor; touches no widget and no project.
-        lane : Lane
+        lane : JobLane
         """
         task = _Task(uuid4().hex, work, _Stop())
         self._stops[task.id] = task.stop

@@ -94,7 +94,7 @@ class ViewDocks(QMainWindow):
 
     Parameters
     ----------
-    views : sequence of View
+    views : sequence of DockedView
     language : Language
 
     Signals

@@ -1,4 +1,4 @@
-"""Studio: a real window on the sample street, somebody's hand at it, and the camera."""
+"""ScreenshotWindow: a real window on the sample street, somebody's hand at it, and the camera."""
 
 from __future__ import annotations
 

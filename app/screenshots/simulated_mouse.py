@@ -1,4 +1,4 @@
-"""Hand: mouse and keyboard, as events that a person's would be."""
+"""SimulatedMouse: mouse and keyboard, as events that a person's would be."""
 
 from __future__ import annotations
 

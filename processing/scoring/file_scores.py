@@ -71,10 +71,10 @@ class FileScore:
     Attributes
     ----------
     tool : str
-    counts : tuple of Counts
+    counts : tuple of DetectionCounts
         Those first that the tool is judged by.
     shares : tuple of NamedShare
-    errors : tuple of Errors
+    errors : tuple of ErrorStatistics
     figures : tuple of NamedFigure
     left_out : mapping of str to int
         What was neither required nor held against the result, by what it is.

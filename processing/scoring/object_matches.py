@@ -28,7 +28,7 @@ class ObjectMatches:
 
     Attributes
     ----------
-    partners : tuple of Partner
+    partners : tuple of ObjectMatch
         Things that were asked for and found, in the truth's order.
     counts : BinaryConfusionMatrix
         Without those that were not asked for.
@@ -122,7 +122,7 @@ class Differences:
     ----------
     result, truth : MappedFile
         For messages.
-    partners : tuple of Partner
+    partners : tuple of ObjectMatch
     """
 
     result: MappedFile

@@ -58,7 +58,7 @@ class KindShare:
         What kinds they are, as the truth names it: ``kind``, ``noise``.
     kind : int
         The truth's number.
-    right : Share
+    right : ShareInterval
     """
 
     group: str

@@ -47,7 +47,7 @@ class ReliabilityBin:
         The bin's ends; the lower one is in it, of the last bin the upper one too.
     mean_confidence : float
         Of the candidates in it; NaN for an empty bin.
-    accepted : Share
+    accepted : ShareInterval
         Those that a person agreed to.
     """
 

@@ -1,4 +1,4 @@
-"""Profile: what a section shows, reduced to what is drawn: its ground line and what crosses it."""
+"""SectionProfile: what a section shows, reduced to its ground line and what crosses it."""
 
 from __future__ import annotations
 

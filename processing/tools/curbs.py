@@ -169,7 +169,7 @@ class MeasuredCurb:
 
     Attributes
     ----------
-    approximate_line : Guide
+    approximate_line : ApproximateLine
     line : CurbLine
     measured : tuple of MeasuredEdges
         Of each drive.

@@ -157,7 +157,7 @@ class CoveredGutter:
     Attributes
     ----------
     run : GutterRun
-    covers : tuple of Cover
+    covers : tuple of GutterCover
     facts : tuple of CoverFacts
         What is known of each.
     """

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import ast
+import io
 import re
+import tokenize
 from collections.abc import Iterable, Iterator, Mapping
 from importlib.metadata import packages_distributions
 from pathlib import PurePosixPath
@@ -17,6 +19,8 @@ FORMER_WORDS = {
 }
 """Words of our own that standard terms replaced: request, diagnostics, orientation …"""
 ALLOWED_PARTS = ("lay_out", "lay_stones", "what_lay_beside")  # the verb
+_TYPED = re.compile(r"^\s*\w[\w, ]* : (.*[^.\n])$", re.MULTILINE)
+_QUOTED = re.compile(r'"[^"]*"')
 DRAWERS = {"utils", "util", "helpers", "helper", "misc", "common", "manager", "managers"}
 
 
@@ -29,6 +33,19 @@ def former_words(source: str) -> list[str]:
     """Give the names of a source, of any kind, that hold a word which was replaced."""
     names = {name for node in ast.walk(ast.parse(source)) for name in _names_in(node)}
     return sorted(name for name in names if _words_of(name) & FORMER_WORDS)
+
+
+def documented_types(source: str) -> set[str]:
+    """Give the classes that docstrings name as types of parameters and attributes."""
+    nodes = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
+    docs = [
+        ast.get_docstring(one) or ""
+        for one in ast.walk(ast.parse(source))
+        if isinstance(one, nodes)
+    ]
+    types = (said[1] for doc in docs for said in _TYPED.finditer(doc))
+    words = (word for said in types for word in re.findall(r"\b[A-Z]\w+", _QUOTED.sub("", said)))
+    return {word for word in words if not word.isupper()}
 
 
 def _names_in(node: ast.AST) -> Iterator[str]:
@@ -91,6 +108,26 @@ def test_a_word_that_was_replaced_is_caught() -> None:
         "trials",
     ]
     assert former_words("class Layer:\n    def _lay_out(self): ...") == []
+
+
+def test_types_that_docstrings_name_are_there() -> None:
+    files = python_files("app", "widgets", "processing", "installer")
+    known = {word for name in files for word in re.findall(r"\w+", _code_of(text_of(name)))}
+    said = {name: documented_types(text_of(name)) - known for name in files}
+    assert {name: types for name, types in said.items() if types} == {}
+
+
+def _code_of(source: str) -> str:
+    """A source without its texts and comments."""
+    tokens = tokenize.generate_tokens(io.StringIO(source).readline)
+    return " ".join(token.string for token in tokens if token.type == tokenize.NAME)
+
+
+def test_a_type_that_a_docstring_names_is_read() -> None:
+    lines = ('"""Do it.', "", "one : Track", 'form : {"LandXML"}', "two : The end.", '"""')
+    doc = "def f():\n" + "\n".join(f"    {line}" for line in lines)
+    assert documented_types(doc) == {"Track"}
+    assert _code_of("one = Track  # Path") == "one Track"
 
 
 def test_no_public_class_stands_for_two_things() -> None:

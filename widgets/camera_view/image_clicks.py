@@ -25,7 +25,7 @@ class ImageClicks(QObject):
 
     Parameters
     ----------
-    showing : Showing
+    showing : ImageSelector
 
     Signals
     -------

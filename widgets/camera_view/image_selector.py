@@ -1,4 +1,4 @@
-"""Showing: which image is shown, of those that see the place looked at."""
+"""ImageSelector: which image is shown, of those that see the place looked at."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ class ImageSelector:
 
     Parameters
     ----------
-    image_loader : Darkroom
+    image_loader : ImageLoader
 
     Attributes
     ----------
     images : TakenImages
-    position : Place or None
+    position : PickedPosition or None
         What is looked at.
     sightings : tuple of Sighting
         The images that see it and can be read, best first.

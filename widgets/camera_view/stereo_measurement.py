@@ -31,7 +31,7 @@ class StereoMeasurement:
 
     Attributes
     ----------
-    marked : Marked or None
+    marked : MarkedPixel or None
         What was clicked first.
     """
 

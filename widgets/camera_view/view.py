@@ -53,7 +53,7 @@ class CameraView(PlaneView):
 
     Attributes
     ----------
-    showing : Showing
+    showing : ImageSelector
         Which image is shown, of those that see the place.
     clicks : ImageClicks
         Stereo, and pixels for pairs.

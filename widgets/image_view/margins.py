@@ -1,4 +1,4 @@
-"""Edges: what stands round the picture. Ruler and minimap on either side, or the empty page."""
+"""ImageMargins: what stands round the picture: ruler and minimap beside it, or the empty page."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Way: the vehicle's path on the map, with stations in metres and the direction of travel."""
+"""VehiclePath: where the vehicle went on the map, with stations and the direction of travel."""
 
 from __future__ import annotations
 

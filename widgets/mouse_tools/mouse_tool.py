@@ -48,7 +48,7 @@ class Hit:
 
     Attributes
     ----------
-    position : Place or None
+    position : PickedPosition or None
         The measured point there; None over nothing.
     feature : str
         Id of the feature under the mouse, or empty.

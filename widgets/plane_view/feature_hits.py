@@ -51,11 +51,11 @@ class PlaneHits:
 
     Parameters
     ----------
-    measured : Measured
+    measured : PointLocator
 
     Attributes
     ----------
-    projection : Lay or None
+    projection : PlaneProjection or None
     features : PlaneFeatures or None
         What is drawn.
     viewport : PlaneViewport

@@ -38,7 +38,7 @@ class LiveContent:
 
     Attributes
     ----------
-    cursor, cursor_before : Place or None
+    cursor, cursor_before : PickedPosition or None
         Where the shared cursor is and was.
     """
 

@@ -47,7 +47,7 @@ class PlaneMouse:
 
     Parameters
     ----------
-    view : Steered
+    view : NavigableView
     hits : HitSource
         What is in the picture.
     shared : SharedState

@@ -1,4 +1,4 @@
-"""Lay: how project space lies on the plane of a picture, the one thing such views differ in."""
+"""PlaneProjection: how space lies on the plane of a picture, the one thing such views differ in."""
 
 from __future__ import annotations
 

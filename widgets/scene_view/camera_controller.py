@@ -1,4 +1,4 @@
-"""Pilot: how drags, wheel and keys move the camera."""
+"""CameraController: how drags, wheel and keys move the camera."""
 
 from __future__ import annotations
 

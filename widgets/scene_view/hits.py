@@ -26,7 +26,7 @@ class SceneHits:
 
     Attributes
     ----------
-    projection : Projection
+    projection : SceneProjection
     drawn : tuple of DrawnTile
     flat : FlatShapes
         The features that are drawn.

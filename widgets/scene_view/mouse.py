@@ -1,4 +1,4 @@
-"""Hand: what mouse and keys do in the 3D picture."""
+"""SceneMouse: what mouse and keys do in the 3D picture."""
 
 from __future__ import annotations
 

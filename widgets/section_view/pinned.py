@@ -14,7 +14,7 @@ class PinnedSections:
 
     Attributes
     ----------
-    across, along : Standing
+    across, along : SectionPosition
     """
 
     across: SectionPosition

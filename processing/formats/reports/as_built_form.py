@@ -71,7 +71,7 @@ def write_as_built_form(
     Raises
     ------
     UserError
-        What :func:`processing.core.safe_write.written_safely` raises; `Cancelled`.
+        What :func:`processing.core.safe_write.write_safely` raises; `Cancelled`.
 
     References
     ----------

@@ -70,7 +70,7 @@ def write_as_built_xlsx(
     Raises
     ------
     UserError
-        What :func:`processing.core.safe_write.written_safely` raises.
+        What :func:`processing.core.safe_write.write_safely` raises.
     """
     plan = as_built_plan(result)
     picture = SheetPicture(MAP_TITLE, plan.rgb, SHARE_CLASSES, 0, "%", ((NO_DATA, NO_VALUE),))

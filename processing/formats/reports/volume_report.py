@@ -86,7 +86,7 @@ def write_volume_report(
     Raises
     ------
     UserError
-        What :func:`processing.core.safe_write.written_safely` raises; `Cancelled`.
+        What :func:`processing.core.safe_write.write_safely` raises; `Cancelled`.
     """
     monitor = monitor or SilentMonitor()
     monitor.check()

@@ -76,7 +76,7 @@ def write_volume_xlsx(
     Raises
     ------
     UserError
-        What :func:`processing.core.safe_write.written_safely` raises.
+        What :func:`processing.core.safe_write.write_safely` raises.
     """
     limit_m = change_limit(result.change.change_m)
     classes = change_classes(limit_m)

@@ -1,4 +1,4 @@
-"""Sections: the profile across an edge, from the points of several rows on either side of it."""
+"""EdgeProfile: the profile across an edge, from the points of several rows on either side of it."""
 
 from __future__ import annotations
 

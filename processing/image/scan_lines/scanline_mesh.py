@@ -59,7 +59,7 @@ class SectionMesh:
     ----------
     width : int
         Columns of a row.
-    band : Band
+    band : MeshLimits
         What counts, and which sections are asked for.
     """
 

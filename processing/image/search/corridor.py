@@ -71,7 +71,7 @@ class Corridor:
     ----------
     drive : Drive
         With a trajectory.
-    slab : Slab
+    slab : CorridorExtent
     """
 
     def __init__(self, drive: Drive, slab: CorridorExtent) -> None:

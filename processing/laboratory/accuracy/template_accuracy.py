@@ -76,7 +76,7 @@ class TemplateOrigin:
     ----------
     template : ProfileTemplate
         Its anchor is the upper edge.
-    frame : Frame
+    frame : SectionFrame
         On the true upper edge, looking as the vehicle does.
     side : float
         1 right of the vehicle, −1 left of it.

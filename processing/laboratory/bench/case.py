@@ -1,4 +1,4 @@
-"""Case: one thing that is measured, and what came out."""
+"""Measurement: one thing that is measured, and what came out."""
 
 from __future__ import annotations
 

@@ -40,7 +40,7 @@ class NoiseMaker:
     ----------
     random : Generator
     shots : Shots
-    met : Met
+    met : RangeHits
         What the beams met, m.
     kinds : (n,) int64
         Of what they met, −1 where nothing.

@@ -1,4 +1,4 @@
-"""Diagnostics: places that a tool looked at, and the tests that decided there."""
+"""Diagnostics: the places that a tool looked at and the tests that decided there, for people."""
 
 from __future__ import annotations
 

@@ -20,7 +20,7 @@ class Preview:
 
     Attributes
     ----------
-    start : Start
+    start : FitStart
         Where it lies; its score is 0 where there are no points.
     is_mirrored : bool
         Whether it fits only the other way round.

@@ -53,11 +53,11 @@ class ProfileTemplate:
     Attributes
     ----------
     name : str
-    shape : tuple of Profile
+    shape : tuple of TemplateProfile
         Open polylines of two places and more; the anchor, (0, 0), is one of their vertices.
     lines : tuple of MadeLine
         At vertices of the shape.
-    empty : tuple of Profile
+    empty : tuple of TemplateProfile
         Rings (the first place not repeated) in which no point should be.
     tolerance_m : float
         Points this near to the shape lie on it.

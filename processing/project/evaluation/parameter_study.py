@@ -77,7 +77,7 @@ class StudyRequest:
         Counted together.
     fixed : mapping
         Values of the tool's other parameters; those not named have their defaults.
-    varied : tuple of Varied
+    varied : tuple of VariedParameter
         One or two.
     beside : tuple of Drive
         Others of the same street, which some tools look at too; not counted.

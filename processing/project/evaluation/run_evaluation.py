@@ -39,12 +39,12 @@ class RunEvaluation:
     shift_m : float
         Mean distance of the vertices of corrected ones from where the tool had put the feature;
         NaN where none was moved.
-    precision : Share
+    precision : ShareInterval
         Accepted of all that were decided.
-    recall : Share
+    recall : ShareInterval
         Accepted of accepted and drawn by hand: features of the same kinds, within the drives that
         the tool was run on. The undecided are left out.
-    recall_by_length : Share
+    recall_by_length : ShareInterval
         The same in metres, of lines; of nothing where there are none.
     reliability : Reliability
         Of the decided.

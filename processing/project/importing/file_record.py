@@ -115,7 +115,7 @@ class FilePlacement:
         Of all points.
     names : tuple of str
         Columns of all points.
-    quantisation : Lattice
+    quantisation : Quantisation
         To which coordinates are moved.
     """
 
@@ -140,7 +140,7 @@ class FileJob:
         Points it is said to have.
     size, modified_ns : int
         What it was like when the import began.
-    quantisation : Lattice
+    quantisation : Quantisation
         Its own.
     scanner_column : str
         The column that tells scanners apart.
@@ -148,7 +148,7 @@ class FileJob:
         Whether scan angles are wanted; whether any file has labels.
     columns : tuple of str
         What the columns of text are taken for; empty where the file says it.
-    position : Place or None
+    position : FilePlacement or None
         None: each scanner's points go to a folder of their own below ``parts``.
     """
 

@@ -47,7 +47,7 @@ class Recording:
         Of the columns.
     delivered_names : tuple of str
         The columns that came with the points.
-    parts : list of Part
+    parts : list of RecordingPart
         In the order of the recording.
     has_source_columns : bool
         Whether columns say where each point was delivered.

@@ -38,7 +38,7 @@ class SourceFiles:
 
     Attributes
     ----------
-    troubles : tuple of Trouble
+    troubles : tuple of FileProblem
         What wasn't there, or was another file, when somebody looked last.
     """
 

@@ -69,7 +69,7 @@ class SurveyResult:
     ----------
     moves : tuple of FolderMove
         For folders that are elsewhere than noted.
-    stamps : mapping of str to Stamp
+    stamps : mapping of str to FileStamp
         Files that were compared by their checksum and are the delivered ones, by checksum and
         path.
     """
@@ -92,7 +92,7 @@ class SourceSurvey:
         What the user has said before.
     chosen : Path or None
         A folder in which the user says the files are.
-    stamps : mapping of str to Stamp
+    stamps : mapping of str to FileStamp
         Of earlier surveys.
     """
 

@@ -1,4 +1,4 @@
-"""Reference times T_k: when each turn passes below the vehicle, where its row begins."""
+"""Reference times T_k: when each revolution passes below the vehicle, where its row begins."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ def find_crossings(
     Parameters
     ----------
     points : PointColumns
-        A stretch that holds the turns asked for.
+        A stretch that holds the revolutions asked for.
     pulses : (n,) int64
     predicted : (k,) float64
         Rough times of the crossings, s.
@@ -100,7 +100,7 @@ def find_crossings(
 def repair_reference_times(
     predicted: Floats, crossed: Floats, chord: NDArray[np.int64], period_s: float
 ) -> Floats:
-    """Reference times from predictions and crossings, all turns included.
+    """Reference times from predictions and crossings, all revolutions included.
 
     Parameters
     ----------

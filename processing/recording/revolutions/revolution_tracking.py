@@ -30,14 +30,14 @@ _CLEAR_ANGLE_RAD = 0.6
 
 @dataclass(frozen=True)
 class RevolutionPhase:
-    """Turns as a function of time, in one stretch without a stop.
+    """Revolutions as a function of time, in one stretch without a stop.
 
     Attributes
     ----------
     time : (k,) float64
         Knots, rising.
     revolutions : (k,) float64
-        Turns of the mirror at the knots, rising; whole numbers where its angle is 0.
+        Revolutions of the mirror at the knots, rising; whole numbers where its angle is 0.
     rate_hz : float
         Mean rate, positive.
     coherence : float
@@ -50,7 +50,7 @@ class RevolutionPhase:
     coherence: float
 
     def times_of(self, revolutions: Floats) -> Floats:
-        """When the mirror had made so many turns; steady beyond the knots.
+        """When the mirror had made so many revolutions; steady beyond the knots.
 
         Parameters
         ----------
@@ -67,7 +67,7 @@ class RevolutionPhase:
         return times
 
     def revolutions_at(self, times: Floats) -> Floats:
-        """How many turns the mirror had made at some times."""
+        """How many revolutions the mirror had made at some times."""
         revolutions = np.interp(times, self.time, self.revolutions)
         early, late = times < self.time[0], times > self.time[-1]
         revolutions[early] = self.revolutions[0] + (times[early] - self.time[0]) * self._rate_at(
@@ -141,7 +141,7 @@ class RevolutionTracker:
         self._follow(last + 1)
 
     def phase(self) -> RevolutionPhase:
-        """The turns, when all points came."""
+        """The revolutions, when all points came."""
         self._follow(np.arange(self._first, self._last + self._length, self._length).size)
         ends = self._first, self._last
         knots, phases = np.array(self._knots), np.array(self._phases)

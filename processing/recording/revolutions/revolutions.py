@@ -1,4 +1,4 @@
-"""Turns: rows (revolutions) and pulse numbers found in a recording as it is delivered.
+"""Revolutions: rows and pulse numbers found in a recording as it is delivered.
 
 Files hold points in time order and neither row nor pulse. Rows come from the angle of each point
 seen from the scanner, columns from the clock of the laser.
@@ -49,7 +49,7 @@ _CLOCK_SAMPLES, _CLOCK_SAMPLE_POINTS = 4, 20_000
 """Pieces of a recording from which the pulse interval follows, and points of each."""
 
 _TOO_FEW = Text(
-    "There are too few points to find turns in them.",
+    "There are too few points to find revolutions in them.",
     "点数が少なすぎるため、回転を推定できません。",
 )
 _NO_CLOCK = Text(
@@ -133,7 +133,7 @@ def find_revolutions(
 
     Returns
     -------
-    Turns and (n,) int64, Turns, or NoRevolutions
+    Revolutions and (n,) int64, Revolutions, or NoRevolutions
         With the pulse of each point in the first form.
 
     Notes

@@ -1,4 +1,4 @@
-"""The turns of a drive as they are kept in its folder."""
+"""The revolutions of a drive as they are kept in its folder."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _FILE_NAME = "revolutions.npz"
 
 
 def write_revolutions(folder: Path, revolutions: Revolutions) -> None:
-    """Write a drive's turns into its folder."""
+    """Write a drive's revolutions into its folder."""
     path = folder / _FILE_NAME
     with report_as_user_error(path):
         np.savez(
@@ -38,7 +38,7 @@ def write_revolutions(folder: Path, revolutions: Revolutions) -> None:
 
 
 def read_revolutions(folder: Path) -> Revolutions | None:
-    """A drive's turns; None when it has none.
+    """A drive's revolutions; None when it has none.
 
     Raises
     ------

@@ -60,8 +60,8 @@ class _Segment:
 
 
 @dataclass
-class _Turns:
-    """Turns of a segment: where rows are expected, what was found there."""
+class _SegmentRows:
+    """Revolutions of a segment: where rows are expected, what was found there."""
 
     predicted: Floats
     crossed: Floats
@@ -167,15 +167,15 @@ class _Segments:
         self._ended.append(_Segment(self._start, end, phase))
 
 
-def _expected(segment: _Segment, mirror_rotation: MirrorRotation) -> _Turns:
-    """The turns that may hold points of the segment, with one to spare at both ends."""
+def _expected(segment: _Segment, mirror_rotation: MirrorRotation) -> _SegmentRows:
+    """The revolutions that may hold points of the segment, with one to spare at both ends."""
     fold = mirror_rotation.fold_angle * np.sign(mirror_rotation.rate_hz) / (2 * np.pi)
     first, last = (
         segment.phase.revolutions_at(np.array([segment.first_time, segment.last_time])) - fold
     )
     revolutions = np.arange(np.floor(first) - 1, np.ceil(last) + 2) + fold
     predicted = segment.phase.times_of(revolutions)
-    return _Turns(
+    return _SegmentRows(
         predicted=predicted,
         crossed=np.full(predicted.size, np.nan),
         chord=np.zeros(predicted.size, dtype=np.int64),
@@ -188,7 +188,7 @@ def _second_pass(
     points: PointSource,
     mirror_rotation: MirrorRotation,
     pulses: PulseStore,
-    revolutions: list[tuple[_Segment, _Turns]],
+    revolutions: list[tuple[_Segment, _SegmentRows]],
     monitor: Monitor,
 ) -> None:
     for start, stop in _overlapping(points, 1.0 / abs(mirror_rotation.rate_hz)):
@@ -231,7 +231,11 @@ def _overlapping(points: PointSource, period_s: float) -> list[tuple[int, int]]:
 
 
 def _anchor(
-    revolutions: _Turns, asked: slice, segment: _Segment, time: Floats, numbers: NDArray[np.int64]
+    revolutions: _SegmentRows,
+    asked: slice,
+    segment: _Segment,
+    time: Floats,
+    numbers: NDArray[np.int64],
 ) -> None:
     """Note a point of known pulse near each expected row start."""
     first = int(np.searchsorted(time, segment.first_time))
@@ -246,7 +250,7 @@ def _anchor(
     revolutions.anchor_pulse[asked] = numbers[nearer]
 
 
-def _assembled(revolutions: list[tuple[_Segment, _Turns]], interval_s: float) -> FoundRows:
+def _assembled(revolutions: list[tuple[_Segment, _SegmentRows]], interval_s: float) -> FoundRows:
     segments = [segment for segment, _ in revolutions]
     times, folds, ends, numbers = [], [], [], []
     last_time, last_fold = 0.0, 0

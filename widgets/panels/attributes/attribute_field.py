@@ -64,7 +64,7 @@ class AttributeEditor(QObject):
     Parameters
     ----------
     field : AttributeField
-    value : str, float, int, bool, None or Several
+    value : str, float, int, bool, None or ShownValue
         None: nothing is said yet. ``SEVERAL``: the chosen features say different things.
     language : Language
 

@@ -1,4 +1,4 @@
-"""Cloud: which points are in the scene now, coarse while the camera moves and sharp at rest."""
+"""PointCloudLayer: which points are in the scene, coarse while the camera moves, sharp at rest."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ class PointCloudLayer(QObject):
 
     Parameters
     ----------
-    scene_renderer : Stage
+    scene_renderer : SceneRenderer
     tiles : TileCache
 
     Signals

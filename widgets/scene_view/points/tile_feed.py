@@ -41,7 +41,7 @@ class SceneRequest:
         The view's local origin, m, project CRS.
     age : int
         Raised with every change of drives and origin; told back with the tiles.
-    showing : Showing
+    showing : TileAppearance
     budget_points : int
     is_still : bool
         Whether the camera rests; told back with the choice.
@@ -49,7 +49,7 @@ class SceneRequest:
         Tiles outside the choice that are to show the same.
     there : mapping of TileId to SceneTile
         What the view has.
-    known : frozenset of (TileId, Showing)
+    known : frozenset of (TileId, TileAppearance)
         What each of them shows.
     """
 

@@ -1,4 +1,4 @@
-"""Camera: from where and how the 3D view looks; a value, so that each gesture gives a new one."""
+"""SceneCamera: from where and how the 3D view looks; a value, so that a gesture gives a new one."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Projection: places to pixels and pixels to rays, for picking, hits and the overlay."""
+"""SceneProjection: places to pixels and pixels to rays, for picking, hits and the overlay."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Stage: the VTK window with its layers, camera and shading.
+"""SceneRenderer: the VTK window with its layers, camera and shading.
 
 Importing this module imports VTK and pyvista, which takes more than a second; the view does it
 after it was shown, beside the window's thread.

@@ -38,7 +38,7 @@ class SectionRequest:
 
     Attributes
     ----------
-    standing : Standing
+    standing : SectionPosition
         Where the section stands.
     cut : Cut
         Its slab.

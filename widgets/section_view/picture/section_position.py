@@ -1,4 +1,4 @@
-"""Standing: where on which line a section stands, and the cut that belongs to it."""
+"""SectionPosition: where on which line a section stands, and the cut that belongs to it."""
 
 from __future__ import annotations
 

@@ -136,7 +136,7 @@ def yard_parts(
 
     Parameters
     ----------
-    parts : list of Part
+    parts : list of BorderPart
         The building's; its first part is its body.
     front_m : float
         How far its body stands behind the front line.

@@ -44,7 +44,7 @@ def render_image(
     ----------
     image : CameraImage
         In the frame of the scenes.
-    scenes : sequence of Scene
+    scenes : sequence of RaycastScene
         What stands, and what moves, where it is at the time of the image.
     random : Generator
         For the sensor's noise.

@@ -45,7 +45,7 @@ class LinePole:
         Along the chainage; negative before the drive's beginning.
     section : int
         Number of the section it stands in.
-    spot : Spot
+    spot : FreePosition
     high_m : float
         Of its top above the carriageway's edge there (cables hang where the road is, whatever
         ground the pole stands on).

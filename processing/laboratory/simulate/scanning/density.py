@@ -59,7 +59,7 @@ class DensityMap:
 
     Attributes
     ----------
-    survey : Survey
+    survey : DrivingSensor
     across_m : (n,) float64
         To the left of the vehicle's reference point, m.
     up_m : (k,) float64

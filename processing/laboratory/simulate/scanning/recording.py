@@ -51,7 +51,7 @@ class Setup:
     Attributes
     ----------
     sensor : Sensor
-    scan_pattern : Spin
+    scan_pattern : ScanPattern
         Of all heads; each starts at an angle of its own.
     weather : Weather
     """

@@ -191,7 +191,7 @@ def returns_of(
 
     Parameters
     ----------
-    scene : Scene
+    scene : RaycastScene
         What the beams go on into behind leaves and nets.
     scanner : (10,) float64
         `scanner_numbers`.

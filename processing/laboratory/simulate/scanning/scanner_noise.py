@@ -86,11 +86,11 @@ class PulseHits:
     Attributes
     ----------
     beams : Beams
-    met : Met
+    met : BeamHits
         Of each beam.
     returns : Returns
         Without this noise.
-    scene : Scene
+    scene : RaycastScene
     """
 
     beams: Beams

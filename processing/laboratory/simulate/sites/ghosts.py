@@ -135,9 +135,9 @@ def ghosts_of(
 
     Parameters
     ----------
-    met : Met
+    met : BeamHits
         What the beams met first, of all that stands and moves.
-    seen : (Hits, Scene)
+    seen : (CastHits, RaycastScene)
         What they met of what stands, for what mirrors show.
     """
     parts = [_dust(random, beams, met, cloud) for cloud in ghost_sources.dust]

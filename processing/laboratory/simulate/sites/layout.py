@@ -49,7 +49,7 @@ class SiteLayout:
     ----------
     mesh : MeshBuilder
         The ground (instance 0, label 2) and all things (label 1), the site's frame.
-    things : list of Standing
+    things : list of StandingObject
         The thing of instance n is number n - 1.
     """
 

@@ -26,7 +26,7 @@ class MovementTrack:
 
     Attributes
     ----------
-    body : Body
+    body : SiteBody
     instance : int
     times : (n,) float64
         s of the whole recording.
@@ -142,8 +142,8 @@ class MovingThings:
 
     Parameters
     ----------
-    tracks : list of Track
-    layout : Layout
+    tracks : list of MovementTrack
+    layout : SiteLayout
         Whose ground they go on.
     """
 

@@ -104,7 +104,7 @@ class SiteSurvey:
     Attributes
     ----------
     date : str
-    scene : Scene
+    scene : RaycastScene
         What stands still.
     kinds : (instances + 1,) int64
         Kind of every instance, of those that move too.

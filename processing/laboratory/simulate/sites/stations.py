@@ -53,7 +53,7 @@ def stations_of(
 
     Parameters
     ----------
-    scene : Scene
+    scene : RaycastScene
         All triangles of the date.
     check : callable
         Called for every candidate; raises to stop.

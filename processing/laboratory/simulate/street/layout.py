@@ -84,9 +84,9 @@ class SectionSurfaces:
 
     Attributes
     ----------
-    terrain : Terrain
+    terrain : SectionTerrain
         The height over which all lines stand.
-    ground : Ground
+    ground : StreetGround
         All lines on common nodes.
     road_nodes : (n,) float64
         Chainages of the carriageway's nodes.

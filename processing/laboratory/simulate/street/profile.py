@@ -93,7 +93,7 @@ class Course:
     ----------
     edge : (n,) float64
         From the centre to the asphalt's edge, m.
-    laid : Laid
+    laid : StoneNodes
         Its nodes.
     """
 

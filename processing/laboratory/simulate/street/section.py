@@ -24,7 +24,7 @@ class StreetSection:
     ----------
     seed : int
         Of the street.
-    layout : Layout
+    layout : SectionSurfaces
         The lines of its surfaces: where curbs are lowered, where side streets meet the road.
     """
 

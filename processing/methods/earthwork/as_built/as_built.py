@@ -79,7 +79,7 @@ class FaceResult:
         Of the face seen from above, within the boundary, less the strips along its edges.
     unmeasured_area_m2 : float
         Part of it in cells that have no value.
-    verdicts : mapping of Item to bool
+    verdicts : mapping of FaceMeasure to bool
         Whether each is within its limit; none is without values.
     """
 

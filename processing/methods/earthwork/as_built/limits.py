@@ -90,7 +90,7 @@ class FaceLimits:
 
     Attributes
     ----------
-    mean, single : Allowed
+    mean, single : AllowedRange
         Of the mean of all deviations, and of each.
     """
 
