@@ -8,8 +8,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.map.catalogue import FeatureKind, Geometry
 from processing.map.feature import Feature
 
@@ -19,7 +19,6 @@ THICKNESS = "thickness_m"
 _LEAST_AREA_M2 = 1e-6
 _THICKEST_M = 10.0
 
-Floats = NDArray[np.float64]
 FaceIndices = tuple[int, ...]
 
 

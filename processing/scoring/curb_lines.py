@@ -16,6 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats, Integers
 from processing.core.text import Text
 from processing.scoring.confusion_matrix import BinaryConfusionMatrix
 from processing.scoring.curb_sections import (
@@ -33,8 +34,8 @@ from processing.scoring.file_scores import (
     errors_of,
     named_share,
 )
-from processing.scoring.line_positions import Integers, PolylineIndex, middle_positions
-from processing.scoring.mapped_features import Floats, MappedFeature, MappedFile
+from processing.scoring.line_positions import PolylineIndex, middle_positions
+from processing.scoring.mapped_features import MappedFeature, MappedFile
 
 CURBS: dict[str, dict[str, object]] = {
     "curb": {},

@@ -7,9 +7,10 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
+from processing.core.arrays import Floats
 from processing.core.text import Text
 from processing.scoring.line_positions import between, length_m
-from processing.scoring.mapped_features import Floats, MappedFeature, MappedFile
+from processing.scoring.mapped_features import MappedFeature, MappedFile
 
 SECTION_M = 2.0
 """Mms.md 6.4: what is judged at a time."""

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.core.text import Text
 from processing.scoring.confusion_matrix import BinaryConfusionMatrix
 from processing.scoring.file_scores import DetectionCounts, FileScore, errors_of, named_share
@@ -27,7 +28,7 @@ from processing.scoring.gutter_runs import (
     is_seen,
     runs_of,
 )
-from processing.scoring.mapped_features import Floats, MappedFeature, MappedFile
+from processing.scoring.mapped_features import MappedFeature, MappedFile
 from processing.scoring.one_to_one import best_pairs
 
 GUTTERS: dict[str, dict[str, object]] = {

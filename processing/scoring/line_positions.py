@@ -6,10 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
+from processing.core.arrays import Floats, Integers
 
 _ALIKE_M = 1e-6  # below what coordinates are written to: lines so near are one place
 _SHORTEST_M = 1e-9

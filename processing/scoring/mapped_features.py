@@ -8,13 +8,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
 
-import numpy as np
-from numpy.typing import NDArray
-
+from processing.core.arrays import Floats
 from processing.core.errors import BadFile, Unsuitable
 from processing.core.text import Text
 
-Floats = NDArray[np.float64]
 GeometryType = Literal["point", "line", "area"]
 
 IN_DEGREES = "OGC:CRS84"

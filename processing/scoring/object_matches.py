@@ -8,9 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.scoring.confusion_matrix import BinaryConfusionMatrix
 from processing.scoring.file_scores import ErrorStatistics, errors_of
-from processing.scoring.mapped_features import Floats, MappedFeature, MappedFile
+from processing.scoring.mapped_features import MappedFeature, MappedFile
 from processing.scoring.one_to_one import pairs_within
 
 

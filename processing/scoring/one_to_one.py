@@ -9,8 +9,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
+from processing.core.arrays import Floats, Integers
 
 
 def pairs_within(result: Floats, truth: Floats, within_m: float) -> tuple[Integers, Integers]:

@@ -9,10 +9,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from processing.core.arrays import Floats
 from processing.core.text import Text
 from processing.scoring.confusion_matrix import BinaryConfusionMatrix
 from processing.scoring.file_scores import DetectionCounts, FileScore, errors_of, named_share
-from processing.scoring.mapped_features import Floats, MappedFeature, MappedFile
+from processing.scoring.mapped_features import MappedFeature, MappedFile
 from processing.scoring.object_matches import (
     Differences,
     ObjectMatch,

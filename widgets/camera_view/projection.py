@@ -6,14 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.cameras.depth import DepthPicture
+from processing.core.arrays import Floats
 from processing.map.feature import Position
 from processing.recording.camera_images.camera import Camera
 from processing.recording.camera_images.choice import pixels_per_radian
 from processing.recording.camera_images.image_list import CameraImage
 from widgets.mouse_tools.mouse_tool import Ray
 from widgets.plane_view.line_pieces import clip_pieces
-
-Floats = NDArray[np.float64]
 
 REACH_M = 80.0
 """Farther away features are drawn faintly."""

@@ -8,11 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtGui import QPolygonF
 
+from processing.core.arrays import Floats, Integers
 from widgets.feature_drawing.feature_shapes import FlatShapes
 from widgets.feature_drawing.outlines import are_inside
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 VERTEX_PX = 8.0
 SEGMENT_PX = 6.0

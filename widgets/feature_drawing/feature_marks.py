@@ -7,11 +7,10 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QImage, QPainter, QPen
 
+from processing.core.arrays import Floats
 from widgets.feature_drawing.crowded_marks import marks_to_paint
 from widgets.feature_drawing.feature_style import FeatureStyle
 from widgets.feature_drawing.symbol_pictures import SYMBOL_PX, SymbolPictures
-
-Floats = NDArray[np.float64]
 
 _VERTEX_PX = 7.0
 _DISC_PX = 9.0

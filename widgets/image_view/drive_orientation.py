@@ -7,11 +7,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.image.point_image import PointCloudImage
 from processing.recording.drive import Drive
 from processing.recording.kinds import ImageKind
-
-Floats = NDArray[np.float64]
 
 _MOST_SAMPLES = 2_000
 _PROBED_ROWS = 24

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtGui import QPainter
 
+from processing.core.arrays import Floats
 from processing.map.catalogue import Catalogue, Geometry
 from processing.map.feature import Position, Vertex
 from widgets.feature_drawing.crowded_marks import FEW
@@ -22,8 +23,6 @@ from widgets.image_view.picture_feature import (
 from widgets.image_view.viewport import Viewport
 from widgets.shared.sketch import Drawing
 from widgets.shared.view_settings import ViewSettings
-
-Floats = NDArray[np.float64]
 
 _MARGIN_PX = 16.0
 _MOST_SMOOTH = 300

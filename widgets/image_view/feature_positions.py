@@ -9,14 +9,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.image.search.nearest import NearestSearch, nearest_point, nearest_points
 from processing.map.feature import Feature, Vertex
 from widgets.image_view.oriented_image import OrientedImage, Span
 from widgets.image_view.picture_feature import PictureFeature, join_vertices
 from widgets.image_view.waiting_features import WaitingFeatures
 from widgets.shared.map_source import MapSource
-
-Floats = NDArray[np.float64]
 
 NEAR_M = 0.3
 """How far a vertex may be from the measured point that stands for it in another drive."""

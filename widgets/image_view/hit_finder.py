@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QPolygonF
 
+from processing.core.arrays import Floats
 from processing.image.edges.beam import beam_at
 from processing.map.catalogue import Geometry
 from processing.map.feature import PointReference
@@ -24,8 +25,6 @@ from widgets.mouse_tools.mouse_tool import EnclosedHits, Hit, Ray
 from widgets.shared.cursor import PickedPosition
 from widgets.shared.snap_state import SnapState
 from widgets.shared.view_settings import ViewSettings
-
-Floats = NDArray[np.float64]
 
 VERTEX_PX = 8.0
 SEGMENT_PX = 6.0

@@ -5,15 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.image.search.nearest import nearest_point
 from processing.recording.drive import Drive
 from processing.recording.kinds import ImageKind
 from widgets.image_view.oriented_image import OrientedImage
 from widgets.image_view.viewport import Viewport
-
-Floats = NDArray[np.float64]
 
 FARTHEST_M = 50.0
 """Ways of two drives that are farther apart don't show the same street."""

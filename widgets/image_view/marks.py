@@ -6,11 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtGui import QBrush, QColor, QPainter, QPainterPath, QPen
 
+from processing.core.arrays import Floats
 from widgets.feature_drawing.feature_marks import FeatureMarks
 from widgets.feature_drawing.feature_style import FeatureStyle
 from widgets.image_view.viewport import Viewport
-
-Floats = NDArray[np.float64]
 
 _FILL_ALPHA = 34
 

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.image.images_of_drives import image_of
 from processing.image.point_image import PointCloudImage
 from processing.recording.drive import Drive
@@ -19,8 +20,6 @@ from widgets.image_view.drive_orientation import DriveOrientation, orientation_o
 from widgets.shared.image_orientation import ImageOrientation
 from widgets.shared.map_source import MapSource
 from widgets.shared.view_settings import ViewSettings
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -6,15 +6,13 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from PySide6.QtCore import QPointF
 from PySide6.QtGui import QPainterPath, QPolygonF
 
+from processing.core.arrays import Floats
 from processing.map.catalogue import Geometry
 from processing.map.feature import Feature
 from widgets.image_view.oriented_image import OrientedImage
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from PySide6.QtCore import QRectF
 from PySide6.QtGui import QTransform
 
+from processing.core.arrays import Floats
 from widgets.image_view.oriented_image import Span
 from widgets.shared.image_orientation import ImageOrientation
-
-Floats = NDArray[np.float64]
 
 _MOST_ZOOM = 64.0
 _LEAST_SHARE = 0.3  # of the window's height that the picture keeps when zoomed out

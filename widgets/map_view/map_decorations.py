@@ -6,15 +6,13 @@ import math
 from collections.abc import Iterable, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 from PySide6.QtCore import QLineF, QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFontMetricsF, QPainter, QPen, QPolygonF
 
+from processing.core.arrays import Floats
 from widgets.map_view.vehicle_path import VehiclePath
 from widgets.plane_view.line_pieces import as_lines, clip_pieces
 from widgets.plane_view.viewport import PlaneViewport
-
-Floats = NDArray[np.float64]
 
 _INK = QColor("#eef2f6")
 _SHADOW = QColor(11, 13, 16)

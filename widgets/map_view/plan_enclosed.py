@@ -5,13 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.image.from_above.plan_ground import ceilings_above
 from processing.image.images_of_drives import image_of
 from processing.image.search.enclosed_points import Sight, points_enclosed
 from processing.recording.columns.counted_classes import seen_points
 from widgets.map_view.plan_feed import ShownPlan
-
-Floats = NDArray[np.float64]
 
 
 def points_below(

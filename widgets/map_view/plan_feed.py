@@ -7,9 +7,9 @@ import time
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from PySide6.QtCore import QObject, Signal
 
+from processing.core.arrays import Floats
 from processing.core.errors import UserError
 from processing.image.attributes.tile_cache import TileCache, TileRequest
 from processing.image.from_above.plan_ground import ceilings_above, ground_along
@@ -26,8 +26,6 @@ from processing.recording.drive import Drive
 from processing.recording.kinds import ImageKind
 from widgets.map_view.plan_tiles import OutdatedRequest, PlanTiles, TilePoints, WantedTile
 from widgets.shared.view_settings import PointStyle
-
-Floats = NDArray[np.float64]
 
 _FIRST_BUDGET, _FULL_BUDGET = 300_000, 3_000_000
 _OVERVIEW_BUDGET, _OVERVIEW_PX = 1_000_000, 1_200

@@ -5,12 +5,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.image.from_above.plan_raster import PlanFrame
 from processing.map.feature import Position
 from widgets.mouse_tools.mouse_tool import Ray
 from widgets.plane_view.viewport import PlaneViewport
 
-Floats = NDArray[np.float64]
 MapPoint = tuple[float, float]
 
 _EYE_M = 10_000.0

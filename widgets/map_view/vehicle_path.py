@@ -9,13 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QPointF, QRectF
 
+from processing.core.arrays import Floats
 from processing.core.errors import Unsuitable
 from processing.recording.drive import Drive
 from processing.recording.vehicle_path.trajectory import Trajectory
 from processing.section.stations import Stations
 from widgets.map_view.plan_projection import on_plan
-
-Floats = NDArray[np.float64]
 
 _STEP_M = 0.25
 

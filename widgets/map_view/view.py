@@ -20,6 +20,7 @@ from PySide6.QtGui import (
 from PySide6.QtWidgets import QMenu, QWidget
 from typing_extensions import override
 
+from processing.core.arrays import Floats
 from processing.core.text import Language
 from processing.image.attributes.tile_cache import TileCache
 from processing.image.from_above.plan_points import PlanPoints, PointQuery
@@ -48,8 +49,6 @@ from widgets.plane_view.viewport import PlaneViewport
 from widgets.shared.cursor import PickedPosition
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
-
-Floats = NDArray[np.float64]
 
 LIMIT_M = 3.0
 _LIMITS_M = (1.0, 2.0, 3.0, 5.0, 10.0)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QPolygonF
 
+from processing.core.arrays import Floats
 from processing.map.catalogue import Geometry
 from widgets.feature_drawing.feature_hits import (
     SEGMENT_PX,
@@ -25,8 +26,6 @@ from widgets.plane_view.projected_map import PlaneFeatures
 from widgets.plane_view.projection import PlanePoint, PlaneProjection
 from widgets.plane_view.viewport import PlaneViewport
 from widgets.shared.cursor import PickedPosition
-
-Floats = NDArray[np.float64]
 
 EnclosedPoints = Mapping[str, NDArray[np.int64]]
 

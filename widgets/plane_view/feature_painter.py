@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPen, QPolygonF
 
+from processing.core.arrays import Floats, Integers
 from processing.map.catalogue import Catalogue, Geometry
 from processing.map.feature import Status
 from widgets.feature_drawing.feature_marks import FeatureMarks
@@ -16,9 +16,6 @@ from widgets.feature_drawing.feature_style import FeatureStyle, style_of
 from widgets.plane_view.line_pieces import as_lines, clip_pieces, dash_pieces, thin_pieces
 from widgets.plane_view.projected_map import PlaneFeatures, ProjectedShape
 from widgets.plane_view.viewport import PlaneViewport
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 MARGIN_PX = 16.0
 _MOST_SMOOTH = 4_000

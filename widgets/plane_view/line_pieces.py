@@ -7,11 +7,9 @@ wrong with coordinates beyond 32,767 px.
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 from PySide6.QtCore import QLineF
 
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
+from processing.core.arrays import Floats, Integers
 
 _ON_PX, _OFF_PX = 8.0, 5.0
 

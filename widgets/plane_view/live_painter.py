@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from PySide6.QtCore import QRectF, Qt
 from PySide6.QtGui import QColor, QPainter
 
+from processing.core.arrays import Floats
 from processing.core.text import Language
 from processing.map.catalogue import Catalogue, Geometry
 from processing.map.feature import Position, Vertex
@@ -25,8 +25,6 @@ from widgets.plane_view.viewport import PlaneViewport
 from widgets.shared.cursor import PickedPosition
 from widgets.shared.sketch import Drawing
 from widgets.shared.snap_state import SNAP_NAMES, SnapMark
-
-Floats = NDArray[np.float64]
 
 _NO_ORIGIN = np.zeros(3)
 _WORDS = QColor("#c9d1d9")

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QPointF
 from PySide6.QtGui import QPolygonF
 
+from processing.core.arrays import Floats, Integers
 from widgets.feature_drawing.feature_shapes import (
     FeatureShape,
     FeatureShapes,
@@ -20,9 +21,6 @@ from widgets.feature_drawing.feature_shapes import (
 from widgets.plane_view.projection import PlaneProjection
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)

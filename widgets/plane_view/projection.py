@@ -7,10 +7,10 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.map.feature import Position
 from widgets.mouse_tools.mouse_tool import Ray
 
-Floats = NDArray[np.float64]
 PlanePoint = tuple[float, float]
 
 

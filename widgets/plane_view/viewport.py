@@ -5,11 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 from PySide6.QtCore import QRectF
 from PySide6.QtGui import QTransform
 
-Floats = NDArray[np.float64]
+from processing.core.arrays import Floats
 
 _LEAST_SCALE, _MOST_SCALE = 1e-4, 1e4
 _FILLED = 0.9

@@ -6,13 +6,11 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from PySide6.QtCore import QPointF, Qt
 
+from processing.core.arrays import Floats
 from widgets.scene_view.rendering.camera import SceneCamera
 from widgets.scene_view.rendering.projection import SceneProjection
-
-Floats = NDArray[np.float64]
 
 ZOOM_PER_NOTCH = 1.25
 _DEGREES_PER_PX = 0.3

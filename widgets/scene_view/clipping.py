@@ -5,16 +5,14 @@ from __future__ import annotations
 from enum import Enum
 
 import numpy as np
-from numpy.typing import NDArray
 from PySide6.QtCore import QObject, Signal
 
+from processing.core.arrays import Floats
 from processing.image.search.clip import Clip
 from processing.image.search.corridor import Corridor, CorridorExtent
 from processing.recording.drive import Drive
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
-
-Floats = NDArray[np.float64]
 
 MARGIN_M = 2.0
 """How much is shown around what is chosen."""

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QPointF, Qt
 from PySide6.QtGui import QPolygonF
 
+from processing.core.arrays import Floats
 from widgets.feature_drawing.feature_shapes import FlatShapes, flatten_shapes
 from widgets.feature_drawing.outlines import are_inside
 from widgets.mouse_tools.gesture import REACH_PX
@@ -17,8 +18,6 @@ from widgets.scene_view.map.feature_hits import feature_at, features_within
 from widgets.scene_view.points.point_finder import FoundPoint, PointFinder
 from widgets.scene_view.rendering.projection import SceneProjection
 from widgets.scene_view.rendering.scene_tile import DrawnTile
-
-Floats = NDArray[np.float64]
 
 
 class SceneHits:

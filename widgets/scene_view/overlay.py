@@ -11,6 +11,7 @@ from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPen, QPolygonF
 from PySide6.QtWidgets import QWidget
 from typing_extensions import override
 
+from processing.core.arrays import Floats
 from processing.core.text import Language
 from processing.map.catalogue import Catalogue, Geometry
 from widgets.feature_drawing.crowded_marks import FEW, marks_to_paint
@@ -26,8 +27,6 @@ from widgets.feature_drawing.screen_marks import (
 from widgets.scene_view.rendering.projection import SceneProjection
 from widgets.shared.sketch import Drawing
 from widgets.shared.snap_state import SNAP_NAMES, SnapMark
-
-Floats = NDArray[np.float64]
 
 _VERTEX_PX = 7.0
 _WORDS = QColor("#c9d1d9")

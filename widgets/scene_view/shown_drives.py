@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.recording.drive import Drive
 from processing.recording.kinds import ImageKind
 from widgets.scene_view.rendering import overviews
 from widgets.scene_view.rendering.camera import SceneCamera
 from widgets.shared.map_source import MapSource
 from widgets.shared.view_settings import ViewSettings
-
-Floats = NDArray[np.float64]
 
 
 class ShownDrives:

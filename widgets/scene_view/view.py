@@ -12,6 +12,7 @@ from PySide6.QtGui import QCloseEvent, QColor, QPainter, QPaintEvent, QResizeEve
 from PySide6.QtWidgets import QWidget
 from typing_extensions import override
 
+from processing.core.arrays import Floats
 from processing.core.text import Language
 from processing.image.attributes.tile_cache import TileCache
 from widgets.mouse_tools.menu_request import MenuRequest
@@ -37,7 +38,6 @@ if TYPE_CHECKING:  # importing these imports VTK, which is done after the view w
     from widgets.scene_view.points.cloud import PointCloudLayer
     from widgets.scene_view.rendering.scene_renderer import SceneRenderer
 
-Floats = NDArray[np.float64]
 
 _FARTHEST_M = 40.0
 

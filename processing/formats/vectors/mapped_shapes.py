@@ -8,13 +8,14 @@ from typing import Any
 
 import numpy as np
 
+from processing.core.arrays import Floats
 from processing.core.errors import BadFile, report_as_user_error
 from processing.core.japanese_text import read_text
 from processing.core.text import Text
 from processing.formats.format import Content
 from processing.formats.registry import FORMATS
 from processing.formats.vectors.geojson_shapes import WHERE, read_collection, shapes_of, system_of
-from processing.scoring.mapped_features import Floats, GeometryType, MappedFeature, MappedFile
+from processing.scoring.mapped_features import GeometryType, MappedFeature, MappedFile
 
 _GEOPACKAGE_SHAPES: dict[str, GeometryType] = {
     "Point": "point",

@@ -17,6 +17,7 @@ import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
+from processing.core.arrays import Floats
 from processing.core.monitor import SilentMonitor
 from processing.core.output_streams import write_every_character
 from processing.formats.vectors.mapped_shapes import read_mapped
@@ -30,7 +31,7 @@ from processing.laboratory.road_training.training_streets import training_street
 from processing.methods.road.gutters.grating_confidence import GratingTerms, terms_of
 from processing.methods.road.gutters.gutter_confidence import CoverFacts
 from processing.scoring.gutters import score_gutters
-from processing.scoring.mapped_features import Floats, MappedFeature, MappedFile
+from processing.scoring.mapped_features import MappedFeature, MappedFile
 from processing.tools.gutters import GutterParameters, gutter_evidence
 
 _FACTS = {"lids": CoverFacts._fields, "gratings": GratingTerms._fields}

@@ -10,12 +10,11 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.core.errors import OutOfRange
 from processing.core.text import Text
 from processing.map.drafting.polyline import SAME_POSITION_M, Polyline, name_position
 from processing.map.feature import Position
-
-Floats = NDArray[np.float64]
 
 _FINEST_M = 1e-4
 _MOST_CHORDS = 2_000

@@ -11,6 +11,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.map.drafting.plan_sides import (
     crossing_fractions,
     first_meeting,
@@ -20,7 +21,6 @@ from processing.map.drafting.plan_sides import (
 from processing.map.drafting.polyline import SAME_POSITION_M, Polyline, end_direction, position_of
 from processing.map.feature import Position
 
-Floats = NDArray[np.float64]
 SnapTarget = Literal["vertex", "line", "intersection", "extension", "perpendicular"]
 
 EXTENSION_M = 5.0

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.image.images_of_drives import image_of
 from processing.image.point_image import PointCloudImage
 from processing.image.tiles.tile_kernels import COUNT, HIGHEST, LOWEST
@@ -17,8 +18,6 @@ from processing.map.drafting.polyline import Polyline
 from processing.map.feature import Position, Vertex
 from processing.recording.columns.counted_classes import class_columns
 from processing.recording.drive import Drive
-
-Floats = NDArray[np.float64]
 
 _MOST_CELLS = 250_000
 _PAIRS_AT_FIRST = 400_000

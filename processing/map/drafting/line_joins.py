@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from typing import Literal
 
 import numpy as np
-from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.core.errors import Unsuitable
 from processing.core.text import Text
 from processing.map.catalogue import Geometry
@@ -17,7 +17,6 @@ from processing.map.drafting.plan_sides import crossing_fractions, meeting_pairs
 from processing.map.drafting.polyline import SAME_POSITION_M, Polyline, end_direction, name_position
 from processing.map.feature import Feature, Position, Vertex
 
-Floats = NDArray[np.float64]
 LineEnd = Literal["start", "end"]
 
 

@@ -8,16 +8,14 @@ from typing import NamedTuple
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.core.errors import Unsuitable
 from processing.core.text import Text
 from processing.map.drafting.plan_sides import SideIndex, crossing_fractions
 from processing.map.drafting.polyline import SAME_POSITION_M, Polyline, name_position
 from processing.map.feature import Position
 from processing.map.measures import length_m, plan_area_m2, plan_length_m
-
-Floats = NDArray[np.float64]
 
 _STATION_M = 1.0
 _MOST_SKEW = 4.0

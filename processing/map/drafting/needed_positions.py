@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from processing.core.arrays import Floats
 
 
 def needed_positions(xyz: Floats, tolerance_m: float) -> NDArray[np.int64]:

@@ -8,13 +8,12 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.core.errors import OutOfRange
 from processing.core.text import Text
 from processing.map.drafting.plan_sides import SideIndex, cross, nearest_fractions
 from processing.map.drafting.polyline import Polyline, name_position
 from processing.map.feature import Position
-
-Floats = NDArray[np.float64]
 
 _SHARPEST_MITRE = np.radians(100.0)
 _LONGEST_SPIKE_M = 0.01

@@ -7,10 +7,8 @@ from __future__ import annotations
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
+from processing.core.arrays import Floats, Integers
 
 _PARALLEL = 1e-12
 _FIRST_BLOCK = 32

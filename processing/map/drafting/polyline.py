@@ -12,10 +12,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.core.text import Text
 from processing.map.feature import Position
-
-Floats = NDArray[np.float64]
 
 SAME_POSITION_M = 1e-3
 """Places nearer than this are one place: a millimetre, as coordinates are delivered."""

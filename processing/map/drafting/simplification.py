@@ -7,12 +7,12 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.map.drafting.crossings import crosses_itself
 from processing.map.drafting.needed_positions import from_chord, needed_positions
 from processing.map.drafting.polyline import Polyline
 from processing.map.feature import Position
 
-Floats = NDArray[np.float64]
 Kept = NDArray[np.int64]
 
 _MOST_TRIES = 40

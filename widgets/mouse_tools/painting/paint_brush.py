@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QObject
 from typing_extensions import override
 
+from processing.core.arrays import Floats
 from processing.image.images_of_drives import image_of
 from processing.labels.strokes import points_in_slab, points_under_brush, stroke_is_short
 from processing.map.feature import PointReference
@@ -16,8 +17,6 @@ from widgets.mouse_tools.painting.paint_tool import PaintTool
 from widgets.mouse_tools.tracing import BackgroundRunner
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
-
-Floats = NDArray[np.float64]
 
 
 class PaintBrush(PaintTool):

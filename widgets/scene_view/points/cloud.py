@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QObject, QTimer, Signal
 
+from processing.core.arrays import Floats
 from processing.image.attributes.tile_cache import TileCache
 from processing.image.images_of_drives import image_of
 from processing.image.search.clip import Clip
@@ -29,8 +30,6 @@ from widgets.scene_view.rendering.scene_tile import (
     shown_tiles,
 )
 from widgets.shared.view_settings import PointStyle
-
-Floats = NDArray[np.float64]
 
 REST_MS = 200
 _LEAST_MARK_MS, _FRAMES_BETWEEN_MARKS = 20, 3.0

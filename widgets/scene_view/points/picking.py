@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.image.search.ray_hits import TOLERANCE_PX, RayHit, RayHits, RaySight
 from processing.image.tiles.tile_descent import entry_depth
 from widgets.scene_view.rendering.projection import NEAR_M, SceneProjection
-
-Floats = NDArray[np.float64]
 
 
 def pick(entries: Floats, search: Callable[[int, RayHits], None], sight: RaySight) -> RayHit | None:

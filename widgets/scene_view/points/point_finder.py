@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.image.images_of_drives import image_of
 from processing.image.search.clip import Clip
 from processing.image.search.enclosed_points import Sight, points_enclosed
@@ -23,8 +24,6 @@ from widgets.scene_view.rendering.projection import NEAR_M, SceneProjection
 from widgets.scene_view.rendering.scene_tile import DrawnTile
 from widgets.shared.cursor import PickedPosition
 from widgets.shared.view_settings import ViewSettings
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

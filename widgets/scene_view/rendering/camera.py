@@ -6,11 +6,10 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.image.search.tile_choice import Camera3D
 
-Floats = NDArray[np.float64]
 Triple = tuple[float, float, float]
 
 ANGLE_DEG = 45.0

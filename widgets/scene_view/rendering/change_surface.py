@@ -10,13 +10,12 @@ from numpy.typing import NDArray
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer
 
+from processing.core.arrays import Floats
 from processing.image.search.clip import Clip
 from processing.methods.earthwork.maps.change_grid import ChangeGrid
 from processing.methods.earthwork.maps.heat_map import change_classes, class_colours
 from widgets.scene_view.rendering.vtk_arrays import as_vtk, faces_of, positions_of
 from widgets.shared.shown_volume import VolumeStyle
-
-Floats = NDArray[np.float64]
 
 MOST_FACES = 150_000
 """As many as a program draws in a tenth of a second without a graphics card."""

@@ -14,13 +14,11 @@ from numpy.typing import NDArray
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer
 
+from processing.core.arrays import Colours, Floats
 from processing.map.catalogue import Geometry
 from widgets.feature_drawing.feature_shapes import FeatureShape
 from widgets.feature_drawing.feature_style import FeatureStyle
 from widgets.scene_view.rendering.vtk_arrays import as_vtk, cloud_of, lines_of
-
-Floats = NDArray[np.float64]
-Colours = NDArray[np.uint8]
 
 _HALO_RGB = (12, 14, 18)
 _MARK_PX = 9.0

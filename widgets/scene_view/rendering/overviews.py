@@ -7,12 +7,10 @@ from collections.abc import Iterable
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.recording.drive import Drive
 from widgets.scene_view.rendering.camera import SceneCamera
-
-Floats = NDArray[np.float64]
 
 _BEHIND_M, _ABOVE_M, _AHEAD_M = 14.0, 9.0, 22.0
 _LOOK_AHEAD_M = 8.0

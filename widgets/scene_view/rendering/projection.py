@@ -9,9 +9,8 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from widgets.scene_view.rendering.camera import SceneCamera
-
-Floats = NDArray[np.float64]
 
 NEAR_M = 0.05
 """What is nearer to the camera's plane than this isn't seen in perspective."""

@@ -14,14 +14,11 @@ from numpy.typing import NDArray
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer
 
+from processing.core.arrays import Colours, Floats, Integers
 from processing.map.solids import FaceIndices, Solid, solid_of
 from widgets.feature_drawing.feature_shapes import FeatureShape
 from widgets.feature_drawing.feature_style import FeatureStyle
 from widgets.scene_view.rendering.vtk_arrays import as_vtk, faces_of, positions_of
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
-Colours = NDArray[np.uint8]
 
 _BARRED = "gutter_grating"
 _PITCH_M = 0.04  # of the bars that are drawn; real ones are nearer, and would blur

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFontMetricsF, QPainter, QPen, QPolygonF
 
+from processing.core.arrays import Floats
 from processing.core.text import Language, Text
 from processing.methods.earthwork.maps.change_grid import ChangeGrid
 from processing.methods.earthwork.maps.change_reading import ChangeLine, change_along
@@ -14,8 +15,6 @@ from processing.section.cut import Cut
 from widgets.plane_view.viewport import PlaneViewport
 from widgets.section_view.picture.projection import SectionProjection
 from widgets.shared.shown_volume import ShownVolume
-
-Floats = NDArray[np.float64]
 
 _BEFORE, _AFTER = Text("Before", "前"), Text("After", "後")
 _CUT, _FILL = Text("Cut", "切土"), Text("Fill", "盛土")

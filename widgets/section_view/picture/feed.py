@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QObject, Signal
 
+from processing.core.arrays import Floats
 from processing.core.errors import UserError
 from processing.image.attributes.attributes import colours, most_telling_attribute
 from processing.methods.ground.surface_line import SurfaceLine
@@ -21,8 +22,6 @@ from widgets.section_view.picture.section_diagnostics import SectionDiagnostics,
 from widgets.section_view.picture.section_position import SectionPosition
 from widgets.section_view.picture.settings import SectionSettings
 from widgets.shared.view_settings import PointStyle
-
-Floats = NDArray[np.float64]
 
 _AT_ONCE = frozenset({"intensity", "height", "class", "label", "segment"})
 """Attributes that are read, not computed from neighbours or images."""

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QPainter, QPen
 
+from processing.core.arrays import Floats, Integers
 from processing.map.catalogue import Catalogue, Geometry
 from processing.map.feature import Feature
 from processing.section.cut import Cut
@@ -18,9 +19,6 @@ from widgets.feature_drawing.feature_style import style_of
 from widgets.plane_view.projected_map import PlaneFeatures
 from widgets.plane_view.viewport import PlaneViewport
 from widgets.section_view.picture.projection import SectionProjection
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 _HALO = QColor("#0b0d10")
 _WHITE = QColor("#ffffff")

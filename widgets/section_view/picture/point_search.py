@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtGui import QPolygonF
 
+from processing.core.arrays import Floats
 from processing.image.images_of_drives import image_of
 from processing.map.feature import PointReference
 from processing.recording.drive import Drive
@@ -18,8 +19,6 @@ from widgets.plane_view.viewport import PlaneViewport
 from widgets.section_view.picture.feed import SectionPicture
 from widgets.section_view.picture.projection import SectionProjection
 from widgets.shared.cursor import PickedPosition
-
-Floats = NDArray[np.float64]
 
 _LEAST_M = 1e-3
 

@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.map.feature import Position
 from processing.section.cut import Cut
 from widgets.mouse_tools.mouse_tool import Ray
-
-Floats = NDArray[np.float64]
 
 
 class SectionProjection:

@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.core.errors import UserError
 from processing.image.scan_lines.scanlines import Scanlines, ScanlineSettings, scanline_through
 from processing.methods.road.diagnostics import Diagnostic
@@ -16,8 +16,6 @@ from processing.recording.drive import Drive
 from processing.section.cut import Cut
 from processing.tools.registry import TOOLS
 from widgets.section_view.picture.section_position import SectionPosition
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import numpy as np
 
+from processing.core.arrays import Floats
 from processing.laboratory.accuracy.road.road_surroundings import (
     BUILDING,
     COVERS,
@@ -24,7 +25,6 @@ from processing.laboratory.accuracy.road.road_surroundings import (
 from processing.scoring.curb_lines import ScoredEdge
 from processing.scoring.curb_sections import TrueSection, kind_of
 from processing.scoring.line_positions import PolylineIndex, length_m, middle_positions
-from processing.scoring.mapped_features import Floats
 
 CURB_TYPES: Mapping[FailureKind, tuple[str, ...]] = {
     "missed": (

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from processing.core.arrays import Floats
 from processing.laboratory.accuracy.road.road_surroundings import (
     BUILDING,
     COVERS,
@@ -23,7 +24,7 @@ from processing.laboratory.accuracy.road.road_surroundings import (
 )
 from processing.scoring.gutters import ScoredGutters
 from processing.scoring.line_positions import PolylineIndex
-from processing.scoring.mapped_features import Floats, MappedFeature, MappedFile
+from processing.scoring.mapped_features import MappedFeature, MappedFile
 
 GUTTER_TYPES: Mapping[FailureKind, tuple[str, ...]] = {
     "missed": (

@@ -15,11 +15,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.formats.pictures.png import write_png
 from processing.image.scan_lines.scanlines import ScanlineSettings, scanline_through
 from processing.laboratory.accuracy.road.road_surroundings import Failure, StreetSurroundings
 from processing.recording.drive import Drive
-from processing.scoring.mapped_features import Floats, MappedFile
+from processing.scoring.mapped_features import MappedFile
 
 Picture = NDArray[np.uint8]
 

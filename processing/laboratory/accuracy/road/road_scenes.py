@@ -12,12 +12,13 @@ import laspy
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.core.monitor import SilentMonitor
 from processing.laboratory.simulate.requests import StreetRequest
 from processing.laboratory.simulate.streets import simulate_street
 from processing.project.importing.importing import ImportRequest, import_drives
 from processing.recording.drive import Drive
-from processing.scoring.mapped_features import Floats, MappedFeature, MappedFile
+from processing.scoring.mapped_features import MappedFeature, MappedFile
 from processing.tools.registry import TOOLS
 from processing.tools.runner import RunRequest, drives_of, run
 from processing.tools.tool import Candidate, CandidateResult

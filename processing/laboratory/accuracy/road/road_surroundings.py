@@ -12,9 +12,9 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.laboratory.accuracy.road.road_scenes import RoadScene, StreetCloud
 from processing.scoring.line_positions import PolylineIndex, length_m, middle_positions
-from processing.scoring.mapped_features import Floats
 
 FailureKind = Literal["missed", "false"]
 

@@ -11,6 +11,7 @@ import cv2
 import numpy as np
 import pytest
 
+from processing.core.arrays import Floats
 from processing.laboratory.accuracy.road.reliability_svg import reliability_svg
 from processing.laboratory.accuracy.road.road_edges import (
     TOOLS,
@@ -28,7 +29,7 @@ from processing.laboratory.accuracy.road.road_tables import ScoredStreet
 from processing.scoring.curb_lines import curb_score, score_edges
 from processing.scoring.gutters import gutter_score, score_gutters
 from processing.scoring.line_positions import PolylineIndex
-from processing.scoring.mapped_features import Floats, MappedFile
+from processing.scoring.mapped_features import MappedFile
 from tests.processing.scoring.small_maps import (
     ORIGIN,
     curb_pair,
