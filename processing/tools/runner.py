@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.core.errors import Unsuitable, name_with_type, report_as_user_error
-from processing.core.monitor import Monitor, parts_of
+from processing.core.monitor import Monitor
 from processing.core.owned_files import make_marked, remove_folder
 from processing.core.text import Text
 from processing.image.images_of_drives import image_of
@@ -161,34 +161,6 @@ def run_together(
         return TogetherResult((result,) if isinstance(result, FinishedColumns) else ())
     found = _result_of(request, monitor, _Columns(into, points_per_block))
     return found if isinstance(found, TogetherResult) else TogetherResult(())
-
-
-def mark_all(tool: str, drives: Sequence[Drive], monitor: Monitor, *, into: Path) -> None:
-    """Let a tool say of all points of some drives what it says, with its own parameters.
-
-    For drives that were imported for the moment: what is said becomes their columns at once.
-
-    Parameters
-    ----------
-    into : Path
-        A folder on their disk, which needn't exist.
-
-    Raises
-    ------
-    Unsuitable, OutOfRange, NoSpace, Cancelled
-        As :func:`run`.
-    """
-    left = list(drives)
-    for part in parts_of(monitor, [drive.count for drive in drives]):
-        if not left:
-            break
-        request = RunRequest(tool, left[0], tool_of(tool).parameters(), tuple(left[1:]))
-        result = run_together(request, part, into=into / f"{tool}-{len(left)}")
-        together = drives_of(request)
-        # The first folder may hold those of the others: it goes last.
-        for drive, columns in reversed(list(zip(together, result.columns, strict=True))):
-            columns.hand_over(drive.columns)
-        left = [drive for drive in left if drive not in together]
 
 
 def columns_of(result: RunResult) -> Mapping[str, NDArray[Any]]:

@@ -19,7 +19,8 @@ from processing.core.text import Text
 from processing.recording.drive import Drive
 from processing.scoring.confusion_matrix import BinaryConfusionMatrix, is_one_of
 from processing.tools.registry import asked_classes
-from processing.tools.runner import RunRequest, drives_of, run_together, tool_of
+from processing.tools.run_shares import run_shares
+from processing.tools.runner import run_together, tool_of
 from processing.tools.tool import FinishedColumns
 
 MOST_PARAMETERS = 2
@@ -161,23 +162,15 @@ def _tried(
     """What one setting does to all drives of a study."""
     tool, codes = tool_of(request.tool), asked_classes()[request.tool].codes
     parameters = fill_parameters(tool.parameters, setting)
-    everything = (*request.drives, *request.beside)
-    counts, left = BinaryConfusionMatrix(0, 0, 0, 0), list(request.drives)
-    while left:
-        beside = tuple(other for other in everything if other is not left[0])
-        wanted = RunRequest(tool.id, left[0], parameters, beside)
-        about = drives_of(wanted)
-        done = len(request.drives) - len(left)
-        share = len([one for one in left if one in about]) / len(request.drives)
-        start = done / len(request.drives)
+    counts, beside = BinaryConfusionMatrix(0, 0, 0, 0), request.beside
+    for share in run_shares(tool.id, request.drives, parameters, monitor, beside=beside):
         try:
-            found = run_together(wanted, PartMonitor(monitor, start, start + share), into=into)
-            for drive, columns in zip(about, found.columns, strict=True):
-                if drive in left:
+            found = run_together(share.request, share.monitor, into=into)
+            for drive, columns in zip(share.drives, found.columns, strict=True):
+                if drive in request.drives:
                     counts += _counted(columns, drive, truth, codes, monitor)
         finally:
             shutil.rmtree(into, ignore_errors=True)
-        left = [one for one in left if one not in about]
     return counts
 
 

@@ -30,7 +30,8 @@ from processing.recording.drive import Drive
 from processing.scoring.confusion_matrix import ConfusionMatrix
 from processing.tools.ground import GROUND_TOOL, LOWEST, PUBLISHED, GroundParameters
 from processing.tools.noise import NOISE, RADIUS, STATISTICAL, NoiseParameters
-from processing.tools.runner import RunRequest, drives_of, run_together
+from processing.tools.run_shares import run_shares
+from processing.tools.runner import run_together
 from processing.tools.tool import FinishedColumns, Tool
 
 Codes = NDArray[np.uint8]
@@ -172,11 +173,10 @@ def _ours(tool: Tool, parameters: object, scene: FilterScene, folder: Path) -> C
     drives, results = _drives(scene, folder), folder / uuid4().hex
     results.mkdir()
     columns: dict[str, FinishedColumns] = {}
-    while left := [drive for drive in drives if drive.id not in columns]:
-        beside = tuple(drive for drive in drives if drive is not left[0])
-        request = RunRequest(tool.id, left[0], parameters, beside)
-        found = run_together(request, SilentMonitor(), into=results / left[0].id).columns
-        columns |= {one.id: own for one, own in zip(drives_of(request), found, strict=True)}
+    for share in run_shares(tool.id, drives, parameters, SilentMonitor()):
+        into = results / share.drives[0].id
+        found = run_together(share.request, share.monitor, into=into).columns
+        columns |= {one.id: own for one, own in zip(share.drives, found, strict=True)}
     pairs = [(drive, columns[drive.id]) for drive in drives]
     (path,) = write_point_results(pairs, results / "result.las", SilentMonitor())
     return np.concatenate([block.codes for block in read_result(path).blocks()])

@@ -20,7 +20,8 @@ from processing.project.importing.importing import ImportRequest, import_drives
 from processing.recording.drive import Drive
 from processing.scoring.mapped_features import MappedFeature, MappedFile
 from processing.tools.registry import TOOLS
-from processing.tools.runner import RunRequest, drives_of, run
+from processing.tools.run_shares import run_shares
+from processing.tools.runner import run
 from processing.tools.tool import Candidate, CandidateResult
 
 LENGTH_M = 120.0
@@ -175,13 +176,11 @@ def found_by(tool: str, drives: Sequence[Drive]) -> RoadRun:
     """
     features: list[MappedFeature] = []
     notes: list[str] = []
-    left = list(drives)
+    parameters = TOOLS[tool].parameters()
     with TemporaryDirectory(prefix="zuka-") as position:
-        while left:
-            request = RunRequest(tool, left[0], TOOLS[tool].parameters(), tuple(left[1:]))
-            together = {drive.id for drive in drives_of(request)}
-            result = run(request, SilentMonitor(), into=Path(position) / left[0].id)
-            left = [drive for drive in left if drive.id not in together]
+        for share in run_shares(tool, drives, parameters, SilentMonitor()):
+            into = Path(position) / share.drives[0].id
+            result = run(share.request, share.monitor, into=into)
             if isinstance(result, CandidateResult):
                 for one in result.candidates:
                     if not one.is_drawing:
