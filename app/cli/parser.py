@@ -125,7 +125,15 @@ def _add_working_commands(commands: _Commands[_Parser]) -> None:
         "--after", type=Path, metavar="B", help="(.xml, .xml#SURFACE), or a level in m"
     )
     running.add_argument("--set", action="append", default=[], metavar="NAME=VALUE")
-    running.add_argument("--output", type=Path, required=True, metavar="OUT")
+    running.add_argument(
+        "--output", type=Path, metavar="OUT", help="without it the project stores the result"
+    )
+    running.add_argument(
+        "--accept-above",
+        type=float,
+        metavar="CONFIDENCE",
+        help="of what the project stores: candidates that need no review",
+    )
     running.set_defaults(module="run")
     studying = commands.add_parser("study", help="a tool with many settings, judged by a truth")
     studying.add_argument("tool", metavar="TOOL")

@@ -6,7 +6,7 @@ import argparse
 import math
 from pathlib import Path
 
-from app.cli.opened import OpenedInput, opened_input, terminal_monitor
+from app.cli.opened import opened_input, terminal_monitor
 from app.cli.output import print_lines
 from app.cli.scores.aligned import align_lines
 from app.cli.set_option import settings_of_words
@@ -18,6 +18,7 @@ from processing.core.scratch_folder import scratch_folder
 from processing.core.text import Language, Text
 from processing.formats.format import Content
 from processing.formats.registry import FORMATS
+from processing.operations.inputs import OpenedInputs
 from processing.project.evaluation.class_tables import write_study
 from processing.project.evaluation.parameter_study import (
     ParameterStudy,
@@ -63,7 +64,7 @@ def command(arguments: argparse.Namespace) -> int:
 
 
 def _truth_of(
-    opened: OpenedInput, files: list[Path], scratch: Path, monitor: Monitor
+    opened: OpenedInputs, files: list[Path], scratch: Path, monitor: Monitor
 ) -> tuple[tuple[Drive, ...], TruthOf]:
     """The drives that files say the truth of, and what they say."""
     folders: dict[str, Path] = {}
@@ -96,5 +97,5 @@ def _lines(found: ParameterStudy, language: Language) -> list[str]:
     return align_lines(rows)
 
 
-def _delivered(opened: OpenedInput) -> list[Path]:
+def _delivered(opened: OpenedInputs) -> list[Path]:
     return [path for drive in opened.drives for path in drive.delivered_files]

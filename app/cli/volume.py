@@ -77,6 +77,12 @@ def _check(arguments: argparse.Namespace, parameters: VolumeParameters) -> None:
                 "--before A と --after B に、点群・設計面（LandXML）・標高を指定してください。",
             ),
         )
+    if arguments.output is None:
+        raise MissingInput(
+            Text("A volume is written to a file.", "土量はファイルに書き出します。"),
+            Text.same("zuka run volume"),
+            Text("Name it with --output.", "--output でファイルを指定してください。"),
+        )
     FORMATS.format_to_write(arguments.output, Content.NUMBERS)
     check_report_options(parameters, (arguments.before, arguments.after))
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from app.cli.opened import OpenedInput, opened_input
+from app.cli.opened import opened_input
 from processing.core.errors import MissingInput, Unsuitable
 from processing.core.monitor import Monitor, PartMonitor
 from processing.core.text import Text
@@ -19,6 +19,7 @@ from processing.formats.registry import FORMATS
 from processing.formats.surfaces.design import read_design
 from processing.methods.earthwork.surfaces.epoch_ground import ground_of_drives, has_ground
 from processing.methods.earthwork.surfaces.sides import Level, Side
+from processing.operations.inputs import OpenedInputs
 from processing.project.project import is_project
 from processing.project.work_store import WorkStore
 from processing.recording.drive import Drive
@@ -131,7 +132,7 @@ def _read_design(path: Path, name: str, monitor: Monitor) -> NamedSide:
     return NamedSide(design.surface, str(path), (path,), 0, design.crs)
 
 
-def _epoch(words: Path, opened: OpenedInput) -> tuple[Drive, ...]:
+def _epoch(words: Path, opened: OpenedInputs) -> tuple[Drive, ...]:
     """The drives of an input; of a project the only recording."""
     if not is_project(words):
         return opened.drives

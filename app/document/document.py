@@ -26,17 +26,17 @@ from processing.map.catalogue_file import read_catalogue
 from processing.map.change import Change
 from processing.map.feature import Feature
 from processing.operations.export import ExportRequest
-from processing.operations.repeated_runs import with_earlier_decisions
+from processing.operations.finished_runs import FinishedRun
+from processing.operations.run import operation_on_drive
+from processing.operations.store import StoredRun, store_run
 from processing.project.importing.importing import ImportRequest
 from processing.project.project import Project
-from processing.project.results.found_classes import classes_now
 from processing.project.results.found_features import FoundFeatures
 from processing.project.store.label_filing import are_many
 from processing.project.store.runs import Run
 from processing.project.template_store import TemplateStore
 from processing.recording.drive import Drive
-from processing.tools.runner import RunRequest
-from processing.tools.tool import FinishedColumns, Tool
+from processing.tools.tool import Tool
 from resources import path_of
 from widgets.shared.cursor import Cursor
 from widgets.shared.map_changes import MapChanges
@@ -87,7 +87,7 @@ class Document(QObject):
         self._job_results = JobResultApplier(jobs, self)
         self._job_results.refused.connect(self.refused)
         self._label_steps = LabelSteps(self._job_results, self.undo_stack, self._changed, self)
-        self._runs = RunResultApplier(self._job_results, self._label_steps, self.store_run)
+        self._runs = RunResultApplier(self._job_results, self._label_steps, self._store_finished)
         self._label_steps.reported.connect(self.reported)
         self._label_steps.refused.connect(self.refused)
         self._label_steps.cancelled.connect(jobs.cancel)
@@ -278,41 +278,13 @@ class Document(QObject):
         self, tool: str, drive_id: str, parameters: object, *, lane: JobLane = JobLane.ASKED
     ) -> str:
         """Run a tool on a drive in the background; gives the job's id."""
-        drive = self.drive(drive_id)
-        beside = tuple(other for other in self.drives() if other is not drive)
         project = self._needed()
-        request = RunRequest(tool, drive, parameters, beside)
-
-        def store_columns(found: FinishedColumns) -> None:
-            self._store_columns(self.drive(drive_id), found, replaces=lane is not JobLane.PREPARED)
-
-        return self._runs.start(project, request, store_columns, lane)
+        operation = operation_on_drive(tool, parameters, project.folder, drive_id)
+        return self._runs.start(project, operation, lane)
 
     def store_run(self, found: FoundFeatures) -> bool:
         """Put a run with what it found on the map as one undoable step; says whether it could."""
-        project = self._needed()
-        if found.change.labels and not project.features.fits(found.change):
-            # Points were painted while the tool ran.
-            found = classes_now(found, found.tool, self.drive)
-        stored: list[FoundFeatures] = []
-
-        def push() -> Change:
-            new = with_earlier_decisions(found, project)
-            if new.change.is_empty:
-                project.runs.add(new.run)
-            self.undo_stack.push(new.run.summary, new.change, run=new.run)
-            stored.append(new)
-            return new.change
-
-        is_stored = self._changed(push)
-        # Told last: the review says what it loses by this step, which is the lesser news.
-        for one in stored:
-            self.reported.emit(one.run.summary)
-            if one.change.added:
-                self.shared.map_changes.candidates_found.emit(one.run.tool, one.run.id)
-        if found.change.labels or found.change.filed:
-            self.drive_results.first_look.show_classes()
-        return is_stored
+        return self._store_finished(FinishedRun(found=found))
 
     def run_in_background(
         self, work: Callable[[], object], take: Callable[[object | None], None]
@@ -353,14 +325,28 @@ class Document(QObject):
     def _prepare(self, tool: Tool, drive: Drive) -> str:
         return self.start_run(tool.id, drive.id, tool.parameters(), lane=JobLane.PREPARED)
 
-    def _store_columns(self, drive: Drive, found: FinishedColumns, *, replaces: bool) -> None:
-        if not replaces and all(map(drive.columns.has, found.names)):
-            # The user ran the tool meanwhile, with parameters of their own.
-            found.remove()
-            return
-        found.hand_over(drive.columns)
-        self.tiles.drop(drive.id)
-        self.shared.map_changes.drive_columns_changed.emit(drive.id)
+    def _store_finished(self, done: FinishedRun) -> bool:
+        """Put what a run gave into the project and tell the views; says whether the map changed."""
+        stored: list[StoredRun] = []
+
+        def act() -> Change:
+            stored.append(store_run(self._needed(), done))
+            self.undo_stack.note(stored[-1].change)
+            return stored[-1].change
+
+        is_changed = self._changed(act)
+        # Told last: the review says what it loses by this step, which is the lesser news.
+        for one in stored:
+            if one.run is None:
+                self.tiles.drop(done.drive)
+                self.shared.map_changes.drive_columns_changed.emit(done.drive)
+                continue
+            self.reported.emit(one.summary)
+            if one.change.added:
+                self.shared.map_changes.candidates_found.emit(one.run.tool, one.run.id)
+        if done.found is not None and (done.found.change.labels or done.found.change.filed):
+            self.drive_results.first_look.show_classes()
+        return is_changed
 
     def _changed(self, act: Callable[[], Change | None]) -> bool:
         try:

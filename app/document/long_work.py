@@ -10,16 +10,18 @@ from dataclasses import replace
 from pathlib import Path
 
 from app.document.import_words import adding_words
-from app.document.run_storing import FinishedRun, finish_run
 from processing.core.monitor import Monitor
 from processing.core.text import Text
 from processing.image.images_of_drives import image_of
 from processing.operations.export import ExportRequest, export
+from processing.operations.finished_runs import FinishedRun
+from processing.operations.inputs import OpenedInputs
+from processing.operations.run import RunFolders, RunOperation, finish_runs
 from processing.project.additions import Additions, bring_in, home_of
 from processing.project.importing.import_request import ImportRequest
 from processing.project.project import Project
 from processing.recording.drive import Drive
-from processing.tools.runner import RunRequest, tool_of
+from processing.tools.runner import tool_of
 
 _LONG_POINTS = 10_000_000
 
@@ -48,21 +50,22 @@ def import_work(
 
 
 def run_work(
-    request: RunRequest, into: Path, labels_into: Path, begin: Callable[[], None]
-) -> tuple[Text, Callable[[Monitor], FinishedRun]]:
-    """A tool is run on a drive; what it says about points comes to lie in ``into``.
+    operation: RunOperation,
+    opened: OpenedInputs,
+    folders: Sequence[RunFolders],
+    begin: Callable[[], None],
+) -> tuple[Text, Callable[[Monitor], tuple[FinishedRun, ...]]]:
+    """A tool is run on drives of a project.
 
     Parameters
     ----------
-    labels_into, begin
-        As of :func:`app.document.run_storing.finish_run`.
+    folders, begin
+        As of :func:`processing.operations.run.finish_runs`.
     """
     title = Text("{tool}: {name}", "{tool}: {name}").filled(
-        tool=tool_of(request.tool).name, name=request.drive.info.name
+        tool=tool_of(operation.tool).name, name=", ".join(one.info.name for one in opened.chosen)
     )
-    return title, lambda monitor: finish_run(
-        request, into, monitor, labels_into=labels_into, begin=begin
-    )
+    return title, lambda monitor: finish_runs(operation, opened, folders, monitor, begin=begin)
 
 
 def export_work(

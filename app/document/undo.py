@@ -7,7 +7,6 @@ from PySide6.QtCore import QObject, Signal
 from processing.core.text import Text
 from processing.map.change import Change
 from processing.project.project import Project
-from processing.project.store.runs import Run
 
 
 class UndoStack(QObject):
@@ -38,10 +37,15 @@ class UndoStack(QObject):
         self._project = project
         self.changed.emit()
 
-    def push(self, label: Text, change: Change, *, run: Run | None = None) -> None:
-        """Apply a change and remember it, with the run that it comes from."""
+    def push(self, label: Text, change: Change) -> None:
+        """Apply a change and remember it."""
         if self._project is not None and not change.is_empty:
-            self._project.features.apply(label, change, run=run)
+            self._project.features.apply(label, change)
+            self.changed.emit()
+
+    def note(self, change: Change) -> None:
+        """A change was applied to the project, and remembered there."""
+        if not change.is_empty:
             self.changed.emit()
 
     def undo(self, *, are_columns_made: bool = False) -> Change | None:

@@ -10,19 +10,19 @@ from itertools import islice
 from PySide6.QtCore import QObject, Signal
 
 from app.document.document import Document
-from app.review.decisions import (
-    FeatureLines,
-    change_status,
-    label_of_line,
-    label_of_many,
-    label_of_one,
-)
 from app.review.review_queue import ReviewQueue
 from processing.core.errors import UserError
 from processing.core.text import Text
 from processing.map.change import Change
 from processing.map.feature import Feature, Status
 from processing.map.feature_middle import middle_of
+from processing.project.review.decisions import (
+    FeatureLines,
+    change_status,
+    label_of_line,
+    label_of_many,
+    label_of_one,
+)
 from processing.project.review.review_order import review_order
 from processing.project.review.review_state import (
     ReviewOrder,

@@ -37,6 +37,11 @@ def surface_file_of(parameters: object) -> Path | None:
     return path
 
 
+def surface_beside(path: Path, drive: Drive) -> Path:
+    """The surface of a drive, where there are several: the drive's name is added."""
+    return path.with_name(f"{path.stem}-{drive.info.name}{path.suffix}")
+
+
 def delivered_files(*groups: Sequence[Drive]) -> list[Path]:
     """The files that drives came from, which nothing may overwrite."""
     return [path for drives in groups for drive in drives for path in drive.delivered_files]

@@ -1,4 +1,4 @@
-"""What a tool's run gave, on its way from the worker into the project."""
+"""What a tool's run gave, on its way from a worker's thread into a project."""
 
 from __future__ import annotations
 
@@ -34,11 +34,14 @@ class FinishedRun:
         The run with its candidates or labels; None for a tool that makes columns.
     kept : Path or None
         A folder with what the drives keep of the run beside its labels.
+    drive : str
+        Id of the drive that the columns are of.
     """
 
     columns: FinishedColumns | None = None
     found: FoundFeatures | None = None
     kept: Path | None = None
+    drive: str = ""
 
     def keep_with(self, drive_of: Callable[[str], Drive]) -> None:
         """Keep with its drives what the run said of their points, and the surface it found.
@@ -105,7 +108,7 @@ def finish_run(
         times = {"started": started, "finished": datetime.now(UTC)}
         drives = [drive.id for drive in drives_of(request)]
         return FinishedRun(found=found_features(result, tool, parameters, drives, **times))
-    return FinishedRun(columns=result)
+    return FinishedRun(columns=result, drive=request.drive.id)
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,103 @@
+"""Storing what a run gave in a project: one path for the window, the command line and batch jobs.
+
+The project's thread does it; what takes time was done before, by
+:mod:`processing.operations.finished_runs`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from processing.core.text import Text
+from processing.map.change import Change
+from processing.map.feature import Status
+from processing.operations.finished_runs import FinishedRun
+from processing.operations.repeated_runs import with_earlier_decisions
+from processing.project.project import Project
+from processing.project.results.found_classes import classes_now
+from processing.project.results.found_features import FoundFeatures
+from processing.project.review.decisions import change_status, label_of_many
+from processing.project.store.runs import Run
+from processing.tools.tool import FinishedColumns
+
+_COLUMNS = Text("{name}: {columns}", "{name}: {columns}")
+
+
+@dataclass(frozen=True)
+class StoredRun:
+    """What a project has of a run.
+
+    Attributes
+    ----------
+    summary : Text
+        What came of it: “Curbs: 214 candidates”.
+    change : Change
+        What became of the map; empty where nothing did.
+    run : Run or None
+        None for a tool that makes columns: they say nothing that a person decides on.
+    """
+
+    summary: Text
+    change: Change
+    run: Run | None = None
+
+
+def store_run(project: Project, done: FinishedRun) -> StoredRun:
+    """Put what a run gave into a project: candidates and labels as one step that can be undone.
+
+    Candidates of earlier runs that nobody decided on are replaced, what was decided stays. What is
+    kept beside labels, and columns, comes to lie with the drives.
+
+    Raises
+    ------
+    NoSpace, InUse, BadFile
+        The map is as it was.
+    """
+    if done.found is not None:
+        done.keep_with(project.drive)
+        return _store_found(project, done.found)
+    if done.columns is None:
+        raise TypeError(done)
+    return _store_columns(project, done.drive, done.columns)
+
+
+def accept_above(project: Project, stored: Iterable[StoredRun], least: float) -> int:
+    """Accept candidates of runs from a confidence up, as one step; gives how many.
+
+    Raises
+    ------
+    NoSpace, InUse, BadFile
+        None was accepted.
+    """
+    added = [project.features.get(one.id) for each in stored for one in each.change.added]
+    chosen = [
+        one
+        for one in added
+        if one is not None
+        and one.status is Status.CANDIDATE
+        and (one.provenance.confidence or 0.0) >= least
+    ]
+    if chosen:
+        label = label_of_many(len(chosen), least)
+        project.features.apply(label, change_status(chosen, Status.ACCEPTED))
+    return len(chosen)
+
+
+def _store_found(project: Project, found: FoundFeatures) -> StoredRun:
+    if found.change.labels and not project.features.fits(found.change):
+        # Points were painted while the tool ran.
+        found = classes_now(found, found.tool, project.drive)
+    new = with_earlier_decisions(found, project)
+    if new.change.is_empty:
+        project.runs.add(new.run)
+    else:
+        project.features.apply(new.run.summary, new.change, run=new.run)
+    return StoredRun(new.run.summary, new.change, new.run)
+
+
+def _store_columns(project: Project, drive_id: str, columns: FinishedColumns) -> StoredRun:
+    drive = project.drive(drive_id)
+    columns.hand_over(drive.columns)
+    summary = _COLUMNS.filled(name=drive.info.name, columns=", ".join(columns.names))
+    return StoredRun(summary, Change())
