@@ -59,7 +59,13 @@ def read_arguments(arguments: Sequence[str]) -> tuple[Command, argparse.Namespac
     parser.add_argument("--version", action="version", version=f"zuka {version('zuka')}")
     parser.set_defaults(module="open_window", paths=[])
     commands = parser.add_subparsers(metavar="COMMAND", parser_class=_Parser)
-    for add in (_add_window_commands, _add_reading_commands, _add_working_commands, _add_simulate):
+    for add in (
+        _add_window_commands,
+        _add_reading_commands,
+        _add_working_commands,
+        _add_run,
+        _add_simulate,
+    ):
         add(commands)
     namespace = parser.parse_args(arguments)
     module = import_module(f"app.cli.{namespace.module}")
@@ -117,24 +123,6 @@ def _add_working_commands(commands: _Commands[_Parser]) -> None:
         help="where labels of points come from: an extra dimension, or the delivered classes",
     )
     importing.set_defaults(module="import_drives")
-    running = commands.add_parser("run", help="run a processing tool on files")
-    running.add_argument("tool", metavar="TOOL")
-    _add_inputs(running, least="*")
-    running.add_argument("--before", type=Path, metavar="A", help="of a volume: points, design")
-    running.add_argument(
-        "--after", type=Path, metavar="B", help="(.xml, .xml#SURFACE), or a level in m"
-    )
-    running.add_argument("--set", action="append", default=[], metavar="NAME=VALUE")
-    running.add_argument(
-        "--output", type=Path, metavar="OUT", help="without it the project stores the result"
-    )
-    running.add_argument(
-        "--accept-above",
-        type=float,
-        metavar="CONFIDENCE",
-        help="of what the project stores: candidates that need no review",
-    )
-    running.set_defaults(module="run")
     studying = commands.add_parser("study", help="a tool with many settings, judged by a truth")
     studying.add_argument("tool", metavar="TOOL")
     _add_inputs(studying)
@@ -164,6 +152,27 @@ def _add_working_commands(commands: _Commands[_Parser]) -> None:
         )
     exporting.add_argument("--candidates", action="store_true", help="unchecked ones as well")
     exporting.set_defaults(module="export")
+
+
+def _add_run(commands: _Commands[_Parser]) -> None:
+    running = commands.add_parser("run", help="run a processing tool on files or a project")
+    running.add_argument("tool", metavar="TOOL")
+    _add_inputs(running, least="*")
+    running.add_argument("--before", type=Path, metavar="A", help="of a volume: points, design")
+    running.add_argument(
+        "--after", type=Path, metavar="B", help="(.xml, .xml#SURFACE), or a level in m"
+    )
+    running.add_argument("--set", action="append", default=[], metavar="NAME=VALUE")
+    running.add_argument(
+        "--output", type=Path, metavar="OUT", help="without it the project stores the result"
+    )
+    running.add_argument(
+        "--accept-above",
+        type=float,
+        metavar="CONFIDENCE",
+        help="of what the project stores: candidates that need no review",
+    )
+    running.set_defaults(module="run")
 
 
 def _add_simulate(commands: _Commands[_Parser]) -> None:
