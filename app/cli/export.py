@@ -8,15 +8,12 @@ from app.cli.opened import terminal_monitor
 from app.cli.output import print_lines
 from app.settings.language import system_language
 from processing.formats.registry import FORMATS
-from processing.operations.export import ExportRequest, check_formats, export
-from processing.project.project import Project
+from processing.operations.export import ExportRequest
+from processing.operations.project_export import ExportOperation, export_project
 
 
 def command(arguments: argparse.Namespace) -> int:
     """Write the map in each format that was asked for."""
-    check_formats(arguments.format)
-    project = Project.open(arguments.project, writing=False)
-    project.find_sources()
     request = ExportRequest(
         formats=tuple(dict.fromkeys(arguments.format)),
         folder=arguments.out,
@@ -27,19 +24,7 @@ def command(arguments: argparse.Namespace) -> int:
             if (given := getattr(arguments, option.id)) is not None
         },
         candidates=arguments.candidates,
-        never=tuple(path for drive in project.drives for path in drive.delivered_files),
     )
-    try:
-        features = tuple(project.features.all())
-        paths = export(
-            features,
-            project.catalogue,
-            project.crs,
-            request,
-            terminal_monitor(),
-            drives=project.drives,
-        )
-    finally:
-        project.close()
-    print_lines(*(str(path) for path in paths))
+    written = export_project(ExportOperation(arguments.project, request), terminal_monitor())
+    print_lines(*(str(path) for path in written.paths))
     return 0

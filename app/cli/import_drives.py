@@ -10,13 +10,11 @@ from app.cli.opened import request_of, terminal_monitor
 from app.cli.output import print_lines
 from app.cli.terminal import say
 from app.document.import_words import column_remarks, has_already, known_words, lacking_words
-from app.document.long_work import prepare_images
 from app.settings.language import system_language
 from processing.core.text import Text
-from processing.project.additions import Additions, bring_in, home_of, take_over
+from processing.operations.import_files import ImportOperation, import_files
+from processing.project.additions import Additions
 from processing.project.importing.import_request import ImportRequest
-from processing.project.importing.unfinished_imports import unfinished_imports
-from processing.project.project import Project, is_project
 from processing.recording.drive import Drive
 
 _ROWS = Text(
@@ -30,26 +28,9 @@ def command(arguments: argparse.Namespace) -> int:
 
     What the project has already is not imported again; with a trajectory or images it is completed.
     """
-    is_new = not is_project(arguments.project)
-    if is_new:
-        project = Project.create(arguments.project, arguments.crs)
-    else:
-        project = Project.open(arguments.project)
-    finished = False
-    try:
-        request = replace(request_of(arguments), labels=arguments.labels)
-        brought = bring_in(request, home_of(project), terminal_monitor())
-        if arguments.crs and not brought.folders:
-            project.set_crs(arguments.crs)
-        drives = take_over(project, brought)
-        finished = True
-        for drive in drives:
-            prepare_images(drive, terminal_monitor())
-        _report(drives, brought, request)
-    finally:
-        project.close()
-        if is_new and not finished and not unfinished_imports(project.folder):
-            Project.remove_new(arguments.project)
+    request = replace(request_of(arguments), labels=arguments.labels)
+    outcome = import_files(ImportOperation(arguments.project, request), terminal_monitor())
+    _report(outcome.drives, outcome.brought, request)
     return 0
 
 

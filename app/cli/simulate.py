@@ -8,13 +8,12 @@ from app.cli.opened import terminal_monitor
 from app.cli.output import print_lines
 from app.cli.set_option import settings_of_words
 from app.settings.language import system_language
-from processing.core.parameters import fill_parameters
 from processing.core.text import Language, Text
 from processing.laboratory.simulate.scanning.density import density_map, survey_of
 from processing.laboratory.simulate.scanning.density_files import write_density
 from processing.laboratory.simulate.scanning.sensors import sensor_of
+from processing.laboratory.simulate.simulate_operation import SimulateOperation, simulate
 from processing.laboratory.simulate.simulated import Simulated
-from processing.laboratory.simulate.simulations import SIMULATIONS
 
 _MADE = Text("{folder}: {points:,} points, {crs}", "{folder}: {points:,}点, {crs}")
 _TRUTH = Text("truth: {folder}", "正解データ: {folder}")
@@ -25,13 +24,11 @@ def command(arguments: argparse.Namespace) -> int:
     """Make what is ordered."""
     if arguments.what == "density":
         return _write_density(arguments)
-    order = SIMULATIONS[arguments.what]
     values = settings_of_words(arguments.set)
     for option, field in _OWN_OPTIONS.items():
         if (given := getattr(arguments, option)) is not None:
             values[field] = given
-    request = fill_parameters(order.request, values)
-    made = order.fulfil(request, arguments.out, terminal_monitor())
+    made = simulate(SimulateOperation(arguments.what, arguments.out, values), terminal_monitor())
     print_lines(*_lines(made, system_language()))
     return 0
 

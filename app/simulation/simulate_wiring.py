@@ -15,6 +15,7 @@ from processing.core.errors import UserError
 from processing.core.monitor import Monitor
 from processing.core.text import Text
 from processing.laboratory.simulate.forecast import Forecast
+from processing.laboratory.simulate.simulate_operation import operation_for, simulate
 from processing.laboratory.simulate.simulated import Simulated
 from processing.laboratory.simulate.simulations import SIMULATIONS
 from processing.project.importing.import_request import ImportRequest
@@ -75,10 +76,10 @@ class Simulations(QObject):
         self._forecast = self._parts.jobs.start(title, work, lane=JobLane.INTERACTIVE)
 
     def _on_form_simulation_requested(self, asked: SimulationRequest) -> None:
-        order = SIMULATIONS[asked.order]
+        operation = operation_for(asked.order, asked.request, asked.folder)
 
         def work(monitor: Monitor) -> Simulated:
-            return order.fulfil(asked.request, asked.folder, monitor)
+            return simulate(operation, monitor)
 
         title = Text("Simulation: {name}", "模擬計測: {name}").filled(name=asked.folder.name)
         self._making.add(self._parts.jobs.start(title, work))

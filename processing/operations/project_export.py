@@ -1,0 +1,86 @@
+"""Handing in a project's map: a value that says in which formats and where, and what does it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from processing.core.monitor import Monitor
+from processing.core.text import Text
+from processing.operations.export import ExportRequest, check_formats, export
+from processing.operations.inputs import opened_project
+from processing.project.project import Project
+
+
+@dataclass(frozen=True)
+class ExportOperation:
+    """A project's map to be handed in.
+
+    Attributes
+    ----------
+    project : Path
+    request : ExportRequest
+        Delivered files are never overwritten, whether it names them or not.
+    """
+
+    project: Path
+    request: ExportRequest
+
+    def check(self) -> None:
+        """Refuse a format that there isn't before anything is opened.
+
+        Raises
+        ------
+        OutOfRange
+        """
+        check_formats(self.request.formats)
+
+
+@dataclass(frozen=True)
+class WrittenFiles:
+    """What an operation wrote.
+
+    Attributes
+    ----------
+    paths : tuple of Path
+    """
+
+    paths: tuple[Path, ...]
+
+    @property
+    def words(self) -> tuple[Text, ...]:
+        """A line for each file."""
+        return tuple(Text.same(str(path)) for path in self.paths)
+
+
+def export_project(operation: ExportOperation, monitor: Monitor) -> WrittenFiles:
+    """Write a project's map; the project is only read.
+
+    Raises
+    ------
+    UserError, Cancelled
+        As :func:`processing.operations.export.export`; nothing was written.
+    """
+    operation.check()
+    with opened_project(operation.project, writing=False) as project:
+        return WrittenFiles(export_of(project, operation.request)(monitor))
+
+
+def export_of(project: Project, request: ExportRequest) -> Callable[[Monitor], tuple[Path, ...]]:
+    """What writes the map as it is now, in any thread.
+
+    Parameters
+    ----------
+    request : ExportRequest
+        As of :class:`ExportOperation`.
+    """
+    features = tuple(project.features.all())
+    catalogue, crs, drives = project.catalogue, project.crs, project.drives
+    delivered = (path for drive in drives for path in drive.delivered_files)
+    request = replace(request, never=(*request.never, *delivered))
+
+    def work(monitor: Monitor) -> tuple[Path, ...]:
+        return export(features, catalogue, crs, request, monitor, drives=drives)
+
+    return work
