@@ -16,10 +16,8 @@ from app.volumes.volume_exports import VolumeExport
 from app.volumes.volume_reports import ExportedVolume
 from app.volumes.volume_work import (
     LoadedMap,
-    MadeVolume,
     contours_of,
     map_work,
-    sides_reader,
     volume_work,
 )
 from processing.core.errors import UserError
@@ -28,6 +26,7 @@ from processing.core.text import Language, Text
 from processing.methods.earthwork.maps.change_grid import ChangeGrid
 from processing.methods.earthwork.maps.contours import LevelLine
 from processing.methods.earthwork.volumes.volume_result import VolumeResult
+from processing.operations.volumes.project_volumes import MadeVolume, sides_reader, store_volume
 from processing.project.project import Project
 from processing.project.volumes.epochs import Epoch, epochs_of, has_ground
 from processing.project.volumes.volume import ChosenSide, KeptVolume, SideKind, VolumeRequest
@@ -135,8 +134,7 @@ class Earthwork(QObject):
         title, work = volume_work(request, project.drives, project.crs, into)
 
         def take(made: MadeVolume) -> None:
-            VolumeStore(project.folder).add(made.kept, made.folder)
-            self._volumes = (*self._volumes, made.kept)
+            self._volumes = (*self._volumes, store_volume(project, made))
             self.show(made.kept.id)
             volumes = made.kept.volumes
             reported = _TOLD.filled(

@@ -13,13 +13,10 @@ from shapely.geometry.base import BaseGeometry
 
 from app.volumes.volume_reports import (
     ExportedVolume,
+    Write,
+    form_writer,
     is_judged,
-    write_form,
-    write_form_csv,
-    write_form_xlsx,
-    write_report,
-    write_report_csv,
-    write_report_xlsx,
+    report_writer,
 )
 from processing.core.errors import Unsuitable
 from processing.core.monitor import Monitor
@@ -37,6 +34,7 @@ from processing.methods.earthwork.maps.change_grid import ChangeGrid
 from processing.methods.earthwork.maps.heat_map import change_classes
 from processing.methods.earthwork.surfaces.sides import EpochGround
 from processing.methods.earthwork.volumes.volume_parameters import END_AREA, PRISMOIDAL
+from processing.operations.volumes.papers import PAPER, TABLE, WORKBOOK
 from processing.project.volumes.volume import KeptVolume, SideKind
 
 _TITLE = Text("Cut {cut} m³, fill {fill} m³", "切土量 {cut} m³、盛土量 {fill} m³")
@@ -46,8 +44,6 @@ _FORM = Text("As-built form 31-2", "様式-31-2 出来形合否判定総括表")
 _AFTER = Text("Ground after", "変化後の地盤")
 _MOST_CORNERS = 200_000
 _LONGEST_CELLS = 3.0
-
-Write = Callable[[Path, ExportedVolume, Monitor], None]
 
 
 def _has_epoch(kept: KeptVolume) -> bool:
@@ -161,12 +157,12 @@ def _later_ground(
 
 
 VOLUME_EXPORTS: tuple[VolumeExport, ...] = (
-    VolumeExport("report", _REPORT, FORMATS["pdf"], write_report),
-    VolumeExport("report-table", _REPORT, FORMATS["xlsx"], write_report_xlsx),
-    VolumeExport("report-csv", _REPORT, FORMATS["csv"], write_report_csv),
-    VolumeExport("form", _FORM, FORMATS["pdf"], write_form, is_judged),
-    VolumeExport("form-table", _FORM, FORMATS["xlsx"], write_form_xlsx, is_judged),
-    VolumeExport("form-csv", _FORM, FORMATS["csv"], write_form_csv, is_judged),
+    VolumeExport("report", _REPORT, FORMATS["pdf"], report_writer(PAPER)),
+    VolumeExport("report-table", _REPORT, FORMATS["xlsx"], report_writer(WORKBOOK)),
+    VolumeExport("report-csv", _REPORT, FORMATS["csv"], report_writer(TABLE)),
+    VolumeExport("form", _FORM, FORMATS["pdf"], form_writer(PAPER), is_judged),
+    VolumeExport("form-table", _FORM, FORMATS["xlsx"], form_writer(WORKBOOK), is_judged),
+    VolumeExport("form-csv", _FORM, FORMATS["csv"], form_writer(TABLE), is_judged),
     VolumeExport("surface", _AFTER, FORMATS["landxml"], _write_surface),
     VolumeExport(
         "ground", Text("Ground points", "地面の点群"), FORMATS["laz"], _write_ground, _has_epoch

@@ -9,18 +9,11 @@ from pathlib import Path, PurePath
 
 from processing.core.monitor import Monitor
 from processing.core.text import Language, Text
-from processing.formats.reports.as_built_form import write_as_built_form
-from processing.formats.reports.as_built_rows import AsBuiltFacts
-from processing.formats.reports.as_built_tables import write_as_built_csv, write_as_built_xlsx
-from processing.formats.reports.volume_report import write_volume_report
-from processing.formats.reports.volume_rows import VolumeFacts
-from processing.formats.reports.volume_tables import write_volume_csv, write_volume_xlsx
-from processing.formats.reports.work_facts import SideFacts, WorkFacts
-from processing.methods.earthwork.as_built.as_built import AsBuiltResult, evaluate_as_built
+from processing.formats.reports.work_facts import SideFacts
 from processing.methods.earthwork.maps.contours import LevelLine
 from processing.methods.earthwork.surfaces.sides import Side
-from processing.methods.earthwork.volumes.comparison_checks import ground_and_design
 from processing.methods.earthwork.volumes.volume_result import VolumeResult
+from processing.operations.volumes.papers import VolumePapers, judged_ground
 from processing.project.volumes.volume import ChosenSide, KeptVolume, SideKind
 from processing.project.work_details import WorkDetails
 from processing.project.work_store import ChosenLimits
@@ -66,77 +59,48 @@ class ExportedVolume:
     never: tuple[Path, ...]
 
 
+Write = Callable[[Path, ExportedVolume, Monitor], None]
+
+
 def is_judged(kept: KeptVolume) -> bool:
     """Whether a measured ground was compared with a design."""
     kinds = {kept.request.before.kind, kept.request.after.kind}
     return kinds == {SideKind.EPOCH, SideKind.DESIGN}
 
 
-def write_report(path: Path, given: ExportedVolume, monitor: Monitor) -> None:
-    """Write the volume report as PDF."""
-    write_volume_report(
-        path, given.result, _volume_facts(given), given.language, monitor=monitor, never=given.never
-    )
+def report_writer(ending: str) -> Write:
+    """What writes the volume report as a file of an ending."""
+
+    def write(path: Path, given: ExportedVolume, monitor: Monitor) -> None:
+        _papers_of(given).write_report(path, given.result, monitor, ending=ending)
+
+    return write
 
 
-def write_report_xlsx(path: Path, given: ExportedVolume, _monitor: Monitor) -> None:
-    """Write the volume report as a workbook."""
-    write_volume_xlsx(path, given.result, _volume_facts(given), given.language, never=given.never)
+def form_writer(ending: str) -> Write:
+    """What writes the form of as-built control as a file of an ending."""
+
+    def write(path: Path, given: ExportedVolume, monitor: Monitor) -> None:
+        limits = given.limits.table, given.limits.shown_work_type
+        boundary = given.kept.request.boundary
+        judged = judged_ground(given.sides(monitor), limits, boundary, monitor)
+        _papers_of(given).write_form(path, judged, monitor, ending=ending)
+
+    return write
 
 
-def write_report_csv(path: Path, given: ExportedVolume, _monitor: Monitor) -> None:
-    """Write the numbers of the volume report as a table."""
-    write_volume_csv(path, given.result, _volume_facts(given), given.language, never=given.never)
-
-
-def write_form(path: Path, given: ExportedVolume, monitor: Monitor) -> None:
-    """Write the form of as-built control as PDF."""
-    result, facts = _judged(given, monitor)
-    write_as_built_form(path, result, facts, given.language, monitor=monitor, never=given.never)
-
-
-def write_form_xlsx(path: Path, given: ExportedVolume, monitor: Monitor) -> None:
-    """Write the form of as-built control as a workbook."""
-    result, facts = _judged(given, monitor)
-    write_as_built_xlsx(path, result, facts, given.language, never=given.never)
-
-
-def write_form_csv(path: Path, given: ExportedVolume, monitor: Monitor) -> None:
-    """Write the numbers of the form of as-built control as a table."""
-    result, facts = _judged(given, monitor)
-    write_as_built_csv(path, result, facts, given.language, never=given.never)
-
-
-def _judged(given: ExportedVolume, monitor: Monitor) -> tuple[AsBuiltResult, AsBuiltFacts]:
-    ground, design = ground_and_design(*given.sides(monitor))
+def _papers_of(given: ExportedVolume) -> VolumePapers:
     request = given.kept.request
-    named = {side.kind: side for side in (request.before, request.after)}
-    limits = given.limits.table, given.limits.shown_work_type
-    result = evaluate_as_built(ground, design, limits, monitor, boundary=request.boundary)
-    facts = AsBuiltFacts(
-        _work_facts(given),
-        _side_facts(named[SideKind.DESIGN], given),
-        _side_facts(named[SideKind.EPOCH], given),
-    )
-    return result, facts
-
-
-def _volume_facts(given: ExportedVolume) -> VolumeFacts:
-    request = given.kept.request
-    boundary = "" if request.boundary is None else _BOUNDARY.in_language(given.language)
-    return VolumeFacts(
-        _work_facts(given),
+    made_on = given.kept.made.astimezone().date()
+    return VolumePapers(
+        given.details.facts(given.kept.crs, version("zuka"), made_on),
         _side_facts(request.before, given),
         _side_facts(request.after, given),
-        boundary,
-        given.result.line,
-        given.result.between,
+        given.language,
+        given.never,
+        "" if request.boundary is None else _BOUNDARY.in_language(given.language),
+        is_design_before=request.before.kind is SideKind.DESIGN,
     )
-
-
-def _work_facts(given: ExportedVolume) -> WorkFacts:
-    made_on = given.kept.made.astimezone().date()
-    return given.details.facts(given.kept.crs, version("zuka"), made_on)
 
 
 def _side_facts(side: ChosenSide, given: ExportedVolume) -> SideFacts:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import shutil
@@ -25,11 +26,17 @@ from processing.operations.inputs import OperationInputs
 from processing.operations.operation_files import perform, read_operation, write_operation
 from processing.operations.run import RunOperation, operation_on_drive
 from processing.operations.undo import UndoneStep, UndoOperation
+from processing.operations.volumes.project_volumes import make_volume, store_volume
+from processing.operations.volumes.sides import VolumeSide
+from processing.operations.volumes.volume import VolumeOperation
 from processing.project.importing.dropped_files import request_of_files
 from processing.project.project import Project
+from processing.project.volumes.epochs import epochs_of
+from processing.project.volumes.volume import VolumeRequest
 from processing.recording.drive import Drive
 from processing.tools.registry import TOOLS
 from resources import path_of
+from tests.journeys.earthwork_user import two_epochs
 
 WAIT_MS = 60_000
 ROOT = Path(__file__).parents[2]
@@ -221,3 +228,26 @@ def test_a_run_into_a_file_is_the_same_from_a_written_operation(
     )
     assert first == second
     assert "curb_upper" in first
+
+
+def test_a_volume_between_two_epochs_has_the_same_figures(window: Document, tmp_path: Path) -> None:
+    folder = tmp_path / "site.zuka"
+    zuka("import", folder, *two_epochs(tmp_path))
+    assert len(zuka("run", "ground", folder)) == 2
+    project = opened(window, folder)
+    before, after = epochs_of(project.drives)
+    parameters = {"grid_m": 0.25}
+    request = VolumeRequest(before.side, after.side, parameters)
+    made = make_volume(
+        request, project.drives, project.crs, project.temporary_folder(), SilentMonitor()
+    )
+    kept = store_volume(project, made)
+    output = tmp_path / "volume.json"
+    sides = (VolumeSide(folder, drives=one.side.drives) for one in (before, after))
+    write_operation(tmp_path / "volume.toml", VolumeOperation(*sides, output, parameters))
+    perform(read_operation(tmp_path / "volume.toml"), SilentMonitor())
+    told = json.loads(output.read_text("utf-8"))
+    assert kept.volumes.cut_m3 > 1
+    for name in ("cut_m3", "fill_m3", "net_m3", "area_m2", "uncertainty_m3"):
+        assert told[name] == getattr(kept.volumes, name), name
+    assert told["grid_m"] == kept.grid_m

@@ -13,6 +13,7 @@ from processing.core.errors import BadFile, MissingInput, OutOfRange
 from processing.core.parameters import Parameter, ParameterValue, parameters_of
 from processing.laboratory.every_operation import EVERY_OPERATION
 from processing.laboratory.simulate.simulate_operation import SimulateOperation
+from processing.methods.earthwork.volumes.volume_parameters import VolumeParameters
 from processing.operations.export import FORMATS, ExportRequest
 from processing.operations.import_files import ImportOperation
 from processing.operations.inputs import OperationInputs
@@ -26,6 +27,8 @@ from processing.operations.project_export import ExportOperation
 from processing.operations.run import RunOperation
 from processing.operations.score import ScoreOperation
 from processing.operations.undo import UndoOperation
+from processing.operations.volumes.sides import VolumeSide
+from processing.operations.volumes.volume import VolumeOperation
 from processing.project.importing.import_request import ImportRequest
 from processing.tools.registry import TOOLS
 
@@ -115,7 +118,22 @@ simulations = st.builds(
     paths,
     some_of(EVERY_OPERATION["simulate"].type("site", Path()).parameter_class),
 )
-operations = st.one_of(runs, imports, exports, scores, simulations, st.builds(UndoOperation, paths))
+sides = st.one_of(
+    st.builds(VolumeSide, paths, names, words),
+    st.floats(allow_nan=False, allow_infinity=False).map(lambda level: VolumeSide(level_m=level)),
+)
+volumes = st.builds(
+    VolumeOperation,
+    sides,
+    sides,
+    st.just(Path("土量.json")),
+    some_of(VolumeParameters),
+    names,
+    words,
+    st.sampled_from(["en", "ja"]),
+)
+undos = st.builds(UndoOperation, paths)
+operations = st.one_of(runs, imports, exports, scores, volumes, simulations, undos)
 
 
 @given(operations, st.booleans())

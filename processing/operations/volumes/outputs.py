@@ -8,37 +8,32 @@ from datetime import datetime
 from importlib.metadata import version
 from pathlib import Path
 
-from app.cli.volume_sides import NamedSide, is_design, is_level
-from app.settings.language import system_language
 from processing.core.errors import MissingInput, OutOfRange, Unsuitable, use_one_of
 from processing.core.monitor import Monitor
 from processing.core.safe_write import refuse_inputs
-from processing.core.text import Text
+from processing.core.text import Language, Text
 from processing.formats.format import Content
 from processing.formats.registry import FORMATS
-from processing.formats.reports.as_built_form import write_as_built_form
-from processing.formats.reports.as_built_rows import AsBuiltFacts
-from processing.formats.reports.as_built_tables import write_as_built_csv, write_as_built_xlsx
-from processing.formats.reports.volume_report import write_volume_report
-from processing.formats.reports.volume_rows import VolumeFacts
-from processing.formats.reports.volume_tables import write_volume_csv, write_volume_xlsx
-from processing.formats.reports.work_facts import SideFacts, WorkFacts
+from processing.formats.reports.work_facts import SideFacts
 from processing.formats.surfaces.change_geotiff import write_change_geotiff
 from processing.formats.vectors.boundary_files import file_and_layer
-from processing.methods.earthwork.as_built.as_built import AsBuiltResult, evaluate_as_built
+from processing.methods.earthwork.as_built.as_built import AsBuiltResult
 from processing.methods.earthwork.as_built.limits import AsBuiltLimits
 from processing.methods.earthwork.as_built.limits_file import as_built_limits, read_limits
 from processing.methods.earthwork.geometry.triangle_surface import TriangleSurface
 from processing.methods.earthwork.geometry.volume_scope import VolumeScope
 from processing.methods.earthwork.surfaces.sides import EpochGround
-from processing.methods.earthwork.volumes.comparison_checks import ground_and_design, name_of
+from processing.methods.earthwork.volumes.comparison_checks import name_of
 from processing.methods.earthwork.volumes.volume_parameters import VolumeParameters
 from processing.methods.earthwork.volumes.volume_result import VolumeResult
-from processing.project.project import is_project
+from processing.operations.volumes.papers import VolumePapers, judged_ground
+from processing.operations.volumes.sides import NamedSide, VolumeSide
 from processing.project.work_details import WorkDetails, read_work_details
 
 
-def check_report_options(parameters: VolumeParameters, sides: tuple[Path, Path]) -> None:
+def check_report_options(
+    parameters: VolumeParameters, sides: tuple[VolumeSide, VolumeSide]
+) -> None:
     """Refuse what can't be written before any work is done.
 
     Raises
@@ -60,19 +55,20 @@ def check_report_options(parameters: VolumeParameters, sides: tuple[Path, Path])
         read_limits(Path(parameters.limits))
     if parameters.form and parameters.report:
         _check_different(Path(parameters.form), Path(parameters.report))
-    if parameters.form and (sum(map(is_design, sides)) != 1 or any(map(is_level, sides))):
+    has_level = any(one.level_m is not None for one in sides)
+    if parameters.form and (sum(one.is_design for one in sides) != 1 or has_level):
         raise Unsuitable(
             Text(
                 "The as-built form judges points by a design.",
                 "出来形管理様式は、計測した点群を設計面と比較して判定します。",
             ),
-            Text.same(" / ".join(map(str, sides))),
+            Text.same(" / ".join(one.words for one in sides)),
             Text(
                 "Give points on one side and a LandXML design on the other.",
                 "一方に点群、他方に設計面（LandXML）を指定してください。",
             ),
         )
-    if parameters.form and not any(map(is_project, sides)):
+    if parameters.form and not any(one.is_project for one in sides):
         _limits(parameters, ())
 
 
@@ -100,6 +96,8 @@ class VolumeReports:
         Of the file that was named, else of a project that is compared.
     limits : (AsBuiltLimits, str) or None
         The table and the work type that the form judges by; None without a form.
+    language : "en" or "ja"
+        Of the papers.
     """
 
     parameters: VolumeParameters
@@ -107,6 +105,7 @@ class VolumeReports:
     crs: str
     details: WorkDetails
     limits: tuple[AsBuiltLimits, str] | None
+    language: Language
 
     @property
     def never(self) -> list[Path]:
@@ -140,8 +139,8 @@ class VolumeReports:
         """
         if self.limits is None:
             return None
-        ground, design = ground_and_design(*(one.side for one in self.sides))
-        return evaluate_as_built(ground, design, self.limits, monitor, boundary=within.boundary)
+        before, after = (one.side for one in self.sides)
+        return judged_ground((before, after), self.limits, within.boundary, monitor)
 
     def write(
         self, result: VolumeResult, judged: AsBuiltResult | None, monitor: Monitor
@@ -155,54 +154,36 @@ class VolumeReports:
             yield path
         if self.parameters.report:
             path = Path(self.parameters.report)
-            self._write_report(path, result, monitor)
+            self._papers().write_report(path, result, monitor, ending=path.suffix.lower())
             yield path
         if judged is not None:
             path = Path(self.parameters.form)
-            self._write_form(path, judged, monitor)
+            self._papers().write_form(path, judged, monitor, ending=path.suffix.lower())
             yield path
 
-    def _write_report(self, path: Path, result: VolumeResult, monitor: Monitor) -> None:
-        before, after = map(_side_facts, self.sides)
+    def _papers(self) -> VolumePapers:
+        before, after = self.sides
         boundary = ""
         if self.parameters.boundary:
             file, layer = file_and_layer(self.parameters.boundary)
             boundary = f"{file.name}#{layer}" if layer else file.name
-        facts = VolumeFacts(
-            self._work_facts(), before, after, boundary, result.line, result.between
-        )
-        language = system_language()
-        match FORMATS.format_to_write(path, Content.REPORT).id:
-            case "csv":
-                write_volume_csv(path, result, facts, language, never=self.never)
-            case "xlsx":
-                write_volume_xlsx(path, result, facts, language, never=self.never)
-            case _:
-                write_volume_report(
-                    path, result, facts, language, monitor=monitor, never=self.never
-                )
-
-    def _write_form(self, path: Path, judged: AsBuiltResult, monitor: Monitor) -> None:
-        ground, design = sorted(self.sides, key=lambda one: isinstance(one.side, TriangleSurface))
-        facts = AsBuiltFacts(self._work_facts(), _side_facts(design), _side_facts(ground))
-        language = system_language()
-        match FORMATS.format_to_write(path, Content.REPORT).id:
-            case "csv":
-                write_as_built_csv(path, judged, facts, language, never=self.never)
-            case "xlsx":
-                write_as_built_xlsx(path, judged, facts, language, never=self.never)
-            case _:
-                write_as_built_form(
-                    path, judged, facts, language, monitor=monitor, never=self.never
-                )
-
-    def _work_facts(self) -> WorkFacts:
         today = datetime.now().astimezone().date()
-        return self.details.facts(self.crs, version("zuka"), today)
+        return VolumePapers(
+            self.details.facts(self.crs, version("zuka"), today),
+            _side_facts(before),
+            _side_facts(after),
+            self.language,
+            self.never,
+            boundary,
+            is_design_before=isinstance(before.side, TriangleSurface),
+        )
 
 
 def volume_reports_of(
-    parameters: VolumeParameters, sides: tuple[NamedSide, NamedSide], crs: str
+    parameters: VolumeParameters,
+    sides: tuple[NamedSide, NamedSide],
+    crs: str,
+    language: Language,
 ) -> VolumeReports:
     """What is to be written: the details and limits named, else those of a project.
 
@@ -212,7 +193,8 @@ def volume_reports_of(
         They can't be read; the work type to judge by isn't told, or isn't in the table.
     """
     limits = _limits(parameters, sides) if parameters.form else None
-    return VolumeReports(parameters, sides, crs, _details(parameters, sides), limits)
+    details = _details(parameters, sides)
+    return VolumeReports(parameters, sides, crs, details, limits, language)
 
 
 def _details(parameters: VolumeParameters, sides: tuple[NamedSide, NamedSide]) -> WorkDetails:

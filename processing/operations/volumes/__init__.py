@@ -1,0 +1,1 @@
+"""Volumes as operations: two grounds opened, compared, judged, and written or kept."""
