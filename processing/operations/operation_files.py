@@ -170,7 +170,7 @@ def read_operation(path: Path, kinds: Kinds = OPERATIONS) -> object:
 
 def rooted(operation: Any, folder: Path) -> Any:  # any kind of operation, and the same back
     """An operation whose relative paths count from a folder, those of parameters too."""
-    changed = {
+    changed: dict[str, Any] = {
         field.name: _rooted(getattr(operation, field.name), folder)
         for field in fields(cast("Any", operation))
     }

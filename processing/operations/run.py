@@ -178,7 +178,8 @@ def run_operation(operation: RunOperation, monitor: Monitor) -> RunOutcome:
     ------
     UserError
         As :meth:`RunOperation.check`, and what stands against reading, running or writing; neither
-        a file nor the project was changed.
+        a file nor the project was changed. Only where a disk is full at the very end, the project
+        has the runs that were stored before it was.
     Cancelled
         Neither was changed.
     """

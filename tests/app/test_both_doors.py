@@ -243,8 +243,8 @@ def test_a_volume_between_two_epochs_has_the_same_figures(window: Document, tmp_
     )
     kept = store_volume(project, made)
     output = tmp_path / "volume.json"
-    sides = (VolumeSide(folder, drives=one.side.drives) for one in (before, after))
-    write_operation(tmp_path / "volume.toml", VolumeOperation(*sides, output, parameters))
+    earlier, later = (VolumeSide(folder, drives=one.side.drives) for one in (before, after))
+    write_operation(tmp_path / "volume.toml", VolumeOperation(earlier, later, output, parameters))
     perform(read_operation(tmp_path / "volume.toml"), SilentMonitor())
     told = json.loads(output.read_text("utf-8"))
     assert kept.volumes.cut_m3 > 1
