@@ -96,7 +96,7 @@ def points_in_cut(
 def section_points(
     drive: Drive, cut: Cut, most: int = MOST_POINTS, *, hides_noise: bool = False
 ) -> SectionPoints:
-    """The points within a cut with their places in it, sorted by offset."""
+    """The points within a cut with their positions in it, sorted by offset."""
     points = points_in_cut(drive, cut, most, hides_noise=hides_noise)
     section = cut.to_section(drive.xyz(points))
     order = np.argsort(section[:, 0], kind="stable")

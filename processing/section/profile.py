@@ -156,7 +156,7 @@ def ground_line(offsets_m: ArrayLike, heights_m: ArrayLike) -> tuple[Floats, ...
     Returns
     -------
     tuple of (k, 2) float64
-        One place per bin of ``BIN_M`` that holds points; a part for each stretch whose gaps are
+        One position per bin of ``BIN_M`` that holds points; a part for each stretch whose gaps are
         at most half a metre.
 
     Notes

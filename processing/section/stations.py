@@ -91,7 +91,7 @@ class Stations:
         return cls(trajectory.xyz, times=trajectory.time)
 
     def measured_positions(self) -> tuple[Floats, Floats]:
-        """The stations (k,), m, rising, and places (k, 3), m, project CRS, it is measured by."""
+        """The stations (k,), m, rising, and positions (k, 3), m, project CRS, it is measured by."""
         return self._stations.copy(), self._local + self._origin
 
     def position_at(self, station_m: float) -> tuple[float, float, float]:
@@ -128,14 +128,14 @@ class Stations:
         return Cut(self.position_at(station_m), direction, width_m, half_length_m)
 
     def nearest(self, xyz: ArrayLike, between: tuple[float, float] | None = None) -> float:
-        """The station nearest to a place in plan, also straight on beyond the ends.
+        """The station nearest to a position in plan, also straight on beyond the ends.
 
         Parameters
         ----------
         xyz : (3,) float64
             m, project CRS.
         between : tuple of float or None
-            Look only between these stations: where a line passes a place several times.
+            Look only between these stations: where a line passes a position several times.
         """
         plan = (np.asarray(xyz, dtype=np.float64) - self._origin)[:2]
         low, high = (0.0, self.length_m) if between is None else between
@@ -154,7 +154,7 @@ class Stations:
         return self._beyond(station, plan)
 
     def through(self, xyz: ArrayLike, between: tuple[float, float] | None = None) -> float:
-        """The station near a place whose cut across the line goes through it.
+        """The station near a position whose cut across the line goes through it.
 
         Where the line bends the nearest station need not be it: directions are those of chords.
 
@@ -190,7 +190,7 @@ class Stations:
         return float(np.interp(time_s, times, self._stations))
 
     def _ahead(self, station_m: float, xyz: ArrayLike) -> float:
-        """How far a place lies ahead of the cut at a station; m."""
+        """How far a position lies ahead of the cut at a station; m."""
         from_there = np.asarray(xyz, dtype=np.float64) - np.array(self.position_at(station_m))
         return float(from_there[:2] @ np.array(self.direction_at(station_m)))
 
@@ -204,7 +204,7 @@ class Stations:
 
 
 def _apart(positions: Floats, step_m: float) -> NDArray[np.int64]:
-    """Indices of places that are so far apart in plan; the last place ends the line."""
+    """Indices of positions that are so far apart in plan; the last position ends the line."""
     kept = apart(positions, step_m)
     if kept.size > 1:
         kept[-1] = len(positions) - 1

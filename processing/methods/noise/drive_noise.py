@@ -107,7 +107,7 @@ class NoiseSearch:
         starts = image.row_starts
         along = along_rows(origins, starts)
         chunks = list(row_chunks_of(starts, along, self.points_per_chunk))
-        told, ended = Lock(), count(1)
+        reporting, ended = Lock(), count(1)
 
         def look(number: int, _: int) -> None:
             chunk = chunks[number]
@@ -118,7 +118,7 @@ class NoiseSearch:
             first, end = int(starts[chunk.rows.start]), int(starts[chunk.rows.stop])
             skipped = first - int(starts[chunk.with_overlap.start])
             self.codes[first:end] = codes[skipped : skipped + end - first]
-            with told:
+            with reporting:
                 monitor.report(next(ended) / len(chunks))
 
         share_out(look, len(chunks), 1, monitor)

@@ -1,4 +1,4 @@
-"""Arrays in files for the time of a run: room is taken at once, so that a full disk is told."""
+"""Arrays in files for the time of a run: room is taken at once; a full disk is met early."""
 
 from __future__ import annotations
 

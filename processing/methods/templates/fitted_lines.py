@@ -44,7 +44,7 @@ class FittedLine:
     xyz : (n, 3) float64
         m, project CRS.
     points : (n,) int64
-        The measured point nearest to each place, within 5 cm; −1: none.
+        The measured point nearest to each position, within 5 cm; −1: none.
     scores : (m,) float64
         Of each metre from the line's start, the last one may be shorter.
     """
@@ -83,7 +83,7 @@ def fitted_lines(
 
 
 def _stretches(walk: TemplatePath, settings: FitSettings) -> list[tuple[int, int]]:
-    """First and end place of each line."""
+    """First and end position of each line."""
     fits = np.flatnonzero(walk.scores >= settings.least_score)
     between = _along(walk.positions[fits])
     gaps = np.diff(between, prepend=-math.inf) > settings.longest_gap_m + settings.step_m

@@ -36,7 +36,7 @@ class Preview:
 def preview_at(
     drive: Drive, template: ProfileTemplate, frame: SectionFrame, settings: FitSettings
 ) -> Preview:
-    """Look for a template about a place of a section."""
+    """Look for a template about a position of a section."""
     start = fit_at(drive, template, frame, settings)
     is_mirrored = start.template is not template
     box = FittableTemplate.of(start.template, settings.tolerance_m).box(0.0)

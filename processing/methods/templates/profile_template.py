@@ -54,11 +54,11 @@ class ProfileTemplate:
     ----------
     name : str
     shape : tuple of TemplateProfile
-        Open polylines of two places and more; the anchor, (0, 0), is one of their vertices.
+        Open polylines of two positions and more; the anchor, (0, 0), is one of their vertices.
     lines : tuple of MadeLine
         At vertices of the shape.
     empty : tuple of TemplateProfile
-        Rings (the first place not repeated) in which no point should be.
+        Rings (the first position not repeated) in which no point should be.
     tolerance_m : float
         Points this near to the shape lie on it.
 
@@ -85,7 +85,7 @@ class ProfileTemplate:
 
     @property
     def vertices(self) -> TemplateProfile:
-        """The places of the shape, each once, in the order in which they were drawn."""
+        """The positions of the shape, each once, in the order in which they were drawn."""
         return _each_once(position for profile in self.shape for position in profile)
 
     @property
@@ -185,7 +185,7 @@ def _is_same(one: ProfilePoint, other: ProfilePoint) -> bool:
 
 
 def _index(positions: TemplateProfile, wanted: ProfilePoint) -> int:
-    """Where a place stands among others; −1 where it doesn't."""
+    """Where a position stands among others; −1 where it doesn't."""
     found = (number for number, position in enumerate(positions) if _is_same(position, wanted))
     return next(found, -1)
 

@@ -157,7 +157,7 @@ class _JudgedFace:
     shares: NDArray[np.float32]
 
     def holds(self, xy: NDArray[np.float64], cell: NDArray[np.int64]) -> NDArray[np.bool_]:
-        """Which places are on the face; only cells on its edge are looked at place by place."""
+        """Which positions are on the face; only cells on its edge are looked at one by one."""
         shares = self.shares.reshape(-1)[cell]
         is_on: NDArray[np.bool_] = shares == 1.0
         unsure = np.flatnonzero((shares > 0.0) & ~is_on)
@@ -241,7 +241,7 @@ def _grid(plans: list[shapely.Geometry], cell_m: float) -> CellGrid:
             Text("Choose a side of 1 m or less.", "1 m以下の値を指定してください。"),
         )
     west, south, east, north = shapely.total_bounds(plans)
-    # On whole cells of the reference system: the same place is the same cell in every run.
+    # On whole cells of the reference system: the same position is the same cell in every run.
     first = np.floor(np.array([west, south]) / cell_m)
     columns, rows = (np.ceil(np.array([east, north]) / cell_m) - first).astype(np.int64).tolist()
     if rows * columns > MOST_CELLS:

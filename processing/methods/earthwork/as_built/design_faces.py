@@ -158,7 +158,7 @@ def _neighbours(
     xyz: NDArray[np.float64], corners: NDArray[np.int64]
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
     """Triangles that share a side, the side's two corners, and the far corner of each triangle."""
-    # Programs that write each face with corners of its own give the same place many numbers.
+    # Programs that write each face with corners of its own give the same position many numbers.
     _, position = np.unique(np.round(xyz / _SAME_POSITION_M), axis=0, return_inverse=True)
     position = position.reshape(-1)
     sides = np.concatenate([corners[:, [0, 1]], corners[:, [1, 2]], corners[:, [2, 0]]])

@@ -89,7 +89,7 @@ def _check_lines(lines: Sequence[Floats]) -> None:
 
 
 def _joined(xyz: Floats, segments: Numbers, agree_within_m: float) -> BreakNet:
-    """The same with vertices at one place made one, at their mean height."""
+    """The same with vertices at one position made one, at their mean height."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
     from scipy.spatial import cKDTree
@@ -134,7 +134,7 @@ def _disagree(at: Floats, low_m: float, high_m: float) -> Unsuitable:
 def _cut_where_they_meet(net: BreakNet) -> tuple[Floats, Numbers]:
     """Vertices and segments with each segment cut where others touch or cross it.
 
-    A place where two meet gives each its own vertex, at the height that it has there.
+    A position where two meet gives each its own vertex, at the height that it has there.
     """
     origin = net.xyz[:, :2].min(axis=0)
     plan = net.xyz[:, :2] - origin
@@ -161,7 +161,7 @@ def _cut_where_they_meet(net: BreakNet) -> tuple[Floats, Numbers]:
 def _touched(
     plan: Floats, segments: Numbers, one: Numbers, vertex: Numbers
 ) -> tuple[Numbers, Floats, Floats]:
-    """Segments on which a vertex lies, but not at their ends: which, where along, the place."""
+    """Segments on which a vertex lies, but not at their ends: which, where along, the position."""
     start, along = plan[segments[one, 0]], plan[segments[one, 1]] - plan[segments[one, 0]]
     to_vertex = plan[vertex] - start
     share = (to_vertex * along).sum(axis=1) / (along**2).sum(axis=1)

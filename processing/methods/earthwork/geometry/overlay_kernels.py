@@ -187,7 +187,7 @@ def overlap_kernel(
     of_triangles: tuple[Numbers, Numbers],
     found: Floats,
 ) -> None:
-    """Area covered twice, and of the pair that shares most its area and a place in it."""
+    """Area covered twice, and of the pair that shares most its area and a position in it."""
     starts, held = buckets
     firsts, bucket_of = of_triangles
     work = np.empty((2, _CORNERS, 2))

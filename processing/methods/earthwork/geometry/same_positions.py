@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 def number_positions(
     positions: NDArray[np.float64], within_m: float
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """A number for each place, the same for those that round to one.
+    """A number for each position, the same for those that round to one.
 
     Parameters
     ----------
@@ -20,7 +20,7 @@ def number_positions(
     -------
     numbers : (n,) int64
     firsts : (k,) int64
-        The first place of each number.
+        The first position of each number.
     """
     whole = np.round(positions / within_m).astype(np.int64)
     order = np.lexsort(whole.T)

@@ -1,4 +1,4 @@
-"""TriangleSurface: given triangles (a design, a TIN), one height at each place."""
+"""TriangleSurface: given triangles (a design, a TIN), one height at each position."""
 
 from __future__ import annotations
 
@@ -71,7 +71,7 @@ class TriangleSurface:
             _heights_kernel(local, self._triangles, frame, held, heights[part])
 
         starts = range(0, len(positions), _POSITIONS_AT_ONCE)
-        if len(starts) == 1:  # a place under the mouse is worth no threads
+        if len(starts) == 1:  # a position under the mouse is worth no threads
             fill(0)
         else:
             for _ in in_order(fill, starts):
@@ -113,7 +113,7 @@ class TriangleSurface:
 
     @cached_property
     def is_vertical(self) -> NDArray[np.bool_]:
-        """Triangles without width in plan, on which no place lies: (t,) bool.
+        """Triangles without width in plan, on which no position lies: (t,) bool.
 
         Those with a corner that is no number are among them.
         """
@@ -161,9 +161,9 @@ def twice_areas(triangles: Floats) -> Floats:
 
 @kernel
 def _beside(start: Floats, end: Floats, x: float, y: float) -> float:
-    """Twice the area between an edge and a place, positive to the left of the edge.
+    """Twice the area between an edge and a position, positive to the left of the edge.
 
-    Worked out from the same end whichever triangle asks, so that a place is never outside both
+    Worked out from the same end whichever triangle asks, so that a position is never outside both
     triangles of an edge.
     """
     if start[0] < end[0] or (start[0] == end[0] and start[1] < end[1]):
@@ -173,7 +173,7 @@ def _beside(start: Floats, end: Floats, x: float, y: float) -> float:
 
 @kernel
 def _height_in(triangle: Floats, x: float, y: float) -> tuple[float, float]:
-    """How far outside of a triangle a place is, 0 inside, and the height on its plane there."""
+    """How far outside of a triangle a position is, 0 inside, and the height on its plane there."""
     out = 0.0
     whole = 0.0
     height = 0.0
@@ -195,13 +195,13 @@ def _heights_kernel(
     held: tuple[NDArray[np.int64], NDArray[np.int64]],
     heights: Floats,
 ) -> None:
-    """Heights at places; those outside of all triangles stay as they are."""
+    """Heights at positions; those outside of all triangles stay as they are."""
     west, south, size, rows, columns = frame
     starts, numbers = held
     for position in range(positions.shape[0]):
         x, y = positions[position, 0], positions[position, 1]
         along, up = (x - west) / size, (y - south) / size
-        # Written so that a place that is no number is passed over, too.
+        # Written so that a position that is no number is passed over, too.
         if not (-1.0 < along < columns + 1.0 and -1.0 < up < rows + 1.0):
             continue
         column = min(max(int(np.floor(along)), 0), columns - 1)

@@ -78,7 +78,7 @@ def triangulate_ground(
     Parameters
     ----------
     xyz : (n, 3) float64
-        Ground, m, project CRS; rows that are not finite are passed over, points at one place in
+        Ground, m, project CRS; rows that are not finite are passed over, points at one position in
         plan become one at their mean height.
     break_lines : sequence of (k, 3) float64
         Lines on the ground that no triangle reaches across.
@@ -163,7 +163,7 @@ def _too_few(count: int) -> Unsuitable:
 
 
 def _merged(xyz: Floats) -> Floats:
-    """Points at one place in plan as one at their mean height."""
+    """Points at one position in plan as one at their mean height."""
     numbers, firsts = number_positions(xyz[:, :2], _SAME_POSITION_M)
     heights = np.bincount(numbers, xyz[:, 2]) / np.bincount(numbers)
     return np.column_stack([xyz[firsts, :2], heights])

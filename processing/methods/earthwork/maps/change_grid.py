@@ -41,7 +41,7 @@ class ChangeGrid:
         return change.astype(np.float32, copy=False)
 
     def change_at(self, xy: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Change in the cell that holds each place: (n,) float64, m; NaN where there is none.
+        """Change in the cell that holds each position: (n,) float64, m; NaN where there is none.
 
         Parameters
         ----------

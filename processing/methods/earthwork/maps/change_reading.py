@@ -1,4 +1,4 @@
-"""What a map of change says at a place, and along a cut through it."""
+"""What a map of change says at a position, and along a cut through it."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class ChangeReading:
-    """Both grounds at a place.
+    """Both grounds at a position.
 
     Attributes
     ----------
@@ -36,7 +36,7 @@ class ChangeReading:
 
 
 def reading_at(change: ChangeGrid, easting: float, northing: float) -> ChangeReading | None:
-    """What the cell that holds a place says; None outside the boundary and without both grounds.
+    """What the cell that holds a position says; None outside the boundary and without both grounds.
 
     Parameters
     ----------
@@ -77,14 +77,14 @@ class ChangeLine:
 
 
 def change_along(change: ChangeGrid, offsets: Floats, xy: Floats) -> ChangeLine:
-    """Both grounds at places along a line, between the middles of cells on a straight slope.
+    """Both grounds at positions along a line, between the middles of cells on a straight slope.
 
     Parameters
     ----------
     offsets : (n,) float64
-        What each place is called, rising.
+        What each position is called, rising.
     xy : (n, 2) float64
-        The places, m, project CRS.
+        The positions, m, project CRS.
     """
     grid = change.grid
     at = (xy - grid.origin[:2]) / grid.size_m

@@ -145,9 +145,9 @@ def stations_of(line: SectionLayout) -> Floats:
     Raises
     ------
     Unsuitable
-        The line has no length, or a place that is no number.
+        The line has no length, or a position that is no number.
     OutOfRange
-        A width, interval or step that isn't positive, or more places than can be worked on.
+        A width, interval or step that isn't positive, or more positions than can be worked on.
     """
     _check_line(line)
     length = _measured(line).length_m

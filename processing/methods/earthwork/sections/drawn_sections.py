@@ -34,12 +34,12 @@ def drawn_line(volume: EndAreaVolume, line: SectionLayout, name: str) -> Section
 
 
 def volumes_between(volume: EndAreaVolume) -> tuple[tuple[float, float], ...]:
-    """Cut and fill, m³, told at each section but the first; NaN at those that are halfway only."""
-    told = [(part.cut, part.fill) for part in volume.between]
-    if len(told) == len(volume.sections) - 1:
-        return tuple(told)
+    """Cut and fill, m³, stated at each section but the first; NaN at those halfway only."""
+    stated = [(part.cut, part.fill) for part in volume.between]
+    if len(stated) == len(volume.sections) - 1:
+        return tuple(stated)
     halfway = (math.nan, math.nan)
-    return tuple(pair for end in told for pair in (halfway, end))
+    return tuple(pair for end in stated for pair in (halfway, end))
 
 
 def station_name(station_m: float) -> str:

@@ -96,9 +96,9 @@ def end_area_volume(
     Raises
     ------
     Unsuitable
-        The line has no length or a place that is no number; no section meets both grounds.
+        The line has no length or a position that is no number; no section meets both grounds.
     OutOfRange
-        A width, interval or step that isn't positive, or more places than can be worked on.
+        A width, interval or step that isn't positive, or more positions than can be worked on.
     """
     sections = cross_sections(line, stations_of(line), grounds, monitor, boundary)
     parts = [

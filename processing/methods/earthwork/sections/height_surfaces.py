@@ -1,4 +1,4 @@
-"""Grounds that know their height at a place: what sections are cut through."""
+"""Grounds that know their height at a position: what sections are cut through."""
 
 from __future__ import annotations
 
@@ -15,10 +15,10 @@ Floats = NDArray[np.float64]
 
 
 class HeightSurface(Protocol):
-    """A ground that knows its height at a place."""
+    """A ground that knows its height at a position."""
 
     def heights_at(self, xy: Floats) -> Floats:
-        """Heights of places (n, 2): (n,) float64, m; NaN where there is no ground."""
+        """Heights at positions (n, 2): (n,) float64, m; NaN where there is no ground."""
 
 
 @dataclass(frozen=True)
@@ -33,7 +33,7 @@ class LevelSurface:
     height_m: float
 
     def heights_at(self, xy: Floats) -> Floats:
-        """The height, for each place: (n,) float64, m."""
+        """The height, for each position: (n,) float64, m."""
         return np.full(len(xy), self.height_m)
 
 

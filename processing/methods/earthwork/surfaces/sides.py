@@ -42,7 +42,7 @@ class EpochGround:
     stands : (k, 3) float64
         Where the scanner stood, m, project CRS; none where it moved, and where nothing tells.
     stations : tuple of int
-        Whose places these are, as blocks tell.
+        Whose positions these are, as blocks tell.
     measured : callable or None
         All points that are no noise, ground or not, in blocks.
     crs : str

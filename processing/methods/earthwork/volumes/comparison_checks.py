@@ -127,7 +127,7 @@ def common_box(
                     "別の境界を指定してください。地盤の範囲は {where} です。",
                 ).filled(where=_words(low, high)),
             )
-        # The whole boundary counts, also where a side doesn't reach: that is told as unmeasured.
+        # The whole boundary counts, also where a side doesn't reach: it is reported as unmeasured.
         low, high = edges
     low, high = _with_margin(low, high, sides, margin_m)
     return low, high, float(np.floor(min(box[0][2] for box in boxes)))

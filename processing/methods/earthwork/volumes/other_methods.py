@@ -51,7 +51,7 @@ class OtherMethod:
     line : SectionedLine or None
         Sections of the methods along a line.
     between : tuple of (float, float)
-        Cut and fill told at each of them but the first, m³.
+        Cut and fill stated at each of them but the first, m³.
     """
 
     cut_m3: float
@@ -123,7 +123,7 @@ def _lines_on(ground: GridSurface, lines: tuple[Floats, ...]) -> dict[int, Float
     for number, drawn in enumerate(lines):
         line = drawn
         if np.isnan(drawn[:, 2]).any():
-            # Between places in plan the ground isn't straight.
+            # Between positions in plan the ground isn't straight.
             dense = shapely.segmentize(shapely.LineString(drawn[:, :2]), _STEP_M)
             xy = shapely.get_coordinates(dense)
             line = np.column_stack([xy, np.full(len(xy), np.nan)])

@@ -1,4 +1,4 @@
-"""Whether two epochs lie on each other, told by ground that did not change.
+"""Whether two epochs lie on each other, found from ground that did not change.
 
 Where a constant says “by trial”, no measurement varied it alone: docs/accuracy.md judges all values
 together, on simulated sites whose volumes are known.
@@ -31,7 +31,7 @@ _ROUNDS = 12
 """Of reweighted least squares; by trial."""
 
 _LEAST_AREA_M2 = 25.0
-"""Of stable ground, from which anything is told: a square of 5 m, one patch. By trial."""
+"""Of stable ground, from which anything is found: a square of 5 m, one patch. By trial."""
 
 _PATCH_M = 5.0
 """Side of the squares within which errors are the same. Judged cell by cell, slopes that were
@@ -56,14 +56,14 @@ _FEWEST_PATCHES = 4
 """As many as there are unknowns: three directions and the term of steepness."""
 
 _LEAST_SURE_M = 1e-4
-"""Least standard deviation that is told: a tenth of a millimetre is better than any survey."""
+"""Least standard deviation that is stated: a tenth of a millimetre is better than any survey."""
 
 _GENTLE_SLOPE = 0.1
 """Weight, as of one cell with this slope, of there being no shift to the side and no term of
 steepness. By trial."""
 
 _FEWEST = 50
-"""Cells known on both sides, from which a most frequent change is told; by trial."""
+"""Cells known on both sides, from which a most frequent change is found; by trial."""
 
 _SIGMA_PER_MEDIAN = 1.4826
 """Standard deviation of a normal distribution over its median absolute deviation."""

@@ -1,4 +1,4 @@
-"""What a volume is told by: cut, fill, areas, how sure they are, and how the epochs fit."""
+"""What a volume is stated by: cut, fill, areas, how sure they are, and how the epochs fit."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class Volumes:
 
 @dataclass(frozen=True)
 class Registration:
-    """How the later epoch lies to the earlier one, told by ground that did not change.
+    """How the later epoch lies to the earlier one, found from ground that did not change.
 
     Attributes
     ----------
@@ -85,7 +85,7 @@ class VolumeResult:
     line : SectionedLine or None
         Sections of the methods along a line.
     between : tuple of (float, float)
-        Cut and fill told at each section but the first, m³; NaN at one that is halfway only.
+        Cut and fill stated at each section but the first, m³; NaN at one that is halfway only.
     """
 
     volumes: Volumes

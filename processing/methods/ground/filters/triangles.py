@@ -186,7 +186,7 @@ def _walk_kernel(
 ) -> None:
     """The triangle of each position, from that of the last one over edges that it lies beyond.
 
-    Such a walk ends in a Delaunay mesh; it never turns back, which rounding could make it do.
+    Such a walk ends in a Delaunay mesh; it never goes back, which rounding could make it do.
 
     References
     ----------

@@ -55,7 +55,7 @@ class PointBeams(NamedTuple):
     """Points with their beams, in rows.
 
     ``xyz`` and ``origins`` (n, 3) local m, ``ranges`` (n,) m, ``columns`` (n,), ``row_starts``
-    (rows + 1,), ``segments`` (rows,), ``turn``: radians from pulse to pulse.
+    (rows + 1,), ``segments`` (rows,), ``step_rad``: from pulse to pulse.
     """
 
     xyz: _Floats
@@ -64,7 +64,7 @@ class PointBeams(NamedTuple):
     columns: NDArray[np.int32]
     row_starts: _Integers
     segments: NDArray[np.int32]
-    turn: float
+    step_rad: float
 
 
 @kernel
@@ -77,7 +77,7 @@ def spacing_kernel(beams: PointBeams, first: int, stop: int, spacings: _Floats) 
         position = beams.row_starts[other] if other >= 0 else 0
         for point in range(beams.row_starts[row], beams.row_starts[row + 1]):
             reach = beams.ranges[point]
-            best = reach * beams.turn
+            best = reach * beams.step_rad
             if other >= 0:
                 end = beams.row_starts[other + 1]
                 column = beams.columns[point]
@@ -85,7 +85,7 @@ def spacing_kernel(beams: PointBeams, first: int, stop: int, spacings: _Floats) 
                     position += 1
                 if position < end and abs(beams.columns[position] - column) <= _COLUMNS_BESIDE:
                     share = reach / max(beams.ranges[position], _NEAREST_M)
-                    shift = (column - beams.columns[position]) * reach * beams.turn
+                    shift = (column - beams.columns[position]) * reach * beams.step_rad
                     square = 0.0
                     for axis in range(3):
                         there = beams.origins[position, axis]
@@ -122,7 +122,7 @@ def surface_kernel(
             j = _advance(beams, j, below, beams.columns[point])
             limit = (
                 _SPACINGS_BETWEEN_ROWS * spacings[point]
-                + _STEPS_BETWEEN_ROWS * beams.ranges[point] * beams.turn
+                + _STEPS_BETWEEN_ROWS * beams.ranges[point] * beams.step_rad
                 + _SCATTER_M
             )
             if _is_near(beams, point, i, limit) and _is_near(beams, point, j, limit):
@@ -132,7 +132,7 @@ def surface_kernel(
 @kernel
 def _goes_on_along(beams: PointBeams, point: int) -> int:
     """Whether the two pulses on either side met the same line: 0, `SURE` or `SQUARE`."""
-    step = beams.ranges[point] * beams.turn
+    step = beams.ranges[point] * beams.step_rad
     left, right = point - 1, point + 1
     if beams.columns[point + 2] - beams.columns[point - 2] > _COLUMNS_OF_FIVE:
         return 0

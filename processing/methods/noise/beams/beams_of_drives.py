@@ -44,10 +44,10 @@ def beams_of(
     ranges = np.maximum(np.sqrt((away * away).sum(axis=1)), _NEAREST_M)
     columns = np.ascontiguousarray(grid.columns)
     revolutions = drive.revolutions
-    turn = (
+    step_rad = (
         2 * np.pi / revolutions.pulses_per_revolution
         if revolutions is not None
-        else _turn(away / ranges[:, None], columns, grid.width)
+        else _step_rad(away / ranges[:, None], columns, grid.width)
     )
     beams = PointBeams(
         xyz,
@@ -56,12 +56,12 @@ def beams_of(
         columns,
         np.ascontiguousarray(grid.row_starts),
         np.ascontiguousarray(grid.segments),
-        turn,
+        step_rad,
     )
     return beams, points
 
 
-def _turn(directions: NDArray[np.float64], columns: NDArray[np.int32], width: int) -> float:
+def _step_rad(directions: NDArray[np.float64], columns: NDArray[np.int32], width: int) -> float:
     """Radians from column to column, measured between points of neighbouring columns."""
     firsts = np.flatnonzero(np.diff(columns) == 1)
     firsts = firsts[:: max(1, firsts.size // _SAMPLE)]

@@ -186,8 +186,8 @@ def _bins_kernel(
         ranges[point] = away
         bins[point] = -1
         if np.isfinite(away):
-            turn = np.arctan2(y, x) / (2 * np.pi)
-            column = min(int((turn - np.floor(turn)) * columns), columns - 1)
+            share = np.arctan2(y, x) / (2 * np.pi)
+            column = min(int((share - np.floor(share)) * columns), columns - 1)
             rise = np.arctan2(z, np.hypot(x, y)) / np.pi + 0.5
             bins[point] = min(int(rise * (rows - 1)), rows - 1) * columns + column
 

@@ -1,4 +1,4 @@
-"""Where a scanner stood on its tripod, told by the order in which it measured.
+"""Where a scanner stood on its tripod, found from the order in which it measured.
 
 A tripod's head turns slowly while its mirror spins: for a moment all beams lie in one upright
 plane through the scanner. Seen from above, points measured within a moment lie on a line through
@@ -70,7 +70,7 @@ _USUAL_HEIGHT_M = 1.7
 """Of a tripod, at a person's eyes: taken where the points tell none."""
 
 _CLEARLY_SHARE = 0.5
-"""A height is told where it leaves less than this share of the usual unevenness; by trial."""
+"""A height is found where it leaves less than this share of the usual unevenness; by trial."""
 
 _SAME_PULSE = 0.5
 """Pulses by which a count may be off its whole number: the nearest whole number is meant."""

@@ -62,7 +62,7 @@ class _Suspicions(NamedTuple):
     """Sums and counts over a window: of all pixels, and of those at about the same range."""
 
     total: float
-    count: float
+    pixels: float
     like: float
     likes: float
 
@@ -151,7 +151,7 @@ def suspicion_kernel(
             else:
                 around = _Window(_WIDE, _WIDE_ROWS, _ROW_STEP)
             sums = _suspicion(beams, suspicions, points[i], rows[i], around)
-            found[i, 2 * window] = sums.total / max(sums.count, 1.0)
+            found[i, 2 * window] = sums.total / max(sums.pixels, 1.0)
             found[i, 2 * window + 1] = sums.like / max(sums.likes, 1.0)
 
 

@@ -1,7 +1,7 @@
-"""How points lie around a place, at several sizes at once: sums over nested cells.
+"""How points lie around a position, at several sizes at once: sums over nested cells.
 
 A level keeps, for every occupied cube, the number of points, of points on sure surfaces, and the
-first and second moments. Twenty-seven cubes around a place are added up and their spread is taken
+first and second moments. Twenty-seven cubes around it are added up and their spread is taken
 apart into line, plane and scatter.
 """
 

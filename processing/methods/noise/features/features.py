@@ -200,8 +200,8 @@ def search_with_beams(beams: PointBeams, monitor: Monitor) -> BeamSearch:
 
     share_out(space, rows, _ROWS_AT_ONCE, monitor)
     known = spacings > 0
-    middle = np.median(spacings[known] / beams.ranges[known]) if known.any() else beams.turn
-    spacings[~known] = beams.ranges[~known] * max(middle, beams.turn)
+    middle = np.median(spacings[known] / beams.ranges[known]) if known.any() else beams.step_rad
+    spacings[~known] = beams.ranges[~known] * max(middle, beams.step_rad)
     share_out(surfaces, rows, _ROWS_AT_ONCE, monitor)
     is_sure = goes_on == SURE
     around = CloudNeighbourhood.of(beams.xyz, spacings, is_sure)
@@ -214,7 +214,7 @@ def search_with_beams(beams: PointBeams, monitor: Monitor) -> BeamSearch:
 def candidates_in_space(xyz: _Floats, monitor: Monitor) -> Candidates:
     """Candidates of a cloud of which only positions are known.
 
-    How many points lie on surfaces is told to the trees, too: in woods seen from the air, or in a
+    How many points lie on surfaces is a feature, too: in woods seen from the air, or in a
     single tree, leaves look like noise to whoever knows streets only.
 
     Parameters

@@ -44,7 +44,7 @@ def descent_kernel(
 ) -> None:
     """Distances of the wanted points that are still open, with a negative sum in ``found``.
 
-    No point's k-th neighbour is farther than that of the point before and the way to that one.
+    No point's k-th neighbour is farther than that of the point before plus the distance to it.
     """
     heap = np.empty(nearest)
     stack = np.empty((_STACK, 3), np.int64)

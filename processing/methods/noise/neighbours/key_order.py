@@ -87,7 +87,7 @@ def move_kernel(
     nexts: _Integers,
     target: tuple[_Integers, _Integers],
 ) -> None:
-    """Bring the keys of a range, with their numbers, to the places of their digits."""
+    """Bring the keys of a range, with their numbers, to the positions of their digits."""
     for position in range(start, stop):
         key = source[0][position]
         digit = (key >> shift) & (_DIGITS - 1)

@@ -44,7 +44,7 @@ def test_points_that_float_in_a_scanned_room_are_noise(tmp_path: Path) -> None:
     image = image_of(drive, drive.pixel_kind)
     beams, _ = beams_of(drive, image, range(image.rows), origins)
     step = np.radians(120.0 / 199)
-    assert abs(beams.turn - step) < 0.1 * step
+    assert abs(beams.step_rad - step) < 0.1 * step
     (tmp_path / "scratch").mkdir()
     codes = np.zeros(drive.count, np.uint8)
     NoiseSearch(drive, codes, tmp_path / "scratch", drive.count).combined(0.5, SilentMonitor())
