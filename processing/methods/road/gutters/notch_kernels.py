@@ -140,7 +140,7 @@ class _Line(NamedTuple):
     slope: float
     spread: float
     off: float
-    count: int
+    points: int
 
 
 class _Surface(NamedTuple):
@@ -319,7 +319,7 @@ def _follow_kernel(
             line = _line(taken, (used - lengths, used), (used, used))
             slope, aside = line.slope, along[one] - line.middle
             # A short line says little of what is far from it.
-            sure = np.sqrt(1.0 + 1.0 / line.count + aside * aside / line.spread)
+            sure = np.sqrt(1.0 + 1.0 / line.points + aside * aside / line.spread)
             limit = min(floor * sure, _MOST_UNSURE * floor)
             off = height - line.height - slope * aside
             is_off = off > limit or off < -limit * _BELOW

@@ -542,8 +542,8 @@ def edges_kernel(
             last += 1
         near, far = first, last
         if last - first > enough * most / half:
-            near = first + np.searchsorted(along[first:last], k - half / STEP_M)
-            far = first + np.searchsorted(along[first:last], k + half / STEP_M)
+            near = first + int(np.searchsorted(along[first:last], k - half / STEP_M))
+            far = first + int(np.searchsorted(along[first:last], k + half / STEP_M))
         if far - near < 2 * _LEAST_POINTS:
             continue
         stride = max(1, (far - near) // _MOST_POINTS)

@@ -36,7 +36,7 @@ _Settings = tuple[EdgeSettings, float]
 class _Continuation(NamedTuple):
     """A way to go on: how many stations it has, its line, what is measured there."""
 
-    count: int
+    stations: int
     line: ApproximateLine
     edges: JointEdges
 
@@ -155,7 +155,7 @@ def _carry_on(
     """Carry all open ends on once; ends without an edge ahead are closed."""
     ends = [(int(approximate_line), int(end)) for approximate_line, end in np.argwhere(is_open)]
     straight = _best_continuations(approximate_lines, ends, _BENDS[:1], (recorded, settings))
-    short = [end for end, one in zip(ends, straight, strict=True) if one.count < _AHEAD]
+    short = [end for end, one in zip(ends, straight, strict=True) if one.stations < _AHEAD]
     bent = dict(
         zip(
             short,
@@ -167,7 +167,7 @@ def _carry_on(
     )
     for (approximate_line, end), one in zip(ends, straight, strict=True):
         other = bent.get((approximate_line, end), one)
-        count, extension, edges = max(one, other, key=lambda each: each.count)
+        count, extension, edges = max(one, other, key=lambda each: each.stations)
         is_open[approximate_line, end] = count >= _LEAST
         if count:
             known = np.isfinite(edges.lower_across)

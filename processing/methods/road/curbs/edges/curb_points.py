@@ -188,7 +188,8 @@ def _slots_of(keys: _Integers) -> _Integers:
 def _frame_of(drive: Drive, origin: _Floats, cell_m: float) -> PlanFrame:
     """What makes metres about an origin of integers, and the size of a cell."""
     scale, shift = drive.coordinates.quantisation.about(origin)
-    return PlanFrame(*np.array(scale).tolist(), *np.array(shift).tolist(), cell_m)
+    (scale_x, scale_y, scale_z), (x, y, z) = scale.tolist(), shift.tolist()
+    return PlanFrame(scale_x, scale_y, scale_z, x, y, z, cell_m)
 
 
 class LineCells:

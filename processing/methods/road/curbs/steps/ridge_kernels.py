@@ -74,7 +74,7 @@ class RidgeLimits(NamedTuple):
 class _Top(NamedTuple):
     """The top of a ridge: vertices, mean height, width, m; mean square off it, m²."""
 
-    count: int
+    vertices: int
     height: float
     width: float
     square: float
@@ -83,7 +83,7 @@ class _Top(NamedTuple):
 class _Ground(NamedTuple):
     """Ground behind a shadow: vertices, height at the edge, RMS, m; squared error, m²."""
 
-    count: int
+    vertices: int
     height: float
     rough: float
     error: float
@@ -114,11 +114,11 @@ def ridges_kernel(
                 if behind < 0:
                     continue
                 top = _top_of(x, h, (i, side), limits.least_m)
-                if top.count < _FEWEST_TOP:
+                if top.vertices < _FEWEST_TOP:
                     continue
                 ground = _ground_of(x, h, (i, side, behind), limits)
                 high = top.height - ground.height
-                if ground.count == 0 or not limits.least_m <= high <= limits.most_m:
+                if ground.vertices == 0 or not limits.least_m <= high <= limits.most_m:
                     continue
                 position = min(count, rows.shape[0] - 1)
                 row = rows[position]
@@ -230,7 +230,7 @@ def _describe(
     which: tuple[int, int], edge: float, top: _Top, ground: _Ground, row: _Floats
 ) -> None:
     section, side = which
-    spacing = top.width / (top.count - 1)
+    spacing = top.width / (top.vertices - 1)
     at = side * (edge + min(spacing / 2, _MOST_BEYOND_M))
     noise = max(math.sqrt(top.square), _LEAST_ROUGH_M)
     row[:] = 0.0
@@ -238,7 +238,7 @@ def _describe(
     row[of.LOWER_ACROSS], row[of.UPPER_ACROSS] = at, at
     row[of.LOWER_HEIGHT], row[of.UPPER_HEIGHT] = ground.height, top.height
     row[of.SIGN] = -side
-    error = noise * noise / top.count + _MODEL_M**2 + ground.error
+    error = noise * noise / top.vertices + _MODEL_M**2 + ground.error
     row[of.SIGNIFICANCE] = (top.height - ground.height) / math.sqrt(error)
     # The top is level up to its end: nothing says that it is none.
     row[of.TOP_M], row[of.FOOT_M] = _GROUND_M, _GROUND_M

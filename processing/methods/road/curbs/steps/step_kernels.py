@@ -150,7 +150,7 @@ class _Piece(NamedTuple):
 
     Attributes
     ----------
-    count : float
+    filled : float
         Filled cells; 0: there is no piece.
     at, height : float
         Their middle, m.
@@ -164,7 +164,7 @@ class _Piece(NamedTuple):
         Mean square off it, m².
     """
 
-    count: float
+    filled: float
     at: float
     height: float
     slope: float
@@ -293,8 +293,8 @@ def _noise(sums: _Floats) -> float:
     count = 0
     for cell in range(0, sums.shape[0] - 1 - _FOOT_CELLS, _SAMPLED_CELLS):
         piece = _piece(sums, cell, cell + _FOOT_CELLS, (0.0, 1.0, _LEAST_NOISE_M**2))
-        if piece.count > _LEAST_FOOT_CELLS:
-            rough[count] = piece.own_square * piece.count / (piece.count - 2)
+        if piece.filled > _LEAST_FOOT_CELLS:
+            rough[count] = piece.own_square * piece.filled / (piece.filled - 2)
             count += 1
     usual = np.median(rough[:count]) if count > 0 else _MOST_NOISE_M**2
     return float(min(max(usual, _LEAST_NOISE_M**2), _MOST_NOISE_M**2))
@@ -326,7 +326,7 @@ def _piece(sums: _Floats, begin: int, end: int, known: tuple[float, float, float
 def _error(piece: _Piece, at: float) -> float:
     """Squared error of a piece's height at a place."""
     square = piece.square
-    return square / piece.count + square * (at - piece.at) ** 2 / piece.held + _MODEL_M**2
+    return square / piece.filled + square * (at - piece.at) ** 2 / piece.held + _MODEL_M**2
 
 
 @kernel
@@ -427,7 +427,7 @@ def _judge_cells(
         if shadow == 0 and rise < _HINT * limits.least_m:
             continue
         foot = _foot(sums, cell, sign, noise)
-        if foot.count == 0 or abs(foot.slope) > limits.steepest:
+        if foot.filled == 0 or abs(foot.slope) > limits.steepest:
             continue
         squares = _error(foot, (cell if sign > 0 else cell + 1) * CELL_M) + _MODEL_M**2
         unit = _NEARLY * math.sqrt(max(foot.own_square - noise, 0.0) + squares)
@@ -459,7 +459,7 @@ def _significance(
         return 0.0
     top = _piece(sums, begin, end, (foot.slope, _TOP_SLOPE_SD, noise))
     high = _height(top, at) - base
-    if top.count == 0 or abs(top.slope) > limits.steepest or not least <= high <= limits.most_m:
+    if top.filled == 0 or abs(top.slope) > limits.steepest or not least <= high <= limits.most_m:
         return 0.0
     if step.face < 0:
         away = abs(step.cell * CELL_M - limits.half_m)
@@ -485,7 +485,7 @@ def _describe(line: _Line, step: _Step, limits: StepLimits, noise: float, row: _
     foot = _foot(line.sums, cell, sign, noise)
     begin, end, at = _top_cells(line.sums, step)
     top = _piece(line.sums, begin, end, (foot.slope, _TOP_SLOPE_SD, noise))
-    if foot.count == 0 or top.count == 0:
+    if foot.filled == 0 or top.filled == 0:
         return False
     low, high = _height(foot, at), _height(top, at)
     half_face = (_GAPS[face] if face >= 0 else -face) * CELL_M / 2
