@@ -136,11 +136,9 @@ def _number_rounded_kernel(
     first free ones.
     """
     base, lattice, interval = state[_BASE], state[_LATTICE], state[_INTERVAL]
-    age, last = state[_AGE], state[_LAST]
-    number = np.int64(state[_NUMBER])
+    age, last, number = state[_AGE], state[_LAST], np.int64(state[_NUMBER])
     quantum, longest_s = limits.quantum_s, limits.longest_s
-    count = times.shape[0]
-    start = 0
+    start, count = 0, times.shape[0]
     while start < pulses.shape[0]:
         time = times[start] - base
         stop = start + 1
