@@ -10,8 +10,8 @@ from app.cli.set_option import settings_of_words
 from app.settings.language import system_language
 from processing.core.errors import MissingInput
 from processing.core.text import Text
-from processing.operations.volumes.sides import VolumeSide
-from processing.operations.volumes.volume import VolumeOperation, compare_grounds
+from processing.operations.volume import VolumeOperation, compare_grounds
+from processing.operations.volume_sides import VolumeSide
 
 
 def command(arguments: argparse.Namespace) -> int:

@@ -26,7 +26,7 @@ from processing.core.text import Language, Text
 from processing.methods.earthwork.maps.change_grid import ChangeGrid
 from processing.methods.earthwork.maps.contours import LevelLine
 from processing.methods.earthwork.volumes.volume_result import VolumeResult
-from processing.operations.volumes.project_volumes import MadeVolume, sides_reader, store_volume
+from processing.operations.project_volumes import MadeVolume, sides_reader, store_volume
 from processing.project.project import Project
 from processing.project.volumes.epochs import Epoch, epochs_of, has_ground
 from processing.project.volumes.volume import ChosenSide, KeptVolume, SideKind, VolumeRequest

@@ -34,7 +34,7 @@ from processing.methods.earthwork.maps.change_grid import ChangeGrid
 from processing.methods.earthwork.maps.heat_map import change_classes
 from processing.methods.earthwork.surfaces.sides import EpochGround
 from processing.methods.earthwork.volumes.volume_parameters import END_AREA, PRISMOIDAL
-from processing.operations.volumes.papers import PAPER, TABLE, WORKBOOK
+from processing.operations.volume_papers import PAPER, TABLE, WORKBOOK
 from processing.project.volumes.volume import KeptVolume, SideKind
 
 _TITLE = Text("Cut {cut} m³, fill {fill} m³", "切土量 {cut} m³、盛土量 {fill} m³")

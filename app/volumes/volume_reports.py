@@ -13,7 +13,7 @@ from processing.formats.reports.work_facts import SideFacts
 from processing.methods.earthwork.maps.contours import LevelLine
 from processing.methods.earthwork.surfaces.sides import Side
 from processing.methods.earthwork.volumes.volume_result import VolumeResult
-from processing.operations.volumes.papers import VolumePapers, judged_ground
+from processing.operations.volume_papers import VolumePapers, judged_ground
 from processing.project.volumes.volume import ChosenSide, KeptVolume, SideKind
 from processing.project.work_details import WorkDetails
 from processing.project.work_store import ChosenLimits

@@ -19,7 +19,7 @@ from processing.methods.earthwork.maps.contours import (
 )
 from processing.methods.earthwork.maps.heat_map import change_limit
 from processing.methods.earthwork.volumes.volume_result import VolumeResult
-from processing.operations.volumes.project_volumes import MadeVolume, make_volume
+from processing.operations.project_volumes import MadeVolume, make_volume
 from processing.project.volumes.volume import (
     ChosenSide,
     KeptVolume,
@@ -51,7 +51,7 @@ def volume_work(
     Parameters
     ----------
     drives, crs, into
-        As of :func:`processing.operations.volumes.project_volumes.make_volume`.
+        As of :func:`processing.operations.project_volumes.make_volume`.
     """
 
     def work(monitor: Monitor) -> MadeVolume:

@@ -19,7 +19,7 @@ _FEWEST_OF_ID = 4
 _NUMBER = re.compile(r"[-+]?(\d+\.?\d*|\.\d+)([eE][-+]?\d+)?")
 
 
-class Comparison(Enum):
+class ValueComparison(Enum):
     """How an attribute's value is held against another."""
 
     EQUAL = "="
@@ -38,14 +38,14 @@ class AttributeCondition:
     ----------
     attribute : str
         The attribute's id.
-    comparison : Comparison
+    comparison : ValueComparison
     value : str
         As it is typed, full-width digits and letters allowed; of a choice, the stored value or its
         name in either language. Nothing is read for ``EMPTY``.
     """
 
     attribute: str
-    comparison: Comparison
+    comparison: ValueComparison
     value: str = ""
 
 
@@ -202,12 +202,12 @@ class _ReadyCondition:
         self._number = number_in(condition.value)
         self._fields = {kind.id: kind.attribute(self._id) for kind in catalogue}
         self._fits: Callable[[AttributeValue, AttributeField | None], bool] = {
-            Comparison.EQUAL: self._is_equal,
-            Comparison.NOT_EQUAL: self._is_other,
-            Comparison.LESS: self._is_less,
-            Comparison.GREATER: self._is_greater,
-            Comparison.CONTAINS: self._contains,
-            Comparison.EMPTY: _is_empty,
+            ValueComparison.EQUAL: self._is_equal,
+            ValueComparison.NOT_EQUAL: self._is_other,
+            ValueComparison.LESS: self._is_less,
+            ValueComparison.GREATER: self._is_greater,
+            ValueComparison.CONTAINS: self._contains,
+            ValueComparison.EMPTY: _is_empty,
         }[condition.comparison]
 
     def holds(self, feature: Feature) -> bool:

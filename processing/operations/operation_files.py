@@ -21,7 +21,7 @@ from processing.operations.project_export import ExportOperation, export_project
 from processing.operations.run import RunOperation, run_operation
 from processing.operations.score import ScoreOperation, score_result
 from processing.operations.undo import UndoOperation, undo_step
-from processing.operations.volumes.volume import VolumeOperation, compare_grounds
+from processing.operations.volume import VolumeOperation, compare_grounds
 from processing.operations.written_values import (
     json_text,
     table_from_text,

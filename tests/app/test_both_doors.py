@@ -24,11 +24,11 @@ from processing.map.feature import Feature, Status
 from processing.operations.export import ExportRequest
 from processing.operations.inputs import OperationInputs
 from processing.operations.operation_files import perform, read_operation, write_operation
+from processing.operations.project_volumes import make_volume, store_volume
 from processing.operations.run import RunOperation, operation_on_drive
 from processing.operations.undo import UndoneStep, UndoOperation
-from processing.operations.volumes.project_volumes import make_volume, store_volume
-from processing.operations.volumes.sides import VolumeSide
-from processing.operations.volumes.volume import VolumeOperation
+from processing.operations.volume import VolumeOperation
+from processing.operations.volume_sides import VolumeSide
 from processing.project.importing.dropped_files import request_of_files
 from processing.project.project import Project
 from processing.project.volumes.epochs import epochs_of

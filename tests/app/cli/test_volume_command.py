@@ -196,7 +196,7 @@ def test_stopped_work_leaves_nothing(
     def stop(*_: object) -> None:
         raise Cancelled
 
-    monkeypatch.setattr("processing.operations.volumes.volume.compare", stop)
+    monkeypatch.setattr("processing.operations.volume.compare", stop)
     both = ("--before", epochs[0], "--after", epochs[1])
     assert run(tmp_path / "out.json", *both) == CANCELLED
     assert list(tmp_path.iterdir()) == []

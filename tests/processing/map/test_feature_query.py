@@ -9,10 +9,10 @@ from processing.map.catalogue import AttributeField, Catalogue, FeatureKind, Geo
 from processing.map.feature import AttributeValue, Feature, Status, Vertex
 from processing.map.feature_query import (
     AttributeCondition,
-    Comparison,
     FeatureQuery,
     QueryTest,
     SearchTexts,
+    ValueComparison,
     natural_key,
 )
 
@@ -129,19 +129,19 @@ def test_occluded_vertices_are_asked_for() -> None:
 def test_attributes_are_compared_as_what_they_are(
     value: AttributeValue, comparison: str, wanted: str, is_found: bool
 ) -> None:
-    condition = AttributeCondition("height_m", Comparison(comparison), wanted)
+    condition = AttributeCondition("height_m", ValueComparison(comparison), wanted)
     feature = pole() if value is None else pole(height_m=value)
     assert finds(feature, conditions=(condition,)) is is_found
 
 
 def test_a_kind_without_the_attribute_is_never_found_by_it() -> None:
-    for comparison in Comparison:
+    for comparison in ValueComparison:
         condition = AttributeCondition("height_m", comparison, "5")
         assert not finds(CURB, conditions=(condition,))
 
 
 def test_dates_and_numbered_texts_are_ordered() -> None:
-    before = AttributeCondition("number", Comparison.LESS, "No. 10")
+    before = AttributeCondition("number", ValueComparison.LESS, "No. 10")
     assert finds(pole(number="No. 9"), conditions=(before,))
     assert not finds(pole(number="No. 11"), conditions=(before,))
     assert natural_key("No. 9") < natural_key("no. 10")
@@ -149,15 +149,15 @@ def test_dates_and_numbered_texts_are_ordered() -> None:
 
 @pytest.mark.parametrize("name", ["left", "Left", "左"])
 def test_a_choice_is_found_by_its_value_and_its_names(name: str) -> None:
-    condition = AttributeCondition("side", Comparison.EQUAL, name)
+    condition = AttributeCondition("side", ValueComparison.EQUAL, name)
     assert finds(CURB, conditions=(condition,))
 
 
 def test_a_kind_that_the_catalogue_lacks_is_found_by_its_id_and_values() -> None:
     stray = Feature("00112233", "old_kind", Geometry.POINT, (POSITION,), {"note": "broken"})
     assert finds(stray, text="old_kind broken")
-    assert finds(stray, conditions=(AttributeCondition("note", Comparison.EQUAL, "broken"),))
-    assert not finds(stray, conditions=(AttributeCondition("side", Comparison.EMPTY),))
+    assert finds(stray, conditions=(AttributeCondition("note", ValueComparison.EQUAL, "broken"),))
+    assert not finds(stray, conditions=(AttributeCondition("side", ValueComparison.EMPTY),))
 
 
 def test_kept_words_follow_a_change() -> None:
@@ -169,6 +169,8 @@ def test_kept_words_follow_a_change() -> None:
 
 def test_the_found_keep_their_order() -> None:
     features = [pole(height_m=float(height)) for height in (3, 9, 1, 7)]
-    over_two = FeatureQuery(conditions=(AttributeCondition("height_m", Comparison.GREATER, "2"),))
+    over_two = FeatureQuery(
+        conditions=(AttributeCondition("height_m", ValueComparison.GREATER, "2"),)
+    )
     found = QueryTest(over_two, KINDS).found(features)
     assert [one.attributes["height_m"] for one in found] == [3, 9, 7]

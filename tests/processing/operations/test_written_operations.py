@@ -27,8 +27,8 @@ from processing.operations.project_export import ExportOperation
 from processing.operations.run import RunOperation
 from processing.operations.score import ScoreOperation
 from processing.operations.undo import UndoOperation
-from processing.operations.volumes.sides import VolumeSide
-from processing.operations.volumes.volume import VolumeOperation
+from processing.operations.volume import VolumeOperation
+from processing.operations.volume_sides import VolumeSide
 from processing.project.importing.import_request import ImportRequest
 from processing.tools.registry import TOOLS
 

@@ -22,18 +22,18 @@ from PySide6.QtWidgets import (
 from processing.core.text import Language, Text
 from processing.map.catalogue import AttributeField, Catalogue
 from processing.map.feature import Status
-from processing.map.feature_query import AttributeCondition, Comparison, FeatureQuery
+from processing.map.feature_query import AttributeCondition, FeatureQuery, ValueComparison
 from widgets.feature_drawing.feature_style import colour_of_kind
 from widgets.feature_drawing.swatch import swatch_of
 from widgets.panels.feature_words import STATUS_NAMES, name_of_kind
 
 _COMPARISONS = {
-    Comparison.EQUAL: Text.same("="),
-    Comparison.NOT_EQUAL: Text.same("≠"),
-    Comparison.LESS: Text.same("<"),
-    Comparison.GREATER: Text.same(">"),
-    Comparison.CONTAINS: Text("contains", "を含む"),
-    Comparison.EMPTY: Text("is empty", "が空欄"),
+    ValueComparison.EQUAL: Text.same("="),
+    ValueComparison.NOT_EQUAL: Text.same("≠"),
+    ValueComparison.LESS: Text.same("<"),
+    ValueComparison.GREATER: Text.same(">"),
+    ValueComparison.CONTAINS: Text("contains", "を含む"),
+    ValueComparison.EMPTY: Text("is empty", "が空欄"),
 }
 _LEAST_LETTERS = 9
 
@@ -198,7 +198,7 @@ class FeatureFilter(QWidget):
     def _suit_value(self) -> None:
         """A value is asked for where one is compared; of a choice, its names are offered."""
         id_ = str(self._attribute.currentData())
-        needs_value = self._comparison.currentData() != Comparison.EMPTY.value
+        needs_value = self._comparison.currentData() != ValueComparison.EMPTY.value
         self._comparison.setEnabled(bool(id_))
         self._value.setEnabled(bool(id_) and needs_value)
         names = dict.fromkeys(
@@ -214,12 +214,14 @@ class FeatureFilter(QWidget):
 
     def _conditions(self) -> tuple[AttributeCondition, ...]:
         id_ = str(self._attribute.currentData())
-        comparison = Comparison(self._comparison.currentData())
+        comparison = ValueComparison(self._comparison.currentData())
         value = self._value.text().strip()
-        if not id_ or (comparison is not Comparison.EMPTY and not value):
+        if not id_ or (comparison is not ValueComparison.EMPTY and not value):
             return ()
         return (
-            AttributeCondition(id_, comparison, "" if comparison is Comparison.EMPTY else value),
+            AttributeCondition(
+                id_, comparison, "" if comparison is ValueComparison.EMPTY else value
+            ),
         )
 
     def _report(self) -> None:

@@ -31,7 +31,7 @@ _HALF_CELL = 0.5
 """Quarters of a cell begin at its middle."""
 
 
-class PlanFrame(NamedTuple):
+class CellFrame(NamedTuple):
     """What makes metres about an origin of integers: scales and offsets; the size of a cell, m."""
 
     scale_x: float
@@ -88,7 +88,7 @@ def fill_slots_kernel(keys: _Integers, slots: _Integers) -> None:
 @kernel
 def about_lines_kernel(
     integers: NDArray[np.int32],
-    frame: PlanFrame,
+    frame: CellFrame,
     table: CellTable,
     lines: PlanLines,
     reach: LineReach,
@@ -146,7 +146,7 @@ def about_lines_kernel(
 @kernel
 def in_cells_kernel(
     integers: NDArray[np.int32],
-    frame: PlanFrame,
+    frame: CellFrame,
     table: tuple[_Integers, _Integers],
     heights: _Floats,
     found: tuple[_Integers, _Integers],
@@ -201,7 +201,7 @@ def warm_up() -> None:
     order_kernel(keys, keys.copy(), keys.copy())
     integers = np.zeros((1, 3), np.int32)
     integers.flags.writeable = False
-    frame = PlanFrame(1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.5)
+    frame = CellFrame(1.0, 1.0, 1.0, 0.0, 0.0, 0.0, 0.5)
     for one in (np.zeros((1, 3), np.int32), integers):
         in_cells_kernel(one, frame, (slots, keys), np.zeros((1, 2)), (keys.copy(), keys.copy()))
         about_lines_kernel(

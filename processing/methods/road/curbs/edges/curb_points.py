@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 from processing.core.monitor import Monitor
 from processing.core.worked_ahead import in_order
 from processing.methods.road.curbs.edges.curb_point_kernels import (
+    CellFrame,
     CellTable,
     LineReach,
-    PlanFrame,
     PlanLines,
     about_lines_kernel,
     fill_slots_kernel,
@@ -185,11 +185,11 @@ def _slots_of(keys: _Integers) -> _Integers:
     return slots
 
 
-def _frame_of(drive: Drive, origin: _Floats, cell_m: float) -> PlanFrame:
+def _frame_of(drive: Drive, origin: _Floats, cell_m: float) -> CellFrame:
     """What makes metres about an origin of integers, and the size of a cell."""
     scale, shift = drive.coordinates.quantisation.about(origin)
     (scale_x, scale_y, scale_z), (x, y, z) = scale.tolist(), shift.tolist()
-    return PlanFrame(scale_x, scale_y, scale_z, x, y, z, cell_m)
+    return CellFrame(scale_x, scale_y, scale_z, x, y, z, cell_m)
 
 
 class LineCells:
@@ -250,7 +250,7 @@ class LineCells:
         return self._by_approximate_line(chosen.points[near[which]], owners, values)
 
     def _find(
-        self, integers: NDArray[np.int32], frame: PlanFrame
+        self, integers: NDArray[np.int32], frame: CellFrame
     ) -> tuple[_Integers, _Integers, _Floats]:
         lines = PlanLines(self._xyz, self._outwards, self._line_of)
         most = max(integers.shape[0], 1)

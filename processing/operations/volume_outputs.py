@@ -26,8 +26,8 @@ from processing.methods.earthwork.surfaces.sides import EpochGround
 from processing.methods.earthwork.volumes.comparison_checks import name_of
 from processing.methods.earthwork.volumes.volume_parameters import VolumeParameters
 from processing.methods.earthwork.volumes.volume_result import VolumeResult
-from processing.operations.volumes.papers import VolumePapers, judged_ground
-from processing.operations.volumes.sides import NamedSide, VolumeSide
+from processing.operations.volume_papers import VolumePapers, judged_ground
+from processing.operations.volume_sides import NamedSide, VolumeSide
 from processing.project.work_details import WorkDetails, read_work_details
 
 

@@ -30,11 +30,11 @@ from processing.methods.earthwork.volumes.comparison import compare
 from processing.methods.earthwork.volumes.volume_parameters import VolumeParameters
 from processing.methods.earthwork.volumes.volume_result import VolumeResult
 from processing.operations.project_export import WrittenFiles
-from processing.operations.volumes.outputs import (
+from processing.operations.volume_outputs import (
     check_report_options,
     volume_reports_of,
 )
-from processing.operations.volumes.sides import NamedSide, SideReading, VolumeSide, named_side
+from processing.operations.volume_sides import NamedSide, SideReading, VolumeSide, named_side
 
 
 @dataclass(frozen=True)

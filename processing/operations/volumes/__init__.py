@@ -1,1 +1,0 @@
-"""Volumes as operations: two grounds opened, compared, judged, and written or kept."""
