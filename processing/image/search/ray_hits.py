@@ -42,7 +42,7 @@ _SURFACE_SHARE = 0.02
 recorded."""
 
 
-class _HitLimits(NamedTuple):
+class HitLimits(NamedTuple):
     """What counts as a hit.
 
     Attributes
@@ -207,11 +207,11 @@ class RayHits:
         if len(close):
             self.front_m = _behind(float(close[0, _DEPTH]))
 
-    def _limits(self, *, is_clipped: bool) -> _HitLimits:
+    def _limits(self, *, is_clipped: bool) -> HitLimits:
         # What is clipped off must not hide what lies behind.
         close_px = -1.0 if is_clipped else CLOSE_PX
         x, y = self._sight.pixel
-        return _HitLimits(
+        return HitLimits(
             float(x),
             float(y),
             float(self._sight.nearest),
@@ -233,7 +233,7 @@ def hits_kernel(
     xyz: NDArray[np.int32] | NDArray[np.float32],
     stretches: NDArray[np.int64],
     matrix: NDArray[np.float64],
-    limits: _HitLimits,
+    limits: HitLimits,
     found: NDArray[np.float64],
 ) -> int:
     """Points of stretches of a recording, or of places in memory, near a pixel; says how many.
@@ -306,7 +306,7 @@ def warm_up() -> None:
     """Compile the kernels for mapped columns, which are read-only."""
     xyz, found = np.zeros((1, 3), np.int32), np.zeros((1, 4))
     xyz.flags.writeable = False
-    matrix, limits = np.eye(4), _HitLimits(*[0.0] * 8)
+    matrix, limits = np.eye(4), HitLimits(*[0.0] * 8)
     hits_kernel(xyz, np.array([[0, 1]]), matrix, limits, found)
     hits_kernel(np.zeros((1, 3), np.float32), np.array([[0, 1]]), matrix, limits, found)
     merge_kernel(found, np.zeros((2, 4)), 0)

@@ -24,7 +24,7 @@ from processing.recording.drive import Drive
 from processing.tools.normals import NormalsParameters
 from processing.tools.registry import TOOLS
 from processing.tools.run_shares import run_shares
-from processing.tools.tool import Candidate, CandidateResult
+from processing.tools.tool import Candidate, CandidateResult, Finder
 from tests.builders import simulated_drive, write_laz, write_trajectory_csv
 from tests.processing.project.candidates import FINDER
 
@@ -63,8 +63,8 @@ def refuse_the_right(
 @pytest.fixture(autouse=True)
 def finder(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let the program know a tool that finds, and one that stops half-way."""
-    monkeypatch.setitem(TOOLS, "finder", replace(FINDER, find=find_three))
-    monkeypatch.setitem(TOOLS, "half", replace(FINDER, id="half", find=refuse_the_right))
+    monkeypatch.setitem(TOOLS, "finder", replace(FINDER, method=Finder(find_three)))
+    monkeypatch.setitem(TOOLS, "half", replace(FINDER, id="half", method=Finder(refuse_the_right)))
 
 
 @pytest.fixture

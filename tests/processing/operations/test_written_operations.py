@@ -11,10 +11,11 @@ from hypothesis import strategies as st
 
 from processing.core.errors import BadFile, MissingInput, OutOfRange
 from processing.core.parameters import Parameter, ParameterValue, parameters_of
+from processing.formats.registry import FORMATS
 from processing.laboratory.every_operation import EVERY_OPERATION
 from processing.laboratory.simulate.simulate_operation import SimulateOperation
 from processing.methods.earthwork.volumes.volume_parameters import VolumeParameters
-from processing.operations.export import FORMATS, ExportRequest
+from processing.operations.export import ExportRequest
 from processing.operations.import_files import ImportOperation
 from processing.operations.inputs import OperationInputs
 from processing.operations.operation_files import (
@@ -104,11 +105,11 @@ exports = st.builds(
     paths,
     st.builds(
         ExportRequest,
-        st.lists(st.sampled_from(sorted(FORMATS)), min_size=1).map(tuple),
+        st.lists(st.sampled_from([one.id for one in FORMATS.maps()]), min_size=1).map(tuple),
         paths,
         st.sampled_from(["en", "ja"]),
         candidates=st.booleans(),
-        digits=st.integers(0, 9),
+        options=st.fixed_dictionaries({"digits": st.integers(0, 9)}),
     ),
 )
 scores = st.builds(ScoreOperation, st.sampled_from(["noise", "curbs", "volume"]), paths, paths)

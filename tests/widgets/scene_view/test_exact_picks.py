@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from processing.image.attributes.tile_cache import TileRequest
 from processing.image.images_of_drives import image_of
 from processing.image.search.clip import Clip
-from processing.image.search.ray_hits import hits_kernel, merge_kernel
+from processing.image.search.ray_hits import HitLimits, hits_kernel, merge_kernel
 from processing.image.tiles.tiles import TileKey
 from processing.recording.drive import Drive
 from processing.recording.kinds import ImageKind
@@ -175,7 +175,7 @@ def test_the_plain_loops_give_the_same() -> None:
     random = np.random.default_rng(3)
     integers = random.integers(-50, 50, (300, 3)).astype(np.int32)
     projection = SceneProjection(SceneCamera((0.0, -80.0, 0.0), pitch_deg=0.0), 100, 100)
-    limits = np.array([50.0, 50.0, NEAR_M, 6.0, 2.0, np.inf, 0.1, 0.02])
+    limits = HitLimits(50.0, 50.0, NEAR_M, 6.0, 2.0, np.inf, 0.1, 0.02)
     matrix = projection.matrix_with_depth
     stretches, whole = np.array([[0, 120], [130, 300]]), np.array([[0, 300]])
     fast, plain = np.zeros((300, 4)), np.zeros((300, 4))

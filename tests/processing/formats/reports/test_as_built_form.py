@@ -135,7 +135,7 @@ def test_the_map_shows_the_colours_of_what_was_found(tmp_path: Path) -> None:
 @pytest.mark.parametrize("language", ["ja", "en"])
 def test_long_names_stay_within_the_sheet(tmp_path: Path, language: Language) -> None:
     facts = AsBuiltFacts(
-        replace(FACTS.work, work=LONG_WORK, contractor=LONG_WORK, position=LONG_WORK),
+        replace(FACTS.work, work=LONG_WORK, contractor=LONG_WORK, place=LONG_WORK),
         replace(FACTS.design, source=LONG_FILE),
         replace(FACTS.ground, source=LONG_FILE),
     )
@@ -213,7 +213,7 @@ def test_a_character_that_cp932_lacks_is_told(tmp_path: Path) -> None:
 
 def test_the_workbook_has_the_numbers_as_numbers_and_the_map(tmp_path: Path) -> None:
     path = tmp_path / "form.xlsx"
-    facts = replace(FACTS, work=replace(FACTS.work, work="=1+1", position="a\x07b"))
+    facts = replace(FACTS, work=replace(FACTS.work, work="=1+1", place="a\x07b"))
     write_as_built_xlsx(path, result(), facts, "ja")
     sheet = openpyxl.load_workbook(path)["様式-31-2"]
     rows = [[cell.value for cell in row[:6]] for row in sheet.iter_rows()]

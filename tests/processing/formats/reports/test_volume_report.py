@@ -197,7 +197,7 @@ def test_a_section_without_ground_is_an_empty_frame(tmp_path: Path) -> None:
 
 
 def test_long_names_and_many_notes_stay_within_the_sheet(tmp_path: Path) -> None:
-    work = replace(facts().work, work=LONG, client=LONG, contractor=LONG, position=LONG)
+    work = replace(facts().work, work=LONG, client=LONG, contractor=LONG, place=LONG)
     side = SideFacts(LONG, "b" * 80 + ".laz", date(2026, 1, 1), 10**10)
     notes = tuple(Text.same(f"{number} {LONG}") for number in range(30))
     path = tmp_path / "volume.pdf"

@@ -63,6 +63,6 @@ def test_the_table_holds_the_figures_of_the_map(found: DensityMap, tmp_path) -> 
 def test_a_picture_is_written_whole_and_other_endings_are_refused(found, tmp_path) -> None:
     write_density(tmp_path / "d.png", found, "Z+F PROFILER 9012, 30 km/h")
     assert (tmp_path / "d.png").read_bytes()[:4] == b"\x89PNG"
-    with pytest.raises(OutOfRange, match="picture or a table"):
+    with pytest.raises(OutOfRange, match="Pictures and tables"):
         write_density(tmp_path / "d.pdf", found, "")
     assert [path.name for path in tmp_path.iterdir()] == ["d.png"]
