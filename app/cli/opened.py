@@ -13,6 +13,7 @@ from processing.operations.inputs import (
     inputs_of_paths,
     opened_inputs,
 )
+from processing.project.importing.dropped_files import is_folder_of_files, request_of_files
 from processing.project.importing.import_request import ImportRequest
 
 
@@ -54,11 +55,19 @@ def inputs_of(arguments: argparse.Namespace) -> OperationInputs:
 
 
 def request_of(arguments: argparse.Namespace) -> ImportRequest:
-    """The import that a command's arguments ask for."""
+    """The import that a command's arguments ask for; of a folder what was delivered in it.
+
+    Raises
+    ------
+    MissingInput
+        A folder holds no points.
+    """
+    folders = tuple(one for one in arguments.inputs if is_folder_of_files(one))
+    found = request_of_files(folders, arguments.crs) if folders else ImportRequest(())
     return ImportRequest(
-        inputs=tuple(arguments.inputs),
-        trajectories=tuple(arguments.trajectory),
-        images=tuple(arguments.images),
+        inputs=(*(one for one in arguments.inputs if one not in folders), *found.inputs),
+        trajectories=(*arguments.trajectory, *found.trajectories),
+        images=(*arguments.images, *found.images),
         crs=arguments.crs,
         columns=columns_of(arguments),
     )

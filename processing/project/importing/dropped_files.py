@@ -74,12 +74,17 @@ def content_of(path: Path, formats: FormatList = FORMATS) -> Content:
     return Content.POINTS if found is None else found[1]
 
 
+def is_folder_of_files(path: Path, formats: FormatList = FORMATS) -> bool:
+    """Whether a path is a folder of delivered files, and not itself what one format delivers."""
+    return path.is_dir() and formats.folder_format(path) is None
+
+
 def _unfolded(files: tuple[Path, ...], formats: FormatList) -> list[Path]:
     endings = formats.endings_read(*DELIVERED)
     found: list[Path] = []
     for path in files:
         with report_as_user_error(path):
-            if path.is_dir() and formats.folder_format(path) is None:
+            if is_folder_of_files(path, formats):
                 inside = sorted(path.iterdir())
                 found += [one for one in inside if one.suffix.lower() in endings]
             else:

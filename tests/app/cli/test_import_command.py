@@ -162,3 +162,30 @@ def test_a_trajectory_is_found_in_a_folder_for_such_and_one_of_another_day_is_no
     other = simulated_drive(length_m=4.0, start_time_s=405_000.0)
     write_trajectory_csv(other, delivery / "points" / "other.csv")
     assert trajectories_beside(points, "") == (there.resolve(),)
+
+
+def test_a_folder_is_imported_with_all_that_was_delivered_in_it(zuka, delivery):
+    status, out, reported = zuka("import", delivery.parent / "a.zuka", delivery)
+    assert (status, reported) == (0, [])
+    assert "(trajectory)" in out[0]
+    (drive,) = _drives(delivery.parent / "a.zuka")
+    assert drive.trajectory is not None
+
+
+def test_a_folder_of_structured_scans_is_imported(zuka, delivery):
+    folder = delivery.parent / "scans"
+    folder.mkdir()
+    poses = "0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n"
+    points = "".join(f"{x} {y} 0 0.5\n" for x in (1, 2) for y in (1, 2))
+    (folder / "a.ptx").write_text(f"2\n2\n{poses}{points}")
+    status, _, _ = zuka("import", delivery.parent / "b.zuka", folder)
+    assert status == 0
+    assert [drive.count for drive in _drives(delivery.parent / "b.zuka")] == [4]
+
+
+def test_a_folder_without_points_is_refused(zuka, delivery):
+    (delivery / "street.laz").unlink()
+    (delivery / "trajectory.csv").unlink()
+    status, _, reported = zuka("import", delivery.parent / "c.zuka", delivery)
+    assert status == 2
+    assert "no point files" in reported[0]
