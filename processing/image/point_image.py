@@ -115,7 +115,7 @@ class PointCloudImage:
 
     @property
     def mode_width(self) -> int:
-        """The most frequent row width; the width of a raster for networks (specification 3.6)."""
+        """The most frequent row width; the width of a raster for networks (Takahashi 2022, 3.6)."""
         return int(np.bincount(self.row_widths).argmax()) if self.rows else 0
 
     @property

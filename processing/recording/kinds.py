@@ -8,7 +8,7 @@ from processing.core.text import Text
 
 
 class ImageKind(Enum):
-    """How a recording is folded into rows (specification ch. 3; Takahashi 2022, 3.3 to 3.6).
+    """How a recording is folded into rows (Takahashi 2022, 3.3 to 3.6).
 
     Clouds without revolutions have cells for pulses: of a grid seen from above, or of the grid of
     a standing scanner, one sweep to a row.

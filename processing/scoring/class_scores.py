@@ -29,7 +29,7 @@ def class_score(counts: ConfusionMatrix) -> PointScore:
 
     References
     ----------
-    Specification mms.md, 4.2 (classes) and 4.6 (mean F).
+    Takahashi 2022, sections 4.2 (classes) and 4.6 (mean F).
     """
     known = counts.without_true((NOT_KNOWN,))
     classes = _each_class(known)

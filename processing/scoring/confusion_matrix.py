@@ -36,7 +36,7 @@ class BinaryConfusionMatrix:
 
     References
     ----------
-    Specification noise_ground.md, A5: equations 1 to 3 of the road-surface study; B4.
+    Kogure et al. 2022 (road surface), equations 1 to 3; Sakurai et al., table 2.
     """
 
     hits: int

@@ -1,6 +1,6 @@
 """Covered gutters against a truth: by slots along the gutter, and lid by lid.
 
-The thesis asks in every slot of 0.6 m whether a lid was found (specification mms.md, 7.5); that
+The thesis asks in every slot of 0.6 m whether a lid was found (Takahashi 2022, 7.5); that
 says nothing of where the lids' joints are, so lids are also compared one to one by the area they
 share, by their type and by their corners.
 """

@@ -153,8 +153,7 @@ def noise_score(counts: ConfusionMatrix) -> PointScore:
 
     References
     ----------
-    Specification noise_ground.md, A5 (kept points, equations 1 to 3) and A7 (what must be said
-    beside them).
+    Kogure et al. 2022 (road surface), equations 1 to 3, of kept points.
     """
     noise = counts.against_rest(NOISE_CODES)
     true_noise, kept = noise.hits + noise.misses, noise.turned()
@@ -200,7 +199,7 @@ def ground_score(counts: ConfusionMatrix) -> PointScore:
 
     References
     ----------
-    Specification noise_ground.md, B4 (positive: the removed point); Sithole and Vosselman 2004,
+    Sakurai et al., table 2 (positive: the removed point); Sithole and Vosselman 2004,
     ISPRS Journal 59, section 4.2 (types of error: I rejects ground, II accepts objects).
     """
     ground = counts.against_rest(GROUND_CODES)

@@ -1,6 +1,6 @@
 """Road signs against a truth: found, at the right place, of the right shape, of the right size.
 
-The thesis counts successes by what was given beforehand (specification mms.md, 8.4); here they are
+The thesis counts successes by what was given beforehand (Takahashi 2022, 8.4); here they are
 told by what is right, so that either question can be answered. Supplementary plates hang below
 signs and are judged apart.
 """

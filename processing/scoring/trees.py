@@ -1,6 +1,6 @@
 """Street trees against a truth: which were found, and how well each was measured.
 
-Counted as the thesis does (specification mms.md, 5.3), but one to one, and trees with stakes are
+Counted as the thesis does (Takahashi 2022, 5.3), but one to one, and trees with stakes are
 measured too, in a row of their own: stakes are what makes trunks seem thick.
 """
 

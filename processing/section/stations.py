@@ -87,7 +87,7 @@ class Stations:
 
     @classmethod
     def of_trajectory(cls, trajectory: Trajectory) -> Self:
-        """The vehicle's path's reference point."""
+        """The reference point of the vehicle's path."""
         return cls(trajectory.xyz, times=trajectory.time)
 
     def measured_positions(self) -> tuple[Floats, Floats]:

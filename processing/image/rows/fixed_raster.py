@@ -1,4 +1,4 @@
-"""FixedRaster: rows of different widths as an ordinary image for networks (specification 3.6)."""
+"""FixedRaster: rows of different widths as an ordinary image for networks (Takahashi 2022, 3.6)."""
 
 from __future__ import annotations
 

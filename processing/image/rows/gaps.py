@@ -1,7 +1,7 @@
 """What to make of pulses without a point: missing returns stay empty, stops are closed up.
 
 People scroll over a stop without a hole (compressed), algorithms see where it was (split by
-segment): specification 3.5.
+segment): Takahashi 2022, section 3.5.
 """
 
 from __future__ import annotations

@@ -50,7 +50,7 @@ def test_a_noise_share_of_1_07_percent_gives_the_study_s_figures_to_doing_nothin
     assert math.isnan(found.precision)
 
 
-# Specification B4: hits, false alarms, misses; then P, R, F as the paper prints them.
+# Sakurai et al., table 2: hits, false alarms, misses; then P, R, F as the paper prints them.
 _TABLE_2 = [
     (4446, 785, 847, 0.85, 0.84, 0.84),
     (4393, 434, 900, 0.91, 0.83, 0.87),

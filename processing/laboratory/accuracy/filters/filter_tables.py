@@ -118,12 +118,12 @@ def airborne_table(found: Sequence[FilterResult]) -> str:
     return markdown_table(rows)
 
 
-# Specification noise_ground.md, A6: Table 1 of the road-surface study; kept points.
+# Kogure et al. 2022 (road surface), table 1; kept points.
 _PUBLISHED_NOISE = (
     ("radius", "0.5 m, 113", "98.928 %", "99.978 %", "99.450 %"),
     ("statistical", "113, 1.5 σ", "98.928 %", "99.996 %", "99.459 %"),
 )
-# Specification noise_ground.md, B4: Table 2, and the ground's figures derived from its counts.
+# Sakurai et al. (removal of machines), table 2, and the ground's figures from its counts.
 _PUBLISHED_GROUND = (
     ("published", "g = 1 m", "0.85", "0.84", "0.84", "0.943", "0.947", "0.945"),
     ("published", "g = 3 m", "0.91", "0.83", "0.87", "0.941", "0.970", "0.955"),

@@ -15,7 +15,8 @@ from processing.scoring.curb_lines import ScoredEdge
 from processing.scoring.gutters import ScoredGutters
 
 BANDS_M = (0.0, 4.0, 6.5, 10.0, 15.0, np.inf)
-"""The thesis looks for gutters up to 6.5 m from the way (mms.md, Table 7-3)."""
+"""The thesis looks for gutters up to 6.5 m from the vehicle's path (Takahashi 2022,
+table 7-3)."""
 
 Reached = Mapping[str, NDArray[np.int64]]
 """By tool, how many were found and missed in each band: (bands, 2)."""

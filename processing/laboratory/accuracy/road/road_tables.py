@@ -147,7 +147,7 @@ def percent(share: float) -> str:
 
 _EDGES = (("upper", "plan"), ("upper", "height"), ("lower", "plan"), ("lower", "height"))
 _CORNERS = ("corner_plan", "corner_height")
-# Specification mms.md, section 7.5.
+# Takahashi 2022, section 7.5.
 _THESIS_HEADS = (
     ("thesis, left", "3,088", "1,203", "900", "713", "77.4 %", "81.2 %", "79.3 %"),
     ("thesis, right", "2,870", "1,065", "1,038", "931", "73.4 %", "75.5 %", "74.5 %"),
