@@ -82,7 +82,10 @@ def estimate_clock(samples: Iterable[PointColumns]) -> PulseClock | None:
     if apart.size < 32:
         return None
     distinct = [np.unique(times) for times in chunks]
-    interval = _refined(distinct, _common_step(apart))
+    step = _common_step(apart)
+    if step is None:
+        return None
+    interval = _refined(distinct, step)
     coherence = _coherence(distinct, interval)
     if coherence < _LEAST_COHERENCE:
         return None
@@ -156,8 +159,8 @@ def _pulse_times(sample: PointColumns) -> Floats:
     return times - times[0] if times.size else times
 
 
-def _common_step(steps: Floats) -> float:
-    """The step of which most others are multiples, to a few per cent."""
+def _common_step(steps: Floats) -> float | None:
+    """The step of which most others are multiples, to a few per cent; None where there is none."""
     median = float(np.median(steps))
     short = steps[steps < 4.5 * median]
     short = short[:: max(1, short.size // 800)]
@@ -171,7 +174,9 @@ def _common_step(steps: Floats) -> float:
         strength = waves.mean(axis=1).real
         at = int(np.argmax(strength))
         best.append((float(strength[at]), float(grid[at])))
-    most = max(strength for strength, _ in best)
+    most = max((strength for strength, _ in best), default=0.0)
+    if most <= 0:
+        return None  # the steps avoid the multiples of each
     return next(step for strength, step in best if strength >= 0.9 * most)
 
 

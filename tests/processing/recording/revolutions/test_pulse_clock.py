@@ -81,6 +81,11 @@ def test_times_without_a_rhythm_have_no_clock(time):
     assert estimate_clock([points_at(time)]) is None
 
 
+def test_a_thinned_recording_whose_steps_avoid_their_middle_has_no_clock():
+    steps = np.resize([1e-5, 16e-5], 4001)
+    assert estimate_clock([points_at(np.cumsum(steps))]) is None
+
+
 def test_the_exact_kernel_does_compiled_what_it_does_plain():
     time = np.sort(np.random.default_rng(1).choice(np.arange(3_000), 900, replace=False)) / 1e5
     time[500:] += 2.0
