@@ -1,11 +1,15 @@
-"""The panels of the window and their places."""
+"""The panels of the window, each declared once: what it is, where it stands, how it is called."""
 
 from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
 
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QTabWidget, QWidget
 
-from app.window.window_contents import DockPanel
+from app.layout.view_docks import ViewLayout
+from app.window.window_contents import DockPanel, PanelPlace
 from app.window.window_parts import WindowParts
 from processing.core.text import Text
 from widgets.parts.scrolled import make_scrollable
@@ -15,71 +19,52 @@ _RIGHT = Qt.DockWidgetArea.RightDockWidgetArea
 _BELOW = Qt.DockWidgetArea.BottomDockWidgetArea
 
 
-def panels_of(parts: WindowParts) -> tuple[DockPanel, ...]:
-    """All panels; each shares its place with those that are behind it."""
-    project, layers = Text("Project", "プロジェクト"), Text("Layers", "レイヤ")
-    return (
-        DockPanel("layers", layers, parts.layers_panel, _LEFT, 212, 600),
-        DockPanel("project", project, parts.project_tree, _LEFT, 212, 200, narrow_behind="layers"),
-        *_right_panels(parts),
-        *_lower_panels(parts),
-    )
+@dataclass(frozen=True)
+class Panel:
+    """A panel: its dock, its switch in the menu and the palette, and its part in layouts follow.
 
-
-def _right_panels(parts: WindowParts) -> tuple[DockPanel, ...]:
-    """At the right of a wide window; in a narrow one with the layers or below them.
-
-    There each place has as many tabs as can be read.
+    Attributes
+    ----------
+    id : str
+        Names the dock; the window remembers its place by it.
+    make : callable
+        Gives the widget for the parts of a window, connected; again in another language.
     """
-    attributes = Text("Attributes", "属性")
-    return (
-        DockPanel("attributes", attributes, parts.attribute_panel, _RIGHT, 248, 420),
-        _right("processing", Text("Processing", "処理"), parts.processing_panel, behind=""),
-        _right("jobs", Text("Jobs", "ジョブ"), parts.jobs_panel, narrow_behind="layers"),
-        _right("review", Text("Review", "確認"), parts.review_panel, behind="attributes"),
-        _right(
-            "labels",
-            Text("Labels", "ラベル"),
-            parts.label_panel,
-            narrow_behind="layers",
-            is_hidden=True,
-        ),
-        _right(
-            "templates",
-            Text("Templates", "テンプレート"),
-            make_scrollable(parts.template_panel),
-            narrow_behind="layers",
-            is_hidden=True,
-        ),
-        _right(
-            "volume",
-            Text("Volume", "土量"),
-            parts.volume_panel,
-            narrow_behind="layers",
-            is_hidden=True,
-        ),
-    )
+
+    id: str
+    title: Text
+    make: Callable[[WindowParts], QWidget]
+    place: PanelPlace
+
+    def docked(self, parts: WindowParts) -> DockPanel:
+        """The panel of a window."""
+        return DockPanel(self.id, self.title, self.make(parts), self.place)
+
+
+def panels_of(parts: WindowParts) -> tuple[DockPanel, ...]:
+    """All panels of a window, made of its parts."""
+    return tuple(panel.docked(parts) for panel in PANELS)
 
 
 def _right(
-    id_: str,
-    title: Text,
-    widget: QWidget,
     *,
     behind: str = "processing",
     narrow_behind: str = "attributes",
     is_hidden: bool = False,
-) -> DockPanel:
-    return DockPanel(
-        id_,
-        title,
-        widget,
+    front_px: tuple[tuple[ViewLayout, int], ...] = (),
+) -> PanelPlace:
+    """At the right of a wide window; in a narrow one with the layers or below them.
+
+    There each place has as many tabs as can be read.
+    """
+    return PanelPlace(
         _RIGHT,
         248,
         380,
         behind=behind,
         narrow_behind=narrow_behind,
         is_hidden=is_hidden,
+        front_px=front_px,
     )
 
 
@@ -96,14 +81,72 @@ def _evaluation_pages(parts: WindowParts) -> QTabWidget:
     return pages
 
 
-def _lower_panels(parts: WindowParts) -> tuple[DockPanel, ...]:
-    """Tables, which wait to be called."""
-    evaluation, table = Text("Evaluation", "評価"), Text("Table of features", "地物一覧")
-    return (
-        DockPanel(
-            "evaluation", evaluation, _evaluation_pages(parts), _BELOW, 900, 280, is_hidden=True
-        ),
-        DockPanel(
-            "features", table, parts.feature_table, _BELOW, 900, 230, is_hidden=True, key="F6"
-        ),
-    )
+PANELS: tuple[Panel, ...] = (
+    Panel(
+        "layers",
+        Text("Layers", "レイヤ"),
+        lambda parts: parts.layers_panel,
+        PanelPlace(_LEFT, 212, 600),
+    ),
+    Panel(
+        "project",
+        Text("Project", "プロジェクト"),
+        lambda parts: parts.project_tree,
+        PanelPlace(_LEFT, 212, 200, narrow_behind="layers"),
+    ),
+    Panel(
+        "attributes",
+        Text("Attributes", "属性"),
+        lambda parts: parts.attribute_panel,
+        PanelPlace(_RIGHT, 248, 420),
+    ),
+    Panel(
+        "processing",
+        Text("Processing", "処理"),
+        lambda parts: parts.processing_panel,
+        _right(behind=""),
+    ),
+    Panel(
+        "jobs",
+        Text("Jobs", "ジョブ"),
+        lambda parts: parts.jobs_panel,
+        _right(narrow_behind="layers"),
+    ),
+    Panel(
+        "review",
+        Text("Review", "確認"),
+        lambda parts: parts.review_panel,
+        _right(behind="attributes", front_px=((ViewLayout.CHECKING, 600),)),
+    ),
+    Panel(
+        "labels",
+        Text("Labels", "ラベル"),
+        lambda parts: parts.label_panel,
+        _right(narrow_behind="layers", is_hidden=True),
+    ),
+    Panel(
+        "templates",
+        Text("Templates", "テンプレート"),
+        lambda parts: make_scrollable(parts.template_panel),
+        _right(narrow_behind="layers", is_hidden=True),
+    ),
+    Panel(
+        "volume",
+        Text("Volume", "土量"),
+        lambda parts: parts.volume_panel,
+        _right(narrow_behind="layers", is_hidden=True, front_px=((ViewLayout.EARTHWORK, 800),)),
+    ),
+    Panel(
+        "evaluation",
+        Text("Evaluation", "評価"),
+        _evaluation_pages,
+        PanelPlace(_BELOW, 900, 280, is_hidden=True),
+    ),
+    Panel(
+        "features",
+        Text("Table of features", "地物一覧"),
+        lambda parts: parts.feature_table,
+        PanelPlace(_BELOW, 900, 230, is_hidden=True, key="F6"),
+    ),
+)
+"""All panels, in the order of their docks; another one is another entry."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from app.layout.panel_room import make_room
 from app.layout.view_docks import LAYOUT_NAMES, ViewLayout
 from app.window.action import Action
 from app.window.window_parts import WindowParts
@@ -26,9 +25,6 @@ _HINTS = {
     ),
 }
 
-_REVIEW_PX = 600
-_VOLUME_PX = 800
-
 
 def layout_actions(parts: WindowParts) -> tuple[Action, ...]:
     """The layouts, in a menu of their own."""
@@ -36,12 +32,7 @@ def layout_actions(parts: WindowParts) -> tuple[Action, ...]:
     def standing(layout: ViewLayout, key: str) -> Action:
         def place() -> None:
             parts.window.area.place(layout)
-            if layout is ViewLayout.CHECKING:
-                parts.window.show_panel("review")
-                make_room(parts.window, "review", _REVIEW_PX)
-            if layout is ViewLayout.EARTHWORK:
-                parts.window.show_panel("volume")
-                make_room(parts.window, "volume", _VOLUME_PX)
+            parts.window.bring_panels(layout)
 
         return Action(
             f"layout-{layout.value}",

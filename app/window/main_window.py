@@ -18,8 +18,9 @@ from PySide6.QtWidgets import (
 )
 from typing_extensions import override
 
-from app.layout.panel_room import hide_stray_tabs
+from app.layout.panel_room import hide_stray_tabs, make_room
 from app.layout.view_area import ViewArea
+from app.layout.view_docks import ViewLayout
 from app.settings.settings import WindowLayout
 from app.window.action import Action
 from app.window.screen_room import bring_onto_screen
@@ -156,8 +157,8 @@ class MainWindow(QMainWindow):
             dock = QDockWidget(panel.title.in_language(language), self)
             dock.setObjectName(panel.id)
             dock.setWidget(panel.widget)
-            self.addDockWidget(panel.area, dock)
-            if panel.is_hidden:
+            self.addDockWidget(panel.place.area, dock)
+            if panel.place.is_hidden:
                 self._waiting.append(dock)
             self._docks[panel.id] = dock
             self._adopt_toggle(panel, dock)
@@ -167,6 +168,14 @@ class MainWindow(QMainWindow):
         dock = self._docks[id_]
         dock.show()
         dock.raise_()
+
+    def bring_panels(self, layout: ViewLayout) -> None:
+        """Bring the panels that belong to a layout to the front."""
+        for panel in self._panels:
+            for known, high_px in panel.place.front_px:
+                if known is layout:
+                    self.show_panel(panel.id)
+                    make_room(self, panel.id, high_px)
 
     def give_keys(self, keys: Mapping[str, tuple[str, ...]]) -> None:
         """Let actions be reached by these keys from now on."""
@@ -256,7 +265,7 @@ class MainWindow(QMainWindow):
             Text("Panel: {title}", "パネル: {title}").filled(title=panel.title),
             toggle.trigger,
             "view",
-            (panel.key,) if panel.key else (),
+            (panel.place.key,) if panel.place.key else (),
             needs_project=True,
         )
         self.actions_made.adopt(action, toggle)
@@ -267,18 +276,21 @@ class MainWindow(QMainWindow):
         self._in_front.clear()
         placed: list[DockPanel] = []
         for panel in self._panels:
-            dock, behind = self._docks[panel.id], panel.narrow_behind if is_narrow else panel.behind
-            is_beside = panel.area is not _BELOW
-            self.addDockWidget(_LEFT if is_narrow and is_beside else panel.area, dock)
+            dock, behind = (
+                self._docks[panel.id],
+                panel.place.narrow_behind if is_narrow else panel.place.behind,
+            )
+            is_beside = panel.place.area is not _BELOW
+            self.addDockWidget(_LEFT if is_narrow and is_beside else panel.place.area, dock)
             if behind:
                 self.tabifyDockWidget(self._docks[behind], dock)
                 self._in_front.append(self._docks[behind])
             else:
                 placed.append(panel)
         own = [self._docks[panel.id] for panel in placed]
-        widths = [_COLUMN_PX if is_narrow else panel.width for panel in placed]
+        widths = [_COLUMN_PX if is_narrow else panel.place.width for panel in placed]
         self.resizeDocks(own, widths, Qt.Orientation.Horizontal)
-        self.resizeDocks(own, [panel.height for panel in placed], Qt.Orientation.Vertical)
+        self.resizeDocks(own, [panel.place.height for panel in placed], Qt.Orientation.Vertical)
 
     def _remember_docks(self) -> None:
         """Keep how the docks stand, for the next time that a project is open."""

@@ -10,12 +10,13 @@ from PySide6.QtWidgets import QStatusBar, QToolBar, QVBoxLayout, QWidget
 from typing_extensions import override
 
 from app.layout.view_area import ViewArea
+from app.layout.view_docks import ViewLayout
 from processing.core.text import Language, Text
 
 
 @dataclass(frozen=True)
-class DockPanel:
-    """A widget in a dock.
+class PanelPlace:
+    """Where a panel stands, and when it is seen.
 
     Attributes
     ----------
@@ -31,11 +32,10 @@ class DockPanel:
         Whether it waits to be called by its action.
     key : str
         The key of that action.
+    front_px : tuple of (ViewLayout, int)
+        The layouts that bring it to the front, and how high it is then, in pixels.
     """
 
-    id: str
-    title: Text
-    widget: QWidget
     area: Qt.DockWidgetArea
     width: int
     height: int
@@ -43,6 +43,17 @@ class DockPanel:
     narrow_behind: str = ""
     is_hidden: bool = False
     key: str = ""
+    front_px: tuple[tuple[ViewLayout, int], ...] = ()
+
+
+@dataclass(frozen=True)
+class DockPanel:
+    """A widget in a dock."""
+
+    id: str
+    title: Text
+    widget: QWidget
+    place: PanelPlace
 
 
 @dataclass(frozen=True)
