@@ -9,6 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from processing.core.errors import BadFile, MissingInput, Unsuitable
+from processing.image.attributes import attributes as attributes_module
 from processing.image.attributes.attributes import (
     ATTRIBUTES,
     available,
@@ -350,3 +351,22 @@ def test_a_damaged_class_table_is_refused(tmp_path: Path, text: str) -> None:
 def test_a_missing_class_table_is_named(tmp_path: Path) -> None:
     with pytest.raises(MissingInput):
         read_classes(tmp_path / "none.toml")
+
+
+def test_classes_of_a_long_recording_are_met_wherever_they_are(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("processing.image.attributes.attributes._CHUNK_POINTS", 1000)
+    monkeypatch.setattr("processing.image.attributes.attributes._CLASS_PIECE_POINTS", 64)
+    codes = np.ones(200_000, np.uint8)
+    for name, chosen in (
+        ("none", slice(0, 0)),
+        ("end", slice(-500, None)),
+        ("rare", slice(0, None, 97)),
+    ):
+        folder = tmp_path / name
+        folder.mkdir()
+        some = codes.copy()
+        some[chosen] = 2
+        some.tofile(folder / "classification.bin")
+        assert attributes_module._has_classes(folder, some.size) is (name != "none")
