@@ -24,9 +24,9 @@ def damaged_pulses(folder: Path | None) -> BadFile:
         ),
         Text.same("pulse" if folder is None else str(column_path(folder, "pulse"))),
         Text(
-            "Try once more, as the rows are then found anew; if it stays, import the drive again "
-            "from the delivered files.",
+            "Try once more, as the rows are then found anew; if it stays, remove the drive and "
+            "import it again from the delivered files.",
             "もう一度実行してください（行を検出し直します）。解消しない場合は、"
-            "納品ファイルから走行データを再インポートしてください。",
+            "走行データを除いてから、納品ファイルを再インポートしてください。",
         ),
     )
