@@ -22,10 +22,10 @@ from types import FunctionType, ModuleType
 
 WARM_UP = "warm_up"
 LATER = (
-    "processing.earthwork",
-    "processing.road",
-    "processing.simulate",
-    "processing.templates",
+    "processing.laboratory",
+    "processing.methods.earthwork",
+    "processing.methods.road",
+    "processing.methods.templates",
 )
 """What the demo doesn't use; numba compiles a kernel at its first use where nobody did before."""
 
@@ -52,6 +52,31 @@ def folders_of(package: ModuleType, without: Sequence[str] = ()) -> tuple[tuple[
             kernels[folder] += source.read_text(encoding="utf-8").count("@kernel")
     ordered = sorted(names, key=lambda folder: (-kernels[folder], folder))
     return tuple(tuple(sorted(names[folder])) for folder in ordered)
+
+
+def remove_stale_code(folder: Path) -> int:
+    """Remove machine code that is older than its source, or whose source is gone.
+
+    Numba leaves it on the disk, and reads what it says of its arguments before it sees that it is
+    stale: a record of arguments that has another name by then ends the program.
+
+    Returns
+    -------
+    int
+        How many files were removed.
+    """
+    stale = [
+        code
+        for code in folder.rglob("__pycache__/*.nb[ic]")
+        if not _is_newer(code, code.parent.parent / f"{code.name.partition('.')[0]}.py")
+    ]
+    for code in stale:
+        code.unlink(missing_ok=True)
+    return len(stale)
+
+
+def _is_newer(code: Path, source: Path) -> bool:
+    return source.is_file() and code.stat().st_mtime >= source.stat().st_mtime
 
 
 def warm_up_of(module: ModuleType) -> Callable[[], object] | None:
@@ -95,6 +120,7 @@ def main() -> int:
     options = parser.parse_args()
     without = LATER if options.demo else ()
     start = time.perf_counter()
+    remove_stale_code(Path(__file__).resolve().parent.parent / "processing")
     folders = folders_of(importlib.import_module("processing"), without)
     warmed = warm_beside(folders, options.processes)
     seconds = time.perf_counter() - start

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import importlib
+import importlib.util
 import os
 import sys
 from collections.abc import Iterator
@@ -13,7 +13,7 @@ from typing_extensions import override
 
 from installer import commands
 from installer.environment import Environment
-from installer.warm_kernels import folders_of, warm, warm_beside
+from installer.warm_kernels import LATER, folders_of, remove_stale_code, warm, warm_beside
 
 
 @pytest.fixture
@@ -145,3 +145,26 @@ def test_the_other_kernels_are_compiled_beside_the_window_once(checkout: Environ
                 compiler.wait()
     commands._warm_kernels(checkout, only_for_demo=False)
     assert noted(checkout) == ["--processes 1"]
+
+
+def test_machine_code_that_is_older_than_its_source_is_removed(tmp_path: Path) -> None:
+    cache = tmp_path / "curbs" / "__pycache__"
+    cache.mkdir(parents=True)
+    for name in ("fresh", "changed", "gone"):
+        (cache / f"{name}.loop-3.py311.nbi").touch()
+        (cache / f"{name}.loop-3.py311.1.nbc").touch()
+    os.utime(cache / "changed.loop-3.py311.nbi", (1_000, 1_000))
+    os.utime(cache / "changed.loop-3.py311.1.nbc", (1_000, 1_000))
+    for name in ("fresh", "changed"):
+        (tmp_path / "curbs" / f"{name}.py").touch()
+        os.utime(tmp_path / "curbs" / f"{name}.py", (2_000, 2_000))
+    assert remove_stale_code(tmp_path) == 4
+    assert sorted(path.name for path in cache.iterdir()) == [
+        "fresh.loop-3.py311.1.nbc",
+        "fresh.loop-3.py311.nbi",
+    ]
+
+
+def test_what_the_demo_leaves_out_is_there() -> None:
+    for name in LATER:
+        assert importlib.util.find_spec(name) is not None
