@@ -108,6 +108,14 @@ def remove_folder(folder: Path, within: Path | None = None) -> bool:
     """
     if _is_behind_link(folder, within):
         return False
+    # The mark goes last, so that what a kill leaves is still known as the program's own.
+    with suppress(OSError), os.scandir(folder) as listed:
+        for entry in [one for one in listed if one.name != MARK]:
+            if entry.is_dir(follow_symlinks=False):
+                shutil.rmtree(entry.path, ignore_errors=True)
+            else:
+                with suppress(OSError):
+                    Path(entry.path).unlink()
     shutil.rmtree(folder, ignore_errors=True)
     return True
 

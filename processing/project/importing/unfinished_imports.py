@@ -105,6 +105,7 @@ def remove_litter(project: Path, drives: Collection[str]) -> None:
         is_there = bool(finished) and all(id_ in drives for id_ in finished)
         if is_there or _request_of(folder) is None:
             remove_import(folder)
+            remove_emptied(folder)
     home = project / TEMPORARY
     for path in () if is_link(home) else home.glob("*"):
         if path.is_dir() and not is_link(path) and not is_import_folder(path):

@@ -206,11 +206,14 @@ def test_a_kill_while_an_import_is_removed_leaves_nothing_to_go_on_with(
         case "open":
             request = replace(delivery, inputs=delivery.inputs[:1])
             done = import_drives(request, import_folder(project.folder, request), SilentMonitor())
-            plan = done[0].parent / import_journal.PLAN
-            kept = plan.read_bytes()
+            into = done[0].parent
+            kept = {one.name: one.read_bytes() for one in into.iterdir() if one.is_file()}
+            assert import_journal.PLAN in kept
             project.adopt_drives(done)
             at_kill.clear()
-            plan.write_bytes(kept)
+            into.mkdir(exist_ok=True)
+            for name, text in kept.items():
+                (into / name).write_bytes(text)
             project.close()
             Project.open(project.folder).close()
     assert at_kill

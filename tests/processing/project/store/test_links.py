@@ -327,3 +327,16 @@ def test_a_simulation_takes_no_folder_that_is_not_its_own(
     with pytest.raises(InUse), write_whole_folder(tmp_path / "street"):
         pass
     assert (tree_of(outside), tree_of(hidden)) == before
+
+
+def test_the_mark_is_what_a_removal_takes_last(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = tmp_path / "import-1"
+    make_marked(folder)
+    for number in range(20):
+        (folder / f"{number}.bin").touch()
+    (folder / "drive").mkdir()
+    monkeypatch.setattr("shutil.rmtree", lambda *_, **__: None)  # as a kill before the last step
+    assert remove_folder(folder)
+    assert sorted(path.name for path in folder.iterdir()) == [MARK, "drive"]
