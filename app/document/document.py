@@ -13,7 +13,7 @@ from app.document.drive_results import DriveResults
 from app.document.job_results import JobResultApplier
 from app.document.label_news import report_labels
 from app.document.label_steps import LabelSteps
-from app.document.long_work import export_work, exported_words
+from app.document.long_work import exported_words
 from app.document.preparation import Preparation
 from app.document.run_results import RunResultApplier
 from app.document.undo import UndoStack
@@ -27,6 +27,7 @@ from processing.map.change import Change
 from processing.map.feature import Feature
 from processing.operations.export import ExportRequest
 from processing.operations.finished_runs import FinishedRun
+from processing.operations.project_export import export_of
 from processing.operations.run import operation_on_drive
 from processing.operations.store import StoredRun, store_run
 from processing.project.importing.importing import ImportRequest
@@ -295,7 +296,7 @@ class Document(QObject):
     def export(self, request: ExportRequest) -> str:
         """Write the map to files in the background; gives the job's id."""
         project = self._needed()
-        title, work = export_work(project, request)
+        title, work = Text("Export", "書き出し"), export_of(project, request)
 
         def take(paths: tuple[Path, ...]) -> None:
             self.reported.emit(exported_words(paths, request.folder))

@@ -12,11 +12,9 @@ from app.document.import_words import adding_words
 from processing.core.monitor import Monitor
 from processing.core.text import Text
 from processing.image.images_of_drives import image_of
-from processing.operations.export import ExportRequest
 from processing.operations.finished_runs import FinishedRun
 from processing.operations.import_files import bring_prepared
 from processing.operations.inputs import OpenedInputs
-from processing.operations.project_export import export_of
 from processing.operations.run import RunFolders, RunOperation, finish_runs
 from processing.project.additions import Additions, home_of
 from processing.project.importing.import_request import ImportRequest
@@ -63,13 +61,6 @@ def run_work(
         tool=tool_of(operation.tool).name, name=", ".join(one.info.name for one in opened.chosen)
     )
     return title, lambda monitor: finish_runs(operation, opened, folders, monitor, begin=begin)
-
-
-def export_work(
-    project: Project, request: ExportRequest
-) -> tuple[Text, Callable[[Monitor], tuple[Path, ...]]]:
-    """The map as it is now is written to files."""
-    return Text("Export", "書き出し"), export_of(project, request)
 
 
 def exported_words(paths: Sequence[Path], folder: Path) -> Text:

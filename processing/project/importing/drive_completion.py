@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from processing.core.disk_room import refuse_small_disk
 from processing.core.errors import UNCHANGED, OutOfRange, report_as_user_error
 from processing.core.monitor import Monitor, PartMonitor
+from processing.core.owned_files import remove_folder
 from processing.core.text import Text
 from processing.project.importing.build_steps import BuildSteps
 from processing.project.importing.carried_results import carry_results, results_mark
@@ -78,7 +79,7 @@ class CompletedDrive:
 
     def remove_rest(self) -> None:
         """Remove what is left where it was made, once its folder is taken over."""
-        shutil.rmtree(self.folder.parent, ignore_errors=True)
+        remove_folder(self.folder.parent)
 
     def positions(self) -> NDArray[np.int64] | None:
         """(n,) int64 on the disk: where each point is now; None where all are where they were.
@@ -120,7 +121,7 @@ def complete_drive(
     try:
         return _completed(drive, trajectories, into, monitor)
     except BaseException:
-        shutil.rmtree(into, ignore_errors=True)
+        remove_folder(into)
         raise
 
 
