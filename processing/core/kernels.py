@@ -17,8 +17,3 @@ FunctionT = TypeVar("FunctionT", bound=Callable[..., object])
 def kernel(function: FunctionT) -> FunctionT:
     """Compile a function for one core; ``function.py_func`` is the plain one."""
     return cast("FunctionT", njit(cache=True, nogil=True)(function))
-
-
-def parallel_kernel(function: FunctionT) -> FunctionT:
-    """Compile a function whose ``prange`` loops use all cores; one thread may enter at a time."""
-    return cast("FunctionT", njit(cache=True, nogil=True, parallel=True)(function))

@@ -20,7 +20,6 @@ from widgets.image_view.viewport import Viewport
 from widgets.shared.image_orientation import ImageOrientation
 from widgets.shared.view_settings import PointStyle
 
-HEIGHT_PX = 40
 _LIMIT_BYTES = 16 * 2**20
 _BACKGROUND = QColor("#101216")
 _SHADE = QColor(0, 0, 0, 110)

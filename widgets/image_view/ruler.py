@@ -14,7 +14,6 @@ from processing.recording.kinds import ImageKind
 from widgets.image_view.oriented_image import OrientedImage
 from widgets.image_view.viewport import Viewport
 
-HEIGHT_PX = 20
 _LABEL_EVERY_PX = 96.0
 _BACKGROUND = QColor("#1b1e23")
 _INK = QColor("#b9c0c9")

@@ -31,8 +31,6 @@ class PointFileInfo:
         Whether its points come with a time, with a colour.
     is_adjusted_standard : bool or None
         True: times are GPS seconds less 1e9; None: week seconds, or it is not said.
-    scanner_ids : tuple of int
-        Empty: only the points tell.
     first_time : float
         Time of the first point, NaN without.
     version, point_format : str, int
@@ -60,7 +58,6 @@ class PointFileInfo:
     has_time: bool
     has_color: bool
     is_adjusted_standard: bool | None = None
-    scanner_ids: tuple[int, ...] = ()
     first_time: float = float("nan")
     version: str = ""
     point_format: int = -1

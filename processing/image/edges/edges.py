@@ -32,7 +32,6 @@ if TYPE_CHECKING:  # processing.recording.drive makes images, so importing it he
 _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
 
-_NONE = -1
 """No point."""
 
 # "By trial": chosen while the tool was made; no measurement of the single value is recorded.
@@ -91,17 +90,6 @@ class EdgePosition:
 
     point: int
     xyz: tuple[float, float, float]
-
-
-def strongest_bend(drive: Drive, point: int, within_px: int = 8) -> int:
-    """The measured point nearest to the edge beside a point, −1 where there is none.
-
-    See Also
-    --------
-    edge_beside : The place on the edge itself.
-    """
-    found = edge_beside(drive, point, within_px)
-    return _NONE if found is None else found.point
 
 
 def edge_beside(drive: Drive, point: int, within_px: int = 8) -> EdgePosition | None:

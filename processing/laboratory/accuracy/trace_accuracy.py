@@ -29,7 +29,6 @@ from processing.project.importing.importing import ImportRequest, import_drives
 from processing.recording.drive import Drive
 
 _Floats = NDArray[np.float64]
-_Integers = NDArray[np.int64]
 
 _CLICKS, _ASIDE_PX = 400, 8
 _SNAPPED_M, _FOLLOWED_M = 0.02, 0.03

@@ -15,7 +15,6 @@ from processing.recording.vehicle_path.trajectory import Trajectory
 from resources import path_of
 
 _TRAJECTORY_HEADER = "time_s,easting_m,northing_m,height_m,roll_deg,pitch_deg,heading_deg"
-_TIMELESS_FORMAT = 0
 _TURNS_PER_S = 100.0
 
 
@@ -98,33 +97,6 @@ def write_long_delivery(
     path = folder / f"{scanners[0]}-{points}.csv"
     _write_trajectory(path, trajectory, repetition, longest)
     return LongDelivery(clouds, path)
-
-
-def write_large_area(folder: Path, points: int) -> Path:
-    """Write a cloud without revolutions, times and trajectory: the sample's points side by side.
-
-    Parameters
-    ----------
-    points : int
-        Wanted number; the last repetition is cut.
-    """
-    sample = laspy.read(path_of("sample_street") / "left.laz")
-    header = laspy.LasHeader(point_format=_TIMELESS_FORMAT, version="1.2")
-    header.scales, header.offsets = sample.header.scales, sample.header.offsets
-    record = laspy.ScaleAwarePointRecord.zeros(len(sample.points), header=header)
-    for name in ("X", "Y", "Z", "intensity", "return_number", "number_of_returns"):
-        record[name] = sample[name]
-    size = [int(np.ptp(record["X"])), int(np.ptp(record["Y"]))]
-    across = max(1, round((points / len(record)) ** 0.5))
-    path = folder / f"area-{points}.laz"
-    with laspy.open(path, mode="w", header=header) as writer:
-        for number in range(-(-points // len(record))):
-            left = points - number * len(record)
-            moved = record[: min(left, len(record))].copy()
-            moved["X"] = moved["X"] + (number % across) * size[0]
-            moved["Y"] = moved["Y"] + (number // across) * size[1]
-            writer.write_points(moved)
-    return path
 
 
 def _repetition_of(samples: Collection[laspy.LasData], trajectory: Trajectory) -> _Repetition:

@@ -21,16 +21,6 @@ def check_line(feature: Feature) -> None:
         )
 
 
-def check_area(feature: Feature) -> None:
-    """Raise `Unsuitable` for what is no area."""
-    if feature.geometry is not Geometry.AREA:
-        raise Unsuitable(
-            Text("Only areas can be edited like this.", "この編集は面にのみ行えます。"),
-            name_feature(feature),
-            Text("Choose an area.", "面を選んでください。"),
-        )
-
-
 def gap_m(one: Vertex, other: Vertex) -> float:
     """Distance of two vertices in space, m."""
     return float(np.linalg.norm(np.subtract(one.xyz, other.xyz)))

@@ -13,7 +13,7 @@ import numpy as np
 from processing.core.errors import Unsuitable
 from processing.core.text import Text
 from processing.map.catalogue import Geometry
-from processing.map.drafting.edited_features import check_area, check_line, gap_m, name_feature
+from processing.map.drafting.edited_features import check_line, gap_m
 from processing.map.drafting.kind_edits import close_line, open_area, with_kind
 from processing.map.drafting.line_joins import extend_to, join, trim_at
 from processing.map.drafting.polyline import SAME_POSITION_M, name_position
@@ -29,7 +29,6 @@ __all__ = [
     "reverse_line",
     "simplify_line",
     "split_line",
-    "split_ring",
     "trim_at",
     "with_kind",
 ]
@@ -75,37 +74,6 @@ def split_line(feature: Feature, segment: int, position: Vertex) -> tuple[Featur
         )
     kept = feature.with_vertices(first)
     return kept, dataclasses.replace(feature, id=new_feature_id(), vertices=second)
-
-
-def split_ring(feature: Feature, first: int, second: int) -> tuple[Feature, Feature]:
-    """Cut an area into two along a straight line between two of its vertices.
-
-    Returns
-    -------
-    tuple of Feature
-        The first holds the sides from vertex ``first`` on and keeps the id.
-
-    Raises
-    ------
-    Unsuitable
-        It is no area, or the two vertices are neighbours.
-    """
-    check_area(feature)
-    count = len(feature.vertices)
-    there = (second - first) % count
-    if there < 2 or count - there < 2:
-        raise Unsuitable(
-            Text(
-                "An area can't be split between neighbouring vertices.",
-                "隣り合う頂点どうしでは面を分割できません。",
-            ),
-            name_feature(feature),
-            Text("Choose two vertices that face each other.", "向かい合う2頂点を選んでください。"),
-        )
-    order = [feature.vertices[(first + step) % count] for step in range(count)]
-    kept = feature.with_vertices(tuple(order[: there + 1]))
-    other = (*order[there:], order[0])
-    return kept, dataclasses.replace(feature, id=new_feature_id(), vertices=other)
 
 
 def reverse_line(feature: Feature) -> Feature:

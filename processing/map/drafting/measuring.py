@@ -76,31 +76,6 @@ def measures_of(positions: Sequence[Position], *, is_closed: bool) -> tuple[Meas
     return _of_ring(positions) if is_closed else _of_line(positions)
 
 
-def cross_fall(first: Position, second: Position) -> tuple[Measure, ...]:
-    """How steeply the ground falls between two places seen across, and where to.
-
-    Returns
-    -------
-    tuple of Measure
-        Percent, never negative; the direction of the fall in degrees clockwise from grid north,
-        left out on the level. Nothing where the places lie above one another.
-    """
-    step = _step(first, second)
-    plan = float(np.hypot(step[0], step[1]))
-    if plan < SAME_POSITION_M:
-        return ()
-    fall = Measure(
-        "cross_fall_percent", Text("Cross fall", "横断勾配"), abs(step[2]) / plan * 100, "%", 2
-    )
-    if step[2] == 0:
-        return (fall,)
-    down = step if step[2] < 0 else -step
-    return (
-        fall,
-        Measure("falls_towards_deg", Text("Falls towards", "下り方向"), _bearing(down), "°", 1),
-    )
-
-
 def width_between(line: Sequence[Position], other: Sequence[Position]) -> Width:
     """How wide it is from one line to another in plan.
 

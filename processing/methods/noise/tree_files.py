@@ -1,7 +1,9 @@
 """Boosted trees as ONNX files: one TreeEnsembleClassifier, read and written without a library.
 
 An ONNX file is a protobuf message; the few fields that such a model has are read here directly,
-so that nothing has to be installed to ask some trees.
+so that nothing has to be installed to ask some trees. onnxruntime answers but does not show a
+model's nodes, which the kernel of ``trees.py`` asks; the package ``onnx`` would read and write
+them, and protobuf with it.
 
 References
 ----------

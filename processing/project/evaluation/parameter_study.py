@@ -113,12 +113,6 @@ class ParameterStudy:
         scored = [cell for cell in self.cells if not math.isnan(cell.counts.f_measure)]
         return max(scored, key=lambda cell: cell.counts.f_measure, default=None)
 
-    @property
-    def untouched(self) -> BinaryConfusionMatrix:
-        """What leaving every point as it is would score."""
-        none = BinaryConfusionMatrix(0, 0, 0, 0)
-        return self.cells[0].counts.if_nothing_was_positive() if self.cells else none
-
 
 def study(request: StudyRequest, truth: TruthOf, monitor: Monitor, into: Path) -> ParameterStudy:
     """Run the tool with every setting and count what it did, where the truth is known.

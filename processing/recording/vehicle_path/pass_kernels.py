@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from processing.core.kernels import kernel
 
 Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 _MOST_STEPS = 20
 """Of Newton's method; it ends within three but in sharp bends."""

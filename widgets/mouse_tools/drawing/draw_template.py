@@ -113,7 +113,6 @@ class DrawTemplate(MouseTool):
         self._begun_in: Cut | None = None
         self._lines: tuple[tuple[Vertex, ...], ...] = ()
         self._preview: Vertex | None = None
-        self._kind = ""
 
     @property
     def part(self) -> TemplatePart:
@@ -123,10 +122,6 @@ class DrawTemplate(MouseTool):
     def use_cut(self, cut: Cut | None) -> None:
         """The section is here now; what was begun stays where it was begun."""
         self._cut = cut
-
-    def colour_as(self, kind: str) -> None:
-        """Draw in the colour of this kind of feature."""
-        self._kind = kind
 
     @property
     @override
@@ -231,7 +226,7 @@ class DrawTemplate(MouseTool):
         preview = () if self._preview is None else (self._preview,)
         geometry = Geometry.AREA if self._draws_zone else Geometry.LINE
         notes = self._notes(preview)
-        self._sketch.show(Drawing(self._kind, geometry, stroke, preview, notes=notes))
+        self._sketch.show(Drawing("", geometry, stroke, preview, notes=notes))
 
     def _notes(self, preview: tuple[Vertex, ...]) -> tuple[Note, ...]:
         """Offset and height of what is under the mouse about the anchor."""

@@ -24,13 +24,9 @@ SPLIT = Text("Split a line", "線の分割")
 EXTEND = Text("Extend a line", "線の延伸")
 TRIM = Text("Trim a line", "線の切り取り")
 
-PICK_END = Text(
-    "Click on the line near the end to extend.", "延ばす側の端の近くで線をクリックしてください。"
-)
 PICK_TARGET = Text(
     "Now click on the line to extend it to.", "次に、延ばす先の線をクリックしてください。"
 )
-PICK_CUTTER = Text("Click on the line that cuts.", "切り取りの境界となる線をクリックしてください。")
 PICK_REST = Text(
     "Now click on the part of the line to keep.",
     "次に、残す側の線の部分をクリックしてください。",

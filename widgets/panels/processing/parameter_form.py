@@ -97,11 +97,6 @@ class ParameterForm(QWidget):
             if id_ in self._rows:
                 self._rows[id_].set_value(getattr(checked, id_))
 
-    def restore_defaults(self) -> None:
-        """Set every field to its default."""
-        for row in self._rows.values():
-            row.restore()
-
     def field(self, id_: str) -> QWidget:
         """The widget in which a parameter is typed."""
         return self._rows[id_].field

@@ -16,9 +16,6 @@ Integers = NDArray[np.int64]
 TriangleShape = tuple[Floats, Integers]
 """Vertices (n, 3) float64, m, and triangles (m, 3) int64."""
 
-MOST_PIECES = 256
-"""Pieces of one thing that truth tells apart."""
-
 
 @dataclass(frozen=True)
 class Mesh:

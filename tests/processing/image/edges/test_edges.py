@@ -15,7 +15,7 @@ from processing.image.edges.edge_kernels import (
     SectionLimits,
     corners_kernel,
 )
-from processing.image.edges.edges import edge_beside, highest_point, lowest_point, strongest_bend
+from processing.image.edges.edges import edge_beside, highest_point, lowest_point
 from processing.image.edges.step_kernels import HEADING, JUMP, STEP, UNKNOWNS, step_kernel
 from processing.image.neighbourhoods.points_around import neighbours
 from processing.recording.drive import Drive
@@ -178,19 +178,19 @@ def test_a_flat_road_has_no_edge(
     street = ProfiledStreet(profile=profile, noise_m=noise_m, length_m=14.0)
     drive = recorded(tmp_path / "drive", street)
     points = [point for aside in (-25, 0, 20) for point in clicks(drive, street, LOWER, aside)]
-    assert np.mean([strongest_bend(drive, point) == -1 for point in points]) >= 0.98
+    assert np.mean([edge_beside(drive, point) is None for point in points]) >= 0.98
 
 
 def test_leaves_have_no_edge(tmp_path: Path) -> None:
     street = ProfiledStreet(profile=((-1.0, 0.5), (1.0, 0.5)), noise_m=0.08)
     drive = recorded(tmp_path / "drive", street)
     points = clicks(drive, street, np.array([0.0, 0.5]), 0)
-    assert np.mean([strongest_bend(drive, point) == -1 for point in points]) >= 0.8
+    assert np.mean([edge_beside(drive, point) is None for point in points]) >= 0.8
 
 
 def test_a_lonely_point_has_no_edge_and_is_its_own_lowest(tmp_path: Path) -> None:
     drive = recorded(tmp_path / "drive", ProfiledStreet(row_m=3.0, spacing_m=1.0))
-    assert strongest_bend(drive, 0) == -1
+    assert edge_beside(drive, 0) is None
     assert lowest_point(drive, 0, 0.2) == 0
 
 

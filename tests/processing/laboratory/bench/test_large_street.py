@@ -9,7 +9,7 @@ import numpy as np
 
 from processing.core.monitor import SilentMonitor
 from processing.formats.trajectories.trajectory_files import read_trajectory
-from processing.laboratory.bench.large_street import write_large_area, write_long_delivery
+from processing.laboratory.bench.large_street import write_long_delivery
 from processing.project.importing.importing import ImportRequest, import_drives
 from processing.recording.drive import Drive
 from resources import path_of
@@ -42,12 +42,3 @@ def test_files_of_two_scanners_become_two_drives_with_unbroken_revolutions(tmp_p
     for drive in drives:
         assert drive.revolutions is not None
         assert round(drive.revolutions.revolution_rate_hz) == 100
-
-
-def test_a_cloud_without_times_has_a_picture_from_above(tmp_path: Path) -> None:
-    points = sample_points() + 1000
-    cloud = write_large_area(tmp_path, points)
-    (folder,) = import_drives(ImportRequest((cloud,)), tmp_path / "d", SilentMonitor())
-    drive = Drive(folder)
-    assert drive.count == points
-    assert drive.info.rows_by == "top-view"

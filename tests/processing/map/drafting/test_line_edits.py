@@ -20,7 +20,6 @@ from processing.map.drafting.line_edits import (
     reverse_line,
     simplify_line,
     split_line,
-    split_ring,
     trim_at,
     with_kind,
 )
@@ -64,19 +63,6 @@ def test_ends_areas_and_points_are_not_split() -> None:
         split_line(area("b", (0, 0), (1, 0), (1, 1)), 0, Vertex(positions((0.5, 0))[0]))
     with pytest.raises(IndexError):
         split_line(whole, 1, whole.vertices[0])
-
-
-def test_an_area_is_split_along_a_diagonal() -> None:
-    whole = area("a", (0, 0), (4, 0), (4, 4), (0, 4), (-1, 2))
-    first, second = split_ring(whole, 1, 3)
-    assert local_of(first) == [(4, 0, 0), (4, 4, 0), (0, 4, 0)]
-    assert local_of(second) == [(0, 4, 0), (-1, 2, 0), (0, 0, 0), (4, 0, 0)]
-    assert first.id == "a" != second.id
-    for pair in ((0, 1), (0, 4), (2, 2)):
-        with pytest.raises(Unsuitable):
-            split_ring(whole, *pair)
-    with pytest.raises(Unsuitable):
-        split_ring(line("b", (0, 0), (1, 1)), 0, 1)
 
 
 def test_lines_are_joined_at_their_nearest_ends_in_the_direction_of_the_first() -> None:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from processing.core.errors import Unsuitable
-from processing.map.drafting.measuring import cross_fall, measures_of, width_between
+from processing.map.drafting.measuring import measures_of, width_between
 from tests.processing.map.drafting.positions import positions
 
 
@@ -57,14 +57,6 @@ def test_a_ring_on_a_slope_has_a_larger_area_than_its_plan() -> None:
     assert found == pytest.approx(
         {"Plan area": 40, "Slope area": 50, "Perimeter": 30, "Plan perimeter": 28}
     )
-
-
-def test_the_cross_fall_points_downhill_whichever_way_it_is_clicked() -> None:
-    west, east = positions((0, 0, 0.1), (5, 0, 0.0))
-    for pair in ((west, east), (east, west)):
-        assert _values(cross_fall(*pair)) == pytest.approx({"Cross fall": 2, "Falls towards": 90})
-    assert _values(cross_fall(*positions((0, 0, 1), (5, 0, 1)))) == {"Cross fall": 0}
-    assert cross_fall(west, west) == ()
 
 
 def test_the_width_of_a_widening_road_is_least_at_its_start() -> None:
