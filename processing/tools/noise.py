@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,6 +10,7 @@ from numpy.typing import NDArray
 
 from processing.core.errors import report_as_user_error
 from processing.core.monitor import Monitor, PartMonitor
+from processing.core.owned_files import remove_folder
 from processing.core.parameters import ParameterChoice, choice, count, length, ratio
 from processing.core.text import Text
 from processing.methods.noise.drive_noise import NoiseSearch
@@ -126,7 +126,7 @@ def mark_noise(
         else:
             search.combined(parameters.strictness, finding)
         _write_classes(drive, search.codes, into, monitor)
-        shutil.rmtree(scratch)
+        remove_folder(scratch)
     return FinishedColumns(into, (_CLASS,), drive.count)
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import shutil
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
@@ -14,6 +13,7 @@ from numpy.typing import NDArray
 
 from processing.core.errors import OutOfRange, Unsuitable, use_one_of
 from processing.core.monitor import Monitor, PartMonitor
+from processing.core.owned_files import remove_folder
 from processing.core.parameters import Parameter, ParameterValue, fill_parameters, parameters_of
 from processing.core.text import Text
 from processing.recording.drive import Drive
@@ -164,7 +164,7 @@ def _tried(
                 if drive in request.drives:
                     counts += _counted(columns, drive, truth, codes, monitor)
         finally:
-            shutil.rmtree(into, ignore_errors=True)
+            remove_folder(into)
     return counts
 
 
