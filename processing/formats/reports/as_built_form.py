@@ -22,8 +22,6 @@ from processing.formats.reports.as_built_rows import (
 )
 from processing.formats.reports.pdf_page import (
     A4_LANDSCAPE,
-    PALE,
-    THICK_MM,
     Paper,
     break_lines,
     leading_mm,
@@ -131,16 +129,11 @@ def _draw_head(paper: Paper, result: AsBuiltResult, facts: AsBuiltFacts) -> floa
     shown = fact_rows(result, facts)[:-1]  # the software stands at the foot
     first = (_name(shown[0][0]), TableCell(shown[0][1], columns=3))
     cells = [(_name(name), TableCell(value)) for name, value in shown[1:]]
-    cells.append((_name(RESULT), TableCell("")))
+    found = TableCell(verdict(passes=result.passes), "centre", is_result=True)
+    cells.append((_name(RESULT), found))
     rows: list[TableRow] = [first]
     rows += [(*cells[at], *cells[at + 1]) for at in range(0, len(cells), 2)]
-    end = table.draw(paper, _MARGIN_MM + 9.0, rows)
-    last = table.height_of(paper, rows[-1])
-    at = (_MARGIN_MM + half + label, end - last)
-    paper.box(at, (half - label, last), THICK_MM)
-    middle = (at[0] + 0.5 * (half - label), at[1] + 0.5 * last)
-    paper.text(*middle, verdict(passes=result.passes), 11.0, "centre")
-    return end
+    return table.draw(paper, _MARGIN_MM + 9.0, rows)
 
 
 def _name(words: Text) -> TableCell:
@@ -148,28 +141,22 @@ def _name(words: Text) -> TableCell:
 
 
 def _draw_faces(paper: Paper, y: float, result: AsBuiltResult) -> float:
-    whole = Table(_MARGIN_MM, _WIDTHS, size=7.5)
-    y = whole.draw(paper, y, [[TableCell(words, "centre", is_head=True) for words in COLUMNS]])
-    body = Table(_MARGIN_MM + _WIDTHS[0], _WIDTHS[1:], size=7.5)
+    table = Table(_MARGIN_MM, _WIDTHS, size=7.5)
+    y = table.draw(paper, y, [[TableCell(words, "centre", is_head=True) for words in COLUMNS]])
     for face in result.faces:
-        rows = [
+        shown = face_rows(face, result.table)
+        name = TableCell(face.limits.name, "centre", rows=len(shown), is_head=True)
+        rows: list[TableRow] = [
             (
+                TableCell("") if number else name,
                 TableCell(row.name),
                 TableCell(row.shown, "right"),
                 TableCell(row.limit, "right"),
                 TableCell(row.verdict, "centre"),
             )
-            for row in face_rows(face, result.table)
+            for number, row in enumerate(shown)
         ]
-        end = body.draw(paper, y, rows)
-        paper.box((_MARGIN_MM, y), (_WIDTHS[0], end - y), fill=PALE)
-        name = break_lines(paper.in_language(face.limits.name), 7.5, _WIDTHS[0] - 2.0)
-        step = leading_mm(7.5)
-        for number, line in enumerate(name):
-            middle = y + 0.5 * (end - y) + (number - 0.5 * (len(name) - 1)) * step
-            paper.text(_MARGIN_MM + 0.5 * _WIDTHS[0], middle, line, 7.5, "centre")
-        paper.box((_MARGIN_MM, y), (sum(_WIDTHS), end - y), THICK_MM)
-        y = end
+        y = table.draw(paper, y, rows, is_framed=True)
     return y
 
 

@@ -18,6 +18,7 @@ from resources import path_of
 
 if TYPE_CHECKING:
     from reportlab.pdfgen.canvas import Canvas
+    from reportlab.platypus import Flowable
 
 Align = Literal["left", "centre", "right"]
 Rgb = tuple[int, int, int]
@@ -29,8 +30,8 @@ BLACK, GREY, PALE = (0, 0, 0), (110, 110, 110), (236, 236, 236)
 THIN_MM, THICK_MM = 0.13, 0.35
 LEADING = 1.32
 
-_FONT = "ZukaPaper"
-_POINTS_OF_MM = 72.0 / 25.4
+FONT = "ZukaPaper"
+POINTS_OF_MM = 72.0 / 25.4
 _CAPITAL = 0.72
 """Height of a capital, of the size of the type."""
 _LEAST_SHRINK = 0.7
@@ -60,7 +61,7 @@ class Paper:
         self.width_mm, self.height_mm = size_mm
         self.language: Language = language
         self.page = 1
-        page_size = (size_mm[0] * _POINTS_OF_MM, size_mm[1] * _POINTS_OF_MM)
+        page_size = (size_mm[0] * POINTS_OF_MM, size_mm[1] * POINTS_OF_MM)
         self._canvas: Canvas = Canvas(str(file), pagesize=page_size, pageCompression=1)
         self._canvas.setTitle(title)
         self._canvas.setCreator("Zuka")
@@ -105,12 +106,12 @@ class Paper:
         line = drawable(self.in_language(words))
         if width is not None:
             line, size = _fitted(line, size, width)
-        self._canvas.setFont(_FONT, size)
+        self._canvas.setFont(FONT, size)
         self._canvas.setFillColorRGB(*(part / 255 for part in colour))
         # Half a capital below the middle: type stands in the middle of its box.
         at = (
-            x * _POINTS_OF_MM,
-            (self.height_mm - y) * _POINTS_OF_MM - 0.5 * _CAPITAL * size,
+            x * POINTS_OF_MM,
+            (self.height_mm - y) * POINTS_OF_MM - 0.5 * _CAPITAL * size,
         )
         draw = {
             "left": self._canvas.drawString,
@@ -129,9 +130,9 @@ class Paper:
     def turned_text(self, x: float, y: float, words: str, size: float) -> None:
         """Set a line that reads upwards, its middle at (x, y)."""
         self._canvas.saveState()
-        self._canvas.translate(x * _POINTS_OF_MM, (self.height_mm - y) * _POINTS_OF_MM)
+        self._canvas.translate(x * POINTS_OF_MM, (self.height_mm - y) * POINTS_OF_MM)
         self._canvas.rotate(90)
-        self._canvas.setFont(_FONT, size)
+        self._canvas.setFont(FONT, size)
         self._canvas.setFillColorRGB(0, 0, 0)
         self._canvas.drawCentredString(0, -0.5 * _CAPITAL * size, drawable(words))
         self._canvas.restoreState()
@@ -148,10 +149,10 @@ class Paper:
         path = self._canvas.beginPath()
         for number, (x, y) in enumerate(positions):
             step = path.lineTo if number else path.moveTo
-            step(x * _POINTS_OF_MM, (self.height_mm - y) * _POINTS_OF_MM)
+            step(x * POINTS_OF_MM, (self.height_mm - y) * POINTS_OF_MM)
         self._canvas.setStrokeColorRGB(*(part / 255 for part in colour))
-        self._canvas.setLineWidth(width_mm * _POINTS_OF_MM)
-        self._canvas.setDash([part * _POINTS_OF_MM for part in dash_mm])
+        self._canvas.setLineWidth(width_mm * POINTS_OF_MM)
+        self._canvas.setDash([part * POINTS_OF_MM for part in dash_mm])
         self._canvas.drawPath(path, stroke=1, fill=0)
         self._canvas.setDash([])
 
@@ -160,7 +161,7 @@ class Paper:
         path = self._canvas.beginPath()
         for number, (x, y) in enumerate(positions):
             step = path.lineTo if number else path.moveTo
-            step(x * _POINTS_OF_MM, (self.height_mm - y) * _POINTS_OF_MM)
+            step(x * POINTS_OF_MM, (self.height_mm - y) * POINTS_OF_MM)
         path.close()
         self._canvas.setFillColorRGB(*(part / 255 for part in colour))
         self._canvas.drawPath(path, stroke=0, fill=1)
@@ -182,6 +183,16 @@ class Paper:
         if line_mm > 0.0:
             self.line([*around, around[0], around[1]], line_mm)
 
+    def place(self, flowable: Flowable, x: float, y: float) -> float:
+        """Place what reportlab lays out, its upper left corner at (x, y); gives where it ends."""
+        _, height = flowable.wrapOn(
+            self._canvas, self.width_mm * POINTS_OF_MM, self.height_mm * POINTS_OF_MM
+        )
+        flowable.drawOn(
+            self._canvas, x * POINTS_OF_MM, (self.height_mm - y) * POINTS_OF_MM - height
+        )
+        return y + float(height) / POINTS_OF_MM
+
     def picture(
         self, corner: tuple[float, float], size_mm: tuple[float, float], rgb: NDArray[np.uint8]
     ) -> None:
@@ -192,10 +203,10 @@ class Paper:
         reader: Any = ImageReader(Image.fromarray(np.ascontiguousarray(rgb)))
         self._canvas.drawImage(
             reader,
-            corner[0] * _POINTS_OF_MM,
-            (self.height_mm - corner[1] - size_mm[1]) * _POINTS_OF_MM,
-            size_mm[0] * _POINTS_OF_MM,
-            size_mm[1] * _POINTS_OF_MM,
+            corner[0] * POINTS_OF_MM,
+            (self.height_mm - corner[1] - size_mm[1]) * POINTS_OF_MM,
+            size_mm[0] * POINTS_OF_MM,
+            size_mm[1] * POINTS_OF_MM,
         )
 
 
@@ -223,7 +234,7 @@ def write_report_page(
 
 def leading_mm(size: float) -> float:
     """From line to line at a size of type in points, mm."""
-    return size * LEADING / _POINTS_OF_MM
+    return size * LEADING / POINTS_OF_MM
 
 
 def width_of(words: str, size: float) -> float:
@@ -231,7 +242,7 @@ def width_of(words: str, size: float) -> float:
     from reportlab.pdfbase.pdfmetrics import stringWidth
 
     _register_font()
-    return float(stringWidth(words, _FONT, size)) / _POINTS_OF_MM
+    return float(stringWidth(words, FONT, size)) / POINTS_OF_MM
 
 
 def break_lines(words: str, size: float, width: float) -> list[str]:
@@ -292,7 +303,7 @@ def _characters() -> frozenset[int]:
     from reportlab.pdfbase.pdfmetrics import getFont
 
     _register_font()
-    return frozenset(getFont(_FONT).face.charToGlyph)
+    return frozenset(getFont(FONT).face.charToGlyph)
 
 
 @lru_cache(maxsize=1)
@@ -300,4 +311,4 @@ def _register_font() -> None:
     from reportlab.pdfbase.pdfmetrics import registerFont
     from reportlab.pdfbase.ttfonts import TTFont
 
-    registerFont(TTFont(_FONT, str(path_of("fonts/ZukaPaper-Regular.ttf"))))
+    registerFont(TTFont(FONT, str(path_of("fonts/ZukaPaper-Regular.ttf"))))

@@ -10,7 +10,6 @@ from processing.core.monitor import Monitor, SilentMonitor
 from processing.core.text import Language, Text
 from processing.formats.reports.pdf_page import (
     A4_PORTRAIT,
-    THICK_MM,
     Paper,
     break_lines,
     leading_mm,
@@ -174,9 +173,7 @@ def _draw_quantities(paper: Paper, y: float, result: VolumeResult) -> float:
         )
         for one in quantities(result)
     ]
-    end = table.draw(paper, y, rows)
-    paper.box((_MARGIN_MM, y), (width, end - y), THICK_MM)
-    return end
+    return table.draw(paper, y, rows, is_framed=True)
 
 
 def _draw_remarks(paper: Paper, y: float, said: Sequence[Text], facts: VolumeFacts) -> None:
@@ -243,12 +240,13 @@ def _draw_section_table(paper: Paper, facts: VolumeFacts) -> None:
     width = _width(paper)
     table = Table(_MARGIN_MM, (width - 5 * 29.0, *(29.0,) * 5), _TYPE)
     head: TableRow = [TableCell(words, "centre", is_head=True) for words in SECTION_COLUMNS]
-    while cells:
-        y = _draw_heading(paper, _next_page(paper, facts), _SECTIONS.filled(name=facts.line.name))
-        y = table.draw(paper, y, [head])
-        fits = table.rows_that_fit(paper, cells, _bottom(paper) - y)
-        table.draw(paper, y, cells[:fits])
-        cells = cells[fits:]
+    title = _SECTIONS.filled(name=facts.line.name)
+    table.draw_over_pages(
+        paper,
+        [head, *cells],
+        lambda: _draw_heading(paper, _next_page(paper, facts), title),
+        _bottom(paper),
+    )
 
 
 def _draw_figures(paper: Paper, facts: VolumeFacts, monitor: Monitor) -> None:
