@@ -19,7 +19,7 @@ from processing.laboratory.simulate.scene.mesh import Floats
 CRS_NAME = "EPSG:6677"
 """JGD2011, plane rectangular coordinates, zone IX; easting first."""
 
-_SCALE_M = 0.001
+SCALE_M = 0.001
 _SURVEYED = date(2024, 4, 1)  # in the header, so that the same seed gives the same bytes
 _SOFTWARE = "Zuka simulation"
 
@@ -59,7 +59,7 @@ class PointFile:
 
     def __init__(self, path: Path, offset: Floats) -> None:
         header = laspy.LasHeader(point_format=6, version="1.4")
-        header.scales, header.offsets = np.full(3, _SCALE_M), np.floor(offset)
+        header.scales, header.offsets = np.full(3, SCALE_M), np.floor(offset)
         header.generating_software, header.creation_date = _SOFTWARE, _SURVEYED
         header.system_identifier = "SIMULATION"
         header.global_encoding.gps_time_type = laspy.header.GpsTimeType.STANDARD
