@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 from processing.core.text import Text
+from processing.formats.vectors.geojson import ESCAPE, is_reserved, member_of
 from processing.formats.vectors.geojson_shapes import GeoJsonGeometry, JsonObject, refusal, short
-from processing.map.catalogue import RESERVED_ATTRIBUTES, Geometry
 from processing.map.feature import (
     AttributeValue,
     Feature,
@@ -23,26 +23,14 @@ OURS = "zuka"
 """The member of an object that holds what GeoJSON has no place for."""
 
 _OWN_PROPERTIES = ("kind", "status", "confidence", "tool")
-_ESCAPE = "attribute_"
 _LAST_POINT = (1 << 63) - 1
 
 
-def member_of(feature: Feature) -> JsonObject:
-    """A feature as GeoJSON with its attributes as properties."""
+def clip_member(feature: Feature) -> JsonObject:
+    """A feature as GeoJSON, with what only this program keeps of it."""
     provenance = feature.provenance
-    properties: dict[str, AttributeValue] = {
-        "kind": feature.kind,
-        "confidence": provenance.confidence,
-        "status": feature.status.value,
-        "tool": provenance.tool,
-    }
-    for name, value in feature.attributes.items():
-        properties[_escaped(name)] = value
     return {
-        "type": "Feature",
-        "id": feature.id,
-        "geometry": _geometry(feature),
-        "properties": properties,
+        **member_of(feature),
         OURS: {
             "version": provenance.version,
             "parameters": dict(provenance.parameters),
@@ -113,17 +101,6 @@ def features_of(
         )
 
 
-def _geometry(feature: Feature) -> JsonObject:
-    positions = [vertex.xyz for vertex in feature.vertices]
-    match feature.geometry:
-        case Geometry.POINT:
-            return {"type": "Point", "coordinates": positions[0]}
-        case Geometry.LINE:
-            return {"type": "LineString", "coordinates": positions}
-        case Geometry.AREA:
-            return {"type": "Polygon", "coordinates": [[*positions, positions[0]]]}
-
-
 def _vertices(shape: GeoJsonGeometry, own: JsonObject, number: int) -> tuple[Vertex, ...]:
     measured, occluded = own.get("measured", []), own.get("occluded", [])
     if not isinstance(measured, list) or not isinstance(occluded, list):
@@ -172,20 +149,9 @@ def _attribute(value: Any) -> AttributeValue:
     return json.dumps(value, ensure_ascii=False)
 
 
-def _escaped(name: str) -> str:
-    """Our own properties and exports use the reserved names; escapes are escaped once more."""
-    return _ESCAPE + name if _is_reserved(name) else name
-
-
 def _unescaped(name: str) -> str:
-    is_escaped = name.startswith(_ESCAPE) and _is_reserved(name.removeprefix(_ESCAPE))
-    return name.removeprefix(_ESCAPE) if is_escaped else name
-
-
-def _is_reserved(name: str) -> bool:
-    while name.startswith(_ESCAPE):
-        name = name.removeprefix(_ESCAPE)
-    return name in RESERVED_ATTRIBUTES
+    is_escaped = name.startswith(ESCAPE) and is_reserved(name.removeprefix(ESCAPE))
+    return name.removeprefix(ESCAPE) if is_escaped else name
 
 
 def _damaged(reason: str, number: int) -> Exception:

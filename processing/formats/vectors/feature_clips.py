@@ -19,7 +19,7 @@ from processing.formats.vectors.clip_kinds import (
     describe_kinds,
     read_descriptions,
 )
-from processing.formats.vectors.clip_members import OURS, features_of, member_of
+from processing.formats.vectors.clip_members import OURS, clip_member, features_of
 from processing.formats.vectors.geojson_shapes import (
     MOST_CHARACTERS,
     WHERE,
@@ -74,7 +74,7 @@ def clip_of(features: Sequence[Feature], crs: str, catalogue: Catalogue) -> str:
             "type": "FeatureCollection",
             "crs": crs_member(crs),
             OURS: {"version": _VERSION, "kinds": describe_kinds(features, catalogue)},
-            "features": [member_of(feature) for feature in features],
+            "features": [clip_member(feature) for feature in features],
         },
         ensure_ascii=False,
         allow_nan=False,

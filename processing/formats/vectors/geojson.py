@@ -14,10 +14,14 @@ from typing import Any
 from processing.core.monitor import Monitor, SilentMonitor
 from processing.core.safe_write import write_safely
 from processing.formats.map_delivery import MapDelivery
+from processing.formats.vectors.geojson_shapes import JsonObject, crs_member
 from processing.map.catalogue import RESERVED_ATTRIBUTES, Geometry
-from processing.map.feature import AttributeValue, Feature, Position
+from processing.map.feature import AttributeValue, Feature
 
 _CHECK_EVERY = 256
+
+ESCAPE = "attribute_"
+"""Before the name of an attribute that is a property's."""
 
 
 def write_geojson(
@@ -48,7 +52,7 @@ def write_geojson(
     ----------
     RFC 7946; GeoJSON format specification 2008, section 3 (crs).
     """
-    members = (_member(feature) for feature in features)
+    members = map(member_of, features)
     write_members(path, members, crs=crs, monitor=monitor, never=never)
 
 
@@ -79,7 +83,7 @@ def write_members(
         write_safely(path, never=never) as temporary,
         temporary.open("w", encoding="utf-8", errors="backslashreplace", newline="\n") as file,
     ):
-        file.write(f'{{"type": "FeatureCollection",\n"crs": {_line(_crs_member(crs))},\n')
+        file.write(f'{{"type": "FeatureCollection",\n"crs": {_line(crs_member(crs))},\n')
         file.write('"features": [')
         for number, member in enumerate(members):
             if number % _CHECK_EVERY == 0:
@@ -92,24 +96,16 @@ def _line(value: Any) -> str:  # whatever JSON can hold
     return json.dumps(value, ensure_ascii=False, allow_nan=False)
 
 
-def _crs_member(crs: str) -> dict[str, Any] | None:
-    if not crs:
-        return None
-    authority, _, code = crs.partition(":")
-    name = f"urn:ogc:def:crs:{authority}::{code}" if code else crs
-    return {"type": "name", "properties": {"name": name}}
-
-
-def _member(feature: Feature) -> dict[str, Any]:
-    properties: dict[str, Any] = {
+def member_of(feature: Feature) -> JsonObject:
+    """A feature with its attributes as properties; one that has a property's name is escaped."""
+    properties: dict[str, AttributeValue] = {
         "kind": feature.kind,
         "confidence": _finite(feature.provenance.confidence),
         "status": feature.status.value,
         "tool": feature.provenance.tool,
     }
     for name, value in feature.attributes.items():
-        own = f"attribute_{name}" if name in RESERVED_ATTRIBUTES else name
-        properties[own] = _finite(value)
+        properties[ESCAPE + name if is_reserved(name) else name] = _finite(value)
     return {
         "type": "Feature",
         "id": feature.id,
@@ -118,8 +114,15 @@ def _member(feature: Feature) -> dict[str, Any]:
     }
 
 
-def _geometry(feature: Feature) -> dict[str, Any]:
-    positions: list[Position] = [vertex.xyz for vertex in feature.vertices]
+def is_reserved(name: str) -> bool:
+    """Whether a property has this name, or it is one that was escaped."""
+    while name.startswith(ESCAPE):
+        name = name.removeprefix(ESCAPE)
+    return name in RESERVED_ATTRIBUTES
+
+
+def _geometry(feature: Feature) -> JsonObject:
+    positions = [vertex.xyz for vertex in feature.vertices]
     match feature.geometry:
         case Geometry.POINT:
             return {"type": "Point", "coordinates": positions[0]}

@@ -107,7 +107,7 @@ def crs_member(crs: str) -> JsonObject | None:
     if not crs:
         return None
     authority, _, code = crs.partition(":")
-    name = f"urn:ogc:def:crs:{authority}::{code}"
+    name = f"urn:ogc:def:crs:{authority}::{code}" if code else crs
     return {"type": "name", "properties": {"name": name}}
 
 
