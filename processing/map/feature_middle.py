@@ -6,7 +6,7 @@ import math
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
+import shapely
 
 from processing.map.catalogue import Geometry
 from processing.map.feature import Feature, Vertex
@@ -68,8 +68,9 @@ def _middle_of_ring(vertices: tuple[Vertex, ...]) -> Vertex:
     xyz = np.array([vertex.xyz for vertex in vertices])
     centre = xyz.mean(axis=0)
     local = xyz - centre
-    middle = _centroid(local[:, :2])
-    if _is_inside(middle, local[:, :2]):
+    ring = shapely.Polygon(local[:, :2]) if len(local) > 2 else shapely.LineString(local[:, :2])
+    middle = np.array(ring.centroid.coords[0])
+    if shapely.contains_xy(ring, *middle):
         design = np.column_stack([local[:, :2], np.ones(len(local))])
         slopes = np.linalg.lstsq(design, local[:, 2], rcond=None)[0]
         height = float(slopes @ np.array([*middle, 1.0]))
@@ -77,23 +78,3 @@ def _middle_of_ring(vertices: tuple[Vertex, ...]) -> Vertex:
         return Vertex((x, y, z))
     distances = np.hypot(*(local[:, :2] - middle).T)
     return vertices[int(distances.argmin())]
-
-
-def _centroid(ring: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(2,): the centre of mass of a ring's area; the mean of its places where it has none."""
-    after = np.roll(ring, -1, axis=0)
-    cross = ring[:, 0] * after[:, 1] - after[:, 0] * ring[:, 1]
-    total = cross.sum()
-    if abs(total) < 1e-9:
-        return np.asarray(ring.mean(axis=0))
-    return np.asarray(((ring + after) * cross[:, None]).sum(axis=0) / (3 * total))
-
-
-def _is_inside(position: NDArray[np.float64], ring: NDArray[np.float64]) -> bool:
-    """By the number of sides that a ray to the right crosses."""
-    after = np.roll(ring, -1, axis=0)
-    spans = (ring[:, 1] > position[1]) != (after[:, 1] > position[1])
-    start, end = ring[spans], after[spans]
-    share = (position[1] - start[:, 1]) / (end[:, 1] - start[:, 1])
-    crossings = start[:, 0] + share * (end[:, 0] - start[:, 0])
-    return bool(np.count_nonzero(crossings > position[0]) % 2)
