@@ -26,17 +26,10 @@ from processing.tools.registry import TOOLS
 from processing.tools.run_shares import run_shares
 from processing.tools.tool import Candidate, CandidateResult, Finder
 from tests.builders import simulated_drive, write_laz, write_trajectory_csv
+from tests.monitors import CancelledAfter
 from tests.processing.project.candidates import FINDER
 
 CONFIDENCES = (0.2, 0.5, 0.9)
-
-
-class Stopped(SilentMonitor):
-    """Somebody cancels."""
-
-    def check(self) -> None:
-        """Stop the work."""
-        raise Cancelled
 
 
 def find_three(drive: Drive, _parameters: NormalsParameters, monitor: Monitor) -> CandidateResult:
@@ -139,7 +132,7 @@ def test_a_run_on_one_drive_leaves_the_others_alone(folder: Path, project: Proje
 
 @pytest.mark.parametrize(
     ("tool", "monitor", "error"),
-    [("half", SilentMonitor(), MissingInput), ("finder", Stopped(), Cancelled)],
+    [("half", SilentMonitor(), MissingInput), ("finder", CancelledAfter(), Cancelled)],
 )
 def test_a_run_that_fails_on_the_way_leaves_the_project_as_it_was(
     folder: Path, tool: str, monitor: Monitor, error: type[Exception]
@@ -159,7 +152,9 @@ def test_a_project_that_a_window_has_open_is_not_written(folder: Path) -> None:
 
 def test_a_drive_that_the_project_lacks_is_refused(folder: Path) -> None:
     with pytest.raises(OutOfRange, match="nobody"):
-        run_operation(RunOperation("finder", OperationInputs(folder, ("nobody",))), Stopped())
+        run_operation(
+            RunOperation("finder", OperationInputs(folder, ("nobody",))), CancelledAfter()
+        )
 
 
 def test_a_project_among_files_is_refused(folder: Path, delivered: ImportRequest) -> None:

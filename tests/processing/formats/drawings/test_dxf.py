@@ -15,13 +15,13 @@ from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from processing.core.errors import Cancelled, OutOfRange, Unsuitable
-from processing.core.monitor import SilentMonitor
 from processing.formats.drawings.dxf import write_dxf
 from processing.formats.drawings.dxf_document import APP_ID, DxfVersion
 from processing.map.catalogue import LINE_TYPES, Catalogue, Geometry
 from processing.map.catalogue_file import read_catalogue, symbol_names
 from processing.map.feature import Feature, Position, Status, Vertex
 from resources import path_of
+from tests.monitors import CancelledAfter
 from tests.processing.formats.audited_dxf import audited_dxf
 
 _VERSIONS: tuple[DxfVersion, ...] = ("R2000", "R2018")
@@ -302,18 +302,9 @@ def test_a_version_that_there_is_not_is_refused(tmp_path: Path, catalogue: Catal
 
 
 def test_a_drawing_can_be_stopped_while_it_is_written(tmp_path: Path, catalogue: Catalogue) -> None:
-    class StopAtLast(SilentMonitor):
-        def __init__(self) -> None:
-            self.asked = 0
-
-        def check(self) -> None:
-            self.asked += 1
-            if self.asked == 3:  # one feature is one question, the others come with the writing
-                raise Cancelled
-
     line = _feature("road_edge", Geometry.LINE, *(_LINE * 600))
     with pytest.raises(Cancelled):
-        write_dxf(tmp_path / "a.dxf", [line], catalogue, monitor=StopAtLast())
+        write_dxf(tmp_path / "a.dxf", [line], catalogue, monitor=CancelledAfter(2))
     assert list(tmp_path.iterdir()) == []
 
 

@@ -33,6 +33,7 @@ from processing.methods.earthwork.maps.change_grid import ChangeGrid
 from processing.methods.earthwork.maps.contours import LevelLine
 from processing.methods.earthwork.maps.heat_map import change_classes
 from processing.methods.ground.filters.cells import CellGrid
+from tests.monitors import CancelledAfter
 
 EAST, NORTH, CELL, SIDE = -12_000.0, -35_000.0, 0.5, 80
 VERSIONS: tuple[DxfVersion, ...] = ("R2000", "R2018")
@@ -218,16 +219,9 @@ def test_parts_may_be_missing_but_not_all(tmp_path: Path) -> None:
 
 
 def test_a_cancel_leaves_nothing_and_inputs_are_kept(tmp_path: Path) -> None:
-    class Stopping:
-        def report(self, fraction: float, text: Text | None = None) -> None:
-            pass
-
-        def check(self) -> None:
-            raise Cancelled
-
     path = tmp_path / "a.dxf"
     with pytest.raises(Cancelled):
-        write_earthwork_dxf(path, PLAN, monitor=Stopping())
+        write_earthwork_dxf(path, PLAN, monitor=CancelledAfter())
     assert not list(tmp_path.iterdir())
     path.touch()
     with pytest.raises(InUse):

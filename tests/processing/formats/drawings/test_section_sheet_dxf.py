@@ -24,6 +24,7 @@ from processing.formats.drawings.section_sheet_dxf import (
     write_section_sheet_dxf,
 )
 from processing.methods.earthwork.sections.drawing_parts import DrawnSection
+from tests.monitors import CancelledAfter
 
 NO = np.nan
 OFFSETS = np.array([-6.0, -3.0, 0.0, 3.0, 6.0])
@@ -155,16 +156,9 @@ def test_a_scale_that_is_none_is_refused(tmp_path: Path, look: SectionStyle) -> 
 
 
 def test_a_cancel_leaves_nothing_and_inputs_are_kept(tmp_path: Path) -> None:
-    class Stopping:
-        def report(self, fraction: float, text: Text | None = None) -> None:
-            pass
-
-        def check(self) -> None:
-            raise Cancelled
-
     path = tmp_path / "a.dxf"
     with pytest.raises(Cancelled):
-        write_section_sheet_dxf(path, SECTIONS, TITLE, monitor=Stopping())
+        write_section_sheet_dxf(path, SECTIONS, TITLE, monitor=CancelledAfter())
     assert not list(tmp_path.iterdir())
     path.touch()
     with pytest.raises(InUse):

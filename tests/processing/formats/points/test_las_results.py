@@ -14,13 +14,9 @@ from processing.core.text import Text
 from processing.formats.points.las import read_info
 from processing.formats.points.las_results import write_results
 from tests.delivered_files import make_las, ply_bytes
+from tests.monitors import CancelledAfter
 
 _COUNT = 500
-
-
-class _ImpatientMonitor(SilentMonitor):
-    def check(self) -> None:
-        raise Cancelled
 
 
 def _results(highest_class: int) -> dict[str, np.ndarray]:
@@ -116,7 +112,7 @@ def test_a_cancelled_write_leaves_nothing_behind(tmp_path: Path) -> None:
     source, output = tmp_path / "in.laz", tmp_path / "out.laz"
     make_las(source)
     with pytest.raises(Cancelled):
-        write_results(source, output, _results(18), _ImpatientMonitor())
+        write_results(source, output, _results(18), CancelledAfter())
     assert list(tmp_path.iterdir()) == [source]
 
 

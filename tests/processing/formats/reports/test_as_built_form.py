@@ -23,6 +23,7 @@ from processing.methods.earthwork.as_built.as_built import AsBuiltResult, evalua
 from processing.methods.earthwork.as_built.limits_file import as_built_limits
 from processing.methods.earthwork.maps.heat_map import SHARE_CLASSES
 from tests.embankment import SOUTH, WEST, embankment, measured_on
+from tests.monitors import CancelledAfter
 from tests.pages import fonts_of, picture_of, plain, words_of
 
 LONG_WORK = (
@@ -247,16 +248,8 @@ def test_an_input_is_never_overwritten(tmp_path: Path) -> None:
 
 
 def test_a_cancel_leaves_no_file(tmp_path: Path) -> None:
-    class Late(SilentMonitor):
-        left = 3
-
-        def check(self) -> None:
-            self.left -= 1
-            if not self.left:
-                raise Cancelled
-
     with pytest.raises(Cancelled):
-        write_as_built_form(tmp_path / "form.pdf", result(), FACTS, "ja", monitor=Late())
+        write_as_built_form(tmp_path / "form.pdf", result(), FACTS, "ja", monitor=CancelledAfter(2))
     assert not list(tmp_path.iterdir())
 
 

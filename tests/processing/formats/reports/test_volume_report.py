@@ -11,7 +11,6 @@ import openpyxl
 import pytest
 
 from processing.core.errors import Cancelled, InUse, NoSpace
-from processing.core.monitor import SilentMonitor
 from processing.core.parameters import MOST_LETTERS, parameters_of
 from processing.core.text import Text
 from processing.formats.reports.plan_picture import change_plan
@@ -25,6 +24,7 @@ from processing.methods.earthwork.sections.drawing_parts import DrawnSection, Se
 from processing.methods.earthwork.volumes.volume_result import Registration, VolumeResult, Volumes
 from processing.methods.ground.filters.cells import CellGrid
 from processing.project.work_details import WorkDetails, details_of
+from tests.monitors import CancelledAfter
 from tests.pages import picture_of, plain, words_of
 
 LONG = (
@@ -322,15 +322,7 @@ def test_an_input_is_never_overwritten_and_a_full_disk_leaves_nothing(
 
 
 def test_a_cancel_while_sections_are_drawn_leaves_no_file(tmp_path: Path) -> None:
-    class Late(SilentMonitor):
-        left = 6
-
-        def check(self) -> None:
-            self.left -= 1
-            if not self.left:
-                raise Cancelled
-
     path = tmp_path / "volume.pdf"
     with pytest.raises(Cancelled):
-        write_volume_report(path, volume(), facts(line=line(9)), "ja", monitor=Late())
+        write_volume_report(path, volume(), facts(line=line(9)), "ja", monitor=CancelledAfter(5))
     assert not list(tmp_path.iterdir())

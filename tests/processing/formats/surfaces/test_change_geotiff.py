@@ -10,10 +10,10 @@ import pytest
 import rasterio
 
 from processing.core.errors import Cancelled, InUse
-from processing.core.text import Text
 from processing.formats.surfaces.change_geotiff import CHANGE_BANDS, write_change_geotiff
 from processing.methods.earthwork.maps.change_grid import ChangeGrid
 from processing.methods.ground.filters.cells import CellGrid
+from tests.monitors import CancelledAfter
 
 WEST, SOUTH, LOWEST, CELL = -12_000.25, -35_000.5, 101.125, 0.5
 ROWS, COLUMNS = 300, 270
@@ -82,16 +82,9 @@ def test_an_unknown_system_is_not_made_up(tmp_path: Path) -> None:
 
 
 def test_a_cancel_leaves_nothing_and_inputs_are_kept(tmp_path: Path) -> None:
-    class Stopping:
-        def report(self, fraction: float, text: Text | None = None) -> None:
-            pass
-
-        def check(self) -> None:
-            raise Cancelled
-
     path = tmp_path / "c.tif"
     with pytest.raises(Cancelled):
-        write_change_geotiff(path, change_grid(), crs="", monitor=Stopping())
+        write_change_geotiff(path, change_grid(), crs="", monitor=CancelledAfter())
     assert not list(tmp_path.iterdir())
     path.touch()
     with pytest.raises(InUse):

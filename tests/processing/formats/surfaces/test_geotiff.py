@@ -10,8 +10,8 @@ from PIL import Image
 
 from processing.core.errors import Cancelled
 from processing.core.monitor import SilentMonitor
-from processing.core.text import Text
 from processing.formats.surfaces.geotiff import TILE, Raster, write_geotiff
+from tests.monitors import CancelledAfter
 
 _RASTER = Raster(300, 520, -12_400.0, -36_000.0, 0.25, "EPSG:6677", ("height", "filled"))
 
@@ -81,12 +81,7 @@ def test_without_a_system_none_is_named(tmp_path: Path) -> None:
 
 
 def test_a_cancel_comes_through(tmp_path: Path) -> None:
-    class Stopping:
-        def report(self, fraction: float, text: Text | None = None) -> None:
-            pass
-
-        def check(self) -> None:
-            raise Cancelled
-
     with pytest.raises(Cancelled):
-        write_geotiff(tmp_path / "s.tif", _RASTER, lambda _r, _c: _bands(), [(0, 0)], Stopping())
+        write_geotiff(
+            tmp_path / "s.tif", _RASTER, lambda _r, _c: _bands(), [(0, 0)], CancelledAfter()
+        )

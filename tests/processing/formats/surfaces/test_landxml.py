@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from processing.core.errors import BadFile, Cancelled, MissingInput, OutOfRange, Unsuitable
-from processing.core.text import Text
 from processing.formats.surfaces.landxml import LandXmlFile, read_landxml
+from tests.monitors import CancelledAfter
 
 POINTS = """
 <P id="7">-36000.000 -8000.000 12.300</P>
@@ -260,13 +260,6 @@ def test_entities_are_refused_before_they_grow(tmp_path: Path) -> None:
 
 
 def test_a_reading_can_be_stopped(tmp_path: Path) -> None:
-    class Stopping:
-        def report(self, fraction: float, text: Text | None = None) -> None:
-            pass
-
-        def check(self) -> None:
-            raise Cancelled
-
     (tmp_path / "a.xml").write_text(document(surface()))
     with pytest.raises(Cancelled):
-        read_landxml(tmp_path / "a.xml", monitor=Stopping())
+        read_landxml(tmp_path / "a.xml", monitor=CancelledAfter())

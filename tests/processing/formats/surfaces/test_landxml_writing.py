@@ -14,7 +14,6 @@ from hypothesis import strategies as st
 from lxml import etree
 
 from processing.core.errors import Cancelled, InUse, Unsuitable
-from processing.core.text import Text
 from processing.formats.surfaces.landxml import read_landxml
 from processing.formats.surfaces.landxml_writing import (
     LandXmlFacts,
@@ -24,6 +23,7 @@ from processing.formats.surfaces.landxml_writing import (
 )
 from processing.methods.earthwork.geometry.triangle_surface import TriangleSurface
 from processing.methods.earthwork.sections.drawing_parts import DrawnSection, SectionedLine
+from tests.monitors import CancelledAfter
 
 SPACE = {"l": "http://www.landxml.org/schema/LandXML-1.2"}
 FACTS = LandXmlFacts(
@@ -214,17 +214,10 @@ def test_what_is_no_surface_is_refused(tmp_path: Path) -> None:
 
 
 def test_a_cancel_leaves_what_was_there(tmp_path: Path) -> None:
-    class Stopping:
-        def report(self, fraction: float, text: Text | None = None) -> None:
-            pass
-
-        def check(self) -> None:
-            raise Cancelled
-
     path = tmp_path / "a.xml"
     path.write_text("before")
     with pytest.raises(Cancelled):
-        write_landxml(path, [WrittenSurface(SURFACE)], FACTS, monitor=Stopping())
+        write_landxml(path, [WrittenSurface(SURFACE)], FACTS, monitor=CancelledAfter())
     assert [one.name for one in tmp_path.iterdir()] == ["a.xml"]
     assert path.read_text() == "before"
     with pytest.raises(InUse):

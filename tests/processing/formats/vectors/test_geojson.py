@@ -11,10 +11,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from processing.core.errors import Cancelled, InUse
-from processing.core.monitor import SilentMonitor
 from processing.formats.vectors.geojson import write_geojson
 from processing.map.catalogue import Geometry
 from processing.map.feature import Feature, Position, Provenance, Status, Vertex
+from tests.monitors import CancelledAfter
 
 _METRES = st.floats(-1e7, 1e7, allow_nan=False)
 _POSITIONS = st.tuples(_METRES, _METRES, _METRES)
@@ -112,13 +112,9 @@ def test_a_map_without_features_is_a_valid_collection(tmp_path: Path) -> None:
 
 
 def test_a_cancelled_writing_leaves_nothing(tmp_path: Path) -> None:
-    class Stop(SilentMonitor):
-        def check(self) -> None:
-            raise Cancelled
-
     path = tmp_path / "a.geojson"
     with pytest.raises(Cancelled):
-        write_geojson(path, [_feature(Geometry.POINT, (1, 2, 3))], crs="", monitor=Stop())
+        write_geojson(path, [_feature(Geometry.POINT, (1, 2, 3))], crs="", monitor=CancelledAfter())
     assert list(tmp_path.iterdir()) == []
 
 

@@ -9,7 +9,6 @@ import pytest
 from numpy.typing import NDArray
 
 from processing.core.errors import Cancelled
-from processing.core.text import Text
 from processing.image.images_of_drives import image_of
 from processing.image.neighbourhoods.neighbourhood_kernels import (
     PointRows,
@@ -29,6 +28,7 @@ from processing.image.neighbourhoods.segment_kernels import (
 from processing.image.neighbourhoods.segments import JoinLimits, connected_segments
 from processing.image.rows.grid import PixelGrid
 from processing.recording.kinds import ImageKind
+from tests.monitors import CancelledAfter
 from tests.processing.image.recordings import small_drive
 
 RADIUS_M = 0.2
@@ -244,22 +244,12 @@ def test_a_surface_ends_at_a_corner_unless_only_distances_count() -> None:
     assert floor[0, 0] != wall[0, 0]
 
 
-class Stopping:
-    """A user who has just pressed Cancel."""
-
-    def report(self, fraction: float, text: Text | None = None) -> None:
-        """Say nothing."""
-
-    def check(self) -> None:
-        raise Cancelled
-
-
 def test_cancelling_stops_normals_and_segments() -> None:
     xyz = plane(5, 5, [0.1, 0, 0], [0, 0.1, 0])
     with pytest.raises(Cancelled):
-        oriented_surface_shapes(xyz, grid_of(5, 5), RADIUS_M, Stopping())
+        oriented_surface_shapes(xyz, grid_of(5, 5), RADIUS_M, CancelledAfter())
     with pytest.raises(Cancelled):
-        connected_segments(xyz, grid_of(5, 5), DISTANCES, Stopping())
+        connected_segments(xyz, grid_of(5, 5), DISTANCES, CancelledAfter())
 
 
 @pytest.mark.parametrize("is_regular", [True, False])

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from processing.core.errors import Cancelled
-from processing.core.monitor import SilentMonitor
 from processing.image.point_image import PointCloudImage
 from processing.image.search.tile_choice import Camera3D, tiles_in_view
 from processing.image.tiles.tiles import TileKey, TilePyramid
@@ -16,6 +15,7 @@ from processing.recording.columns.columns import ColumnWriter
 from processing.recording.columns.coordinates import Coordinates
 from processing.recording.columns.quantisation import Quantisation
 from processing.recording.kinds import ImageKind
+from tests.monitors import CancelledAfter
 
 ROWS, WIDTH = 2600, 300
 SCALE, OFFSET = (0.001, 0.001, 0.001), (10_000.0, -20_000.0, 50.0)
@@ -106,17 +106,13 @@ def test_a_damaged_file_of_what_was_begun_is_made_again(tmp_path: Path, damage: 
 
 
 def test_preparing_can_be_cancelled_and_goes_on_from_there() -> None:
-    class Stopping(SilentMonitor):
-        def check(self) -> None:
-            raise Cancelled
-
     # 780,000 points are one portion, so two images' worth is what can be stopped in between.
     cells = np.arange(6 * ROWS * WIDTH // 2)
     xyz = np.column_stack([cells % WIDTH, cells // WIDTH, cells * 0]).astype(np.int32)
     coordinates = Coordinates({"xyz": xyz}, Quantisation(SCALE, OFFSET))
     image = PointCloudImage(ImageKind.TOP_VIEW, cells, WIDTH, coordinates=coordinates)
     with pytest.raises(Cancelled):
-        image.pyramid.prepare(Stopping())
+        image.pyramid.prepare(CancelledAfter())
     assert any(image.pyramid.is_exact(key) for key in image.pyramid.keys(0))
     assert not image.pyramid.is_ready
     image.pyramid.prepare()

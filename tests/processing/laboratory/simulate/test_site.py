@@ -13,28 +13,13 @@ import pytest
 
 from processing.core.errors import Cancelled, InUse, OutOfRange
 from processing.core.monitor import SilentMonitor
-from processing.core.text import Text
 from processing.laboratory.simulate.requests import SiteRequest
 from processing.laboratory.simulate.site import simulate_site
 from processing.laboratory.simulate.sites.heights import HeightGrid
 from processing.laboratory.simulate.sites.volumes import cut_and_fill
+from tests.monitors import CancelledAfter
 
 REQUEST = SiteRequest(seed=11, length_m=24.0, style="levee", stations=3, spacing_m=0.12)
-
-
-class CancelAtNthCheck:
-    """Stops the work at the n-th question."""
-
-    def __init__(self, patience: int) -> None:
-        self.left = patience
-
-    def report(self, fraction: float, text: Text | None = None) -> None:
-        assert 0 <= fraction <= 1
-
-    def check(self) -> None:
-        self.left -= 1
-        if self.left < 0:
-            raise Cancelled
 
 
 @pytest.fixture(scope="module")
@@ -115,7 +100,7 @@ def test_a_seed_gives_the_same_bytes_again(site: Path, tmp_path: Path) -> None:
 @pytest.mark.parametrize("patience", [0, 3, 20])
 def test_a_cancelled_site_leaves_nothing(tmp_path: Path, patience: int) -> None:
     with pytest.raises(Cancelled):
-        simulate_site(REQUEST, tmp_path / "site", CancelAtNthCheck(patience))
+        simulate_site(REQUEST, tmp_path / "site", CancelledAfter(patience))
     assert list(tmp_path.iterdir()) == []
 
 

@@ -17,6 +17,7 @@ from processing.formats.trajectories.trajectory_csv import read_trajectory_csv
 from processing.laboratory.simulate.requests import StreetRequest
 from processing.laboratory.simulate.streets import simulate_street
 from processing.laboratory.simulate.truth import TRUTH_FILES
+from tests.monitors import CancelledAfter
 
 _REQUEST = StreetRequest(
     seed=11, length_m=15.0, sensor="vq250", pulses=500, turns_per_s=40.0, images=False
@@ -161,16 +162,8 @@ def test_the_shortest_and_fastest_pass_of_the_slowest_sensor_is_recorded(
 
 
 def test_a_stopped_simulation_leaves_nothing(tmp_path: Path) -> None:
-    class Stopping(SilentMonitor):
-        calls = 0
-
-        def check(self) -> None:
-            self.calls += 1
-            if self.calls > 2:
-                raise Cancelled
-
     with pytest.raises(Cancelled):
-        simulate_street(_REQUEST, tmp_path / "street", Stopping())
+        simulate_street(_REQUEST, tmp_path / "street", CancelledAfter(2))
     assert not list(tmp_path.iterdir())
 
 

@@ -36,6 +36,7 @@ from processing.scoring.confusion_matrix import BinaryConfusionMatrix
 from processing.tools.noise import NoiseParameters
 from processing.tools.runner import RunRequest, run
 from tests.builders import write_laz, write_trajectory_csv
+from tests.monitors import CancelledAfter
 from tests.noisy_street import NoisyStreet, noisy_street
 
 SILENT = SilentMonitor()
@@ -130,24 +131,12 @@ def test_without_a_known_point_nothing_is_run(project: Project, tmp_path: Path) 
     assert not (tmp_path / "w").exists()
 
 
-class Counting:
-    """Somebody who cancels after a while."""
-
-    def __init__(self, most: int) -> None:
-        self.left = most
-
-    def report(self, fraction: float, text: Text | None = None) -> None: ...
-
-    def check(self) -> None:
-        self.left -= 1
-        if self.left < 0:
-            raise Cancelled
-
-
 @pytest.mark.parametrize("is_part", [False, True])
 def test_a_cancelled_study_leaves_nothing(project: Project, tmp_path: Path, is_part: bool) -> None:
     with pytest.raises(Cancelled):
-        study_by_truth(radius_study(project), "t", tmp_path / "w", Counting(12), is_part=is_part)
+        study_by_truth(
+            radius_study(project), "t", tmp_path / "w", CancelledAfter(12), is_part=is_part
+        )
     assert not (tmp_path / "w").exists()
 
 

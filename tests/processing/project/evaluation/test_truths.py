@@ -35,6 +35,7 @@ from processing.recording.columns.error_map import ERROR_MAP, ErrorMapValue
 from processing.recording.drive import Drive
 from processing.tools.tool import FinishedColumns
 from tests.builders import simulated_drive, write_laz, write_trajectory_csv
+from tests.monitors import CancelledAfter
 
 SILENT = SilentMonitor()
 NAME = Text("by hand", "手動")
@@ -182,19 +183,10 @@ def test_a_file_for_another_cloud_is_refused_and_leaves_nothing(
     assert not into.exists()
 
 
-class CancelAtOnce:
-    """Somebody who cancels at once."""
-
-    def report(self, fraction: float, text: Text | None = None) -> None: ...
-
-    def check(self) -> None:
-        raise Cancelled
-
-
 def test_a_cancelled_truth_leaves_nothing(project: Project, drive: Drive) -> None:
     into = project.temporary_folder()
     with pytest.raises(Cancelled):
-        truth_as_it_stands((drive,), into, CancelAtOnce())
+        truth_as_it_stands((drive,), into, CancelledAfter())
     assert not into.exists()
 
 

@@ -18,6 +18,7 @@ from processing.recording.revolutions.revolutions import (
     trajectory_from_origins,
 )
 from tests.builders import SimulatedDrive, simulated_drive
+from tests.monitors import CancelledAfter
 
 NAMES = ("xyz", "time", "return_number", "number_of_returns")
 
@@ -258,18 +259,8 @@ def test_points_out_of_time_order_have_no_revolutions():
     assert "order" in found.reason.en
 
 
-class _Impatient(SilentMonitor):
-    def __init__(self, calls: int) -> None:
-        self.left = calls
-
-    def check(self) -> None:
-        self.left -= 1
-        if self.left < 0:
-            raise Cancelled
-
-
 @pytest.mark.parametrize("calls", [0, 2, 3])
 def test_the_search_can_be_stopped(calls):
     drive = simulated_drive(1)
     with pytest.raises(Cancelled):
-        find_revolutions(columns_of(drive), drive.trajectory, _Impatient(calls))
+        find_revolutions(columns_of(drive), drive.trajectory, CancelledAfter(calls))

@@ -27,25 +27,13 @@ from processing.laboratory.simulate.cameras.seen_street import SeenStreet
 from processing.laboratory.simulate.scanning.simulated_passes import Driving, pass_of
 from processing.laboratory.simulate.street.styles import RURAL
 from processing.recording.camera_images.camera import Camera
+from tests.monitors import CancelledAfter
 
 SMALL = (
     RigCamera("front", (0.8, 0, 0.2), 0, -5, 0.3, 60, 39.5, 29.5, 80, 60, (-0.1, 0.01, 0, 0, 0)),
     RigCamera("left", (0.3, 0.4, 0.2), 70, -5, 0, 60, 39.5, 29.5, 80, 60),
 )
 ORIGIN = np.array([-11_400.0, -35_100.0, 120.0])
-
-
-class CancelAtThirdCheck(SilentMonitor):
-    """Stops at its third question."""
-
-    def __init__(self) -> None:
-        self.asked = 0
-
-    def check(self) -> None:
-        """Stop."""
-        self.asked += 1
-        if self.asked == 3:
-            raise Cancelled
 
 
 @pytest.fixture(scope="module")
@@ -102,7 +90,7 @@ def test_the_same_seed_gives_the_same_bytes_and_a_street_is_in_them(
 def test_taking_photographs_can_be_stopped(tmp_path: Path, poses: list[Pose]) -> None:
     with pytest.raises(Cancelled):
         write_images(
-            tmp_path, poses, lambda one: [], CancelAtThirdCheck(),
+            tmp_path, poses, lambda one: [], CancelledAfter(2),
             seed=3, rig=SMALL, frame=DeliveryFrame(ORIGIN, 0.0),
         )  # fmt: skip
 
