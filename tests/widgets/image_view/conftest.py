@@ -2,32 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 import pytest
-from PySide6.QtCore import QPoint, Qt
+from PySide6.QtCore import QPoint
 from pytestqt.qtbot import QtBot
 
 from processing.image.attributes.tile_cache import TileCache
 from processing.image.images_of_drives import image_of
 from processing.recording.drive import Drive
 from processing.recording.kinds import ImageKind
-from tests.mouse_events import NO_KEYS, move_mouse, turn_wheel
 from tests.widgets.builders import OpenMap, position_on
+from tests.widgets.view_user import ViewUser
 from widgets.image_view.view import ImageView
-from widgets.mouse_tools.mouse_tool import MouseTool
-
-LEFT = Qt.MouseButton.LeftButton
 
 
 @dataclass
-class ImageViewUser:
+class ImageViewUser(ViewUser):
     """A view and the hand at its mouse and keyboard."""
 
-    qtbot: QtBot
-    map: OpenMap
     view: ImageView
     drive: Drive
 
@@ -36,31 +30,6 @@ class ImageViewUser:
         position = self.view.position_of(position_on(self.drive, point))
         assert position is not None
         return QPoint(int(np.floor(position.x())), int(np.floor(position.y())))
-
-    def take(self, tool: MouseTool) -> MouseTool:
-        self.map.listen_to(tool)
-        self.view.set_mouse_tool(tool)
-        return tool
-
-    def click(self, spot: QPoint, keys: Qt.KeyboardModifier = NO_KEYS) -> None:
-        self.qtbot.mouseClick(self.view, LEFT, keys, spot)
-
-    def move(self, spot: QPoint, buttons: Qt.MouseButton = Qt.MouseButton.NoButton) -> None:
-        move_mouse(self.view, spot, buttons)
-
-    def drag(
-        self, start: QPoint, end: QPoint, keys: Qt.KeyboardModifier = NO_KEYS, button=LEFT
-    ) -> None:
-        self.qtbot.mousePress(self.view, button, keys, start)
-        self.move((start + end) / 2, button)
-        self.move(end, button)
-        self.qtbot.mouseRelease(self.view, button, keys, end)
-
-    def wheel(self, spot: QPoint, notches: int, keys: Qt.KeyboardModifier = NO_KEYS) -> None:
-        turn_wheel(self.view, spot, notches, keys)
-
-    def key(self, key: Qt.Key) -> None:
-        self.qtbot.keyClick(self.view, key)
 
     def points_across(self, count: int, row_step: int = 6) -> list[int]:
         """Points in the middle columns of rows some way apart, far enough to be told apart."""
@@ -71,14 +40,6 @@ class ImageViewUser:
             image.nearest_filled(int(row), int(column), 5)
             for row, column in zip(rows, columns, strict=True)
         ]
-
-
-@pytest.fixture
-def tiles(open_map: OpenMap) -> Iterator[TileCache]:
-    cache = TileCache()
-    cache.use(open_map.drive)
-    yield cache
-    cache.close()
 
 
 @pytest.fixture

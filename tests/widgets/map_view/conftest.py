@@ -7,26 +7,21 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
-from PySide6.QtCore import QPoint, Qt
+from PySide6.QtCore import QPoint
 from pytestqt.qtbot import QtBot
 
 from processing.image.attributes.tile_cache import TileCache
 from processing.recording.drive import Drive
-from tests.mouse_events import NO_KEYS, move_mouse, turn_wheel
 from tests.widgets.builders import OpenMap
+from tests.widgets.view_user import ViewUser
 from widgets.map_view.view import MapView
-from widgets.mouse_tools.mouse_tool import MouseTool
 from widgets.shared.cursor import PickedPosition
-
-LEFT = Qt.MouseButton.LeftButton
 
 
 @dataclass
-class MapViewUser:
+class MapViewUser(ViewUser):
     """A view and the hand at its mouse."""
 
-    qtbot: QtBot
-    map: OpenMap
     view: MapView
     drive: Drive
 
@@ -46,26 +41,6 @@ class MapViewUser:
         assert pixel is not None
         return pixel.toPoint()
 
-    def take(self, tool: MouseTool) -> MouseTool:
-        self.map.listen_to(tool)
-        self.view.set_mouse_tool(tool)
-        return tool
-
-    def click(self, spot: QPoint) -> None:
-        self.qtbot.mouseClick(self.view, LEFT, NO_KEYS, spot)
-
-    def move(self, spot: QPoint, buttons: Qt.MouseButton = Qt.MouseButton.NoButton) -> None:
-        move_mouse(self.view, spot, buttons)
-
-    def drag(self, start: QPoint, end: QPoint) -> None:
-        self.qtbot.mousePress(self.view, LEFT, NO_KEYS, start)
-        self.move((start + end) / 2, LEFT)
-        self.move(end, LEFT)
-        self.qtbot.mouseRelease(self.view, LEFT, NO_KEYS, end)
-
-    def wheel(self, spot: QPoint, notches: int, keys: Qt.KeyboardModifier = NO_KEYS) -> None:
-        turn_wheel(self.view, spot, notches, keys)
-
     def road_points(self, count: int) -> list[int]:
         """Points of the road that nothing is above, the highest for half a metre, far apart."""
         xyz = self.drive.xyz(slice(None))
@@ -80,14 +55,6 @@ class MapViewUser:
                 break
         assert len(found) == count
         return found
-
-
-@pytest.fixture
-def tiles(open_map: OpenMap) -> Iterator[TileCache]:
-    cache = TileCache()
-    cache.use(open_map.drive)
-    yield cache
-    cache.close()
 
 
 @pytest.fixture

@@ -17,14 +17,14 @@ from processing.core.text import Text
 from processing.map.catalogue import Geometry
 from processing.map.change import Change
 from processing.map.feature import Feature, PointReference, Position, Vertex, new_feature_id
-from tests.mouse_events import NO_KEYS, move_mouse, turn_wheel
 from tests.widgets.builders import OpenMap
-from widgets.mouse_tools.mouse_tool import MouseTool, Ray
+from tests.widgets.view_user import ViewUser
+from widgets.mouse_tools.mouse_tool import Ray
 from widgets.plane_view.view import PlaneView
 from widgets.plane_view.viewport import PlaneViewport
 from widgets.shared.cursor import PickedPosition
 
-LEFT, RIGHT = Qt.MouseButton.LeftButton, Qt.MouseButton.RightButton
+RIGHT = Qt.MouseButton.RightButton
 
 
 @dataclass
@@ -112,11 +112,9 @@ def grid_position(east: int, north: int) -> PickedPosition:
 
 
 @dataclass
-class PlaneViewUser:
+class PlaneViewUser(ViewUser):
     """A view and the hand at its mouse and keyboard."""
 
-    qtbot: QtBot
-    map: OpenMap
     view: GridView
 
     def add(self, geometry: Geometry, *positions: tuple[int, int], **fields: object) -> Feature:
@@ -137,29 +135,6 @@ class PlaneViewUser:
         position = self.view.position_of(PickedPosition((float(east), float(north), 5.0)))
         assert position is not None
         return position.toPoint()
-
-    def take(self, tool: MouseTool) -> MouseTool:
-        self.map.listen_to(tool)
-        self.view.set_mouse_tool(tool)
-        return tool
-
-    def click(self, spot: QPoint, button: Qt.MouseButton = LEFT) -> None:
-        self.qtbot.mouseClick(self.view, button, NO_KEYS, spot)
-
-    def move(self, spot: QPoint, buttons: Qt.MouseButton = Qt.MouseButton.NoButton) -> None:
-        move_mouse(self.view, spot, buttons)
-
-    def drag(self, start: QPoint, end: QPoint, button: Qt.MouseButton = LEFT) -> None:
-        self.qtbot.mousePress(self.view, button, NO_KEYS, start)
-        self.move((start + end) / 2, button)
-        self.move(end, button)
-        self.qtbot.mouseRelease(self.view, button, NO_KEYS, end)
-
-    def wheel(self, spot: QPoint, notches: int, keys: Qt.KeyboardModifier = NO_KEYS) -> None:
-        turn_wheel(self.view, spot, notches, keys)
-
-    def key(self, key: Qt.Key) -> None:
-        self.qtbot.keyClick(self.view, key)
 
     def colour_at(self, spot: QPoint) -> str:
         image = self.view.grab().toImage()

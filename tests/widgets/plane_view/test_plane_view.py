@@ -123,7 +123,7 @@ def test_the_middle_button_and_space_push_the_picture(
         user.drag(QPoint(300, 300), QPoint(350, 280))
         user.qtbot.keyRelease(user.view, Qt.Key.Key_Space)
     else:
-        user.drag(QPoint(300, 300), QPoint(350, 280), Qt.MouseButton.MiddleButton)
+        user.drag(QPoint(300, 300), QPoint(350, 280), button=Qt.MouseButton.MiddleButton)
     assert user.spot(5, 5) - before == QPoint(50, -20)
     assert user.map.shared.cursor.position is None
 
@@ -196,7 +196,7 @@ def test_a_line_is_drawn_by_clicks_and_the_right_button(user: PlaneViewUser) -> 
     for east, north in ((1, 1), (4, 1), (4, 6)):
         user.click(user.spot(east, north))
         user.view.grab()
-    user.click(user.spot(4, 6), RIGHT)
+    user.click(user.spot(4, 6), button=RIGHT)
     (feature,) = user.map.features()
     positions = [grid_position(1, 1), grid_position(4, 1), grid_position(4, 6)]
     assert [one.xyz for one in feature.vertices] == [position.xyz for position in positions]
@@ -328,7 +328,7 @@ def test_an_empty_view_says_why_and_takes_no_gesture(user: PlaneViewUser) -> Non
 
 def test_the_right_button_with_nothing_under_way_asks_for_the_menu(user: PlaneViewUser) -> None:
     with user.qtbot.waitSignal(user.view.menu_requested) as asked:
-        user.click(user.spot(4, 4), RIGHT)
+        user.click(user.spot(4, 4), button=RIGHT)
     (request,) = asked.args
     assert isinstance(request, MenuRequest)
     assert request.hit.position == grid_position(4, 4)

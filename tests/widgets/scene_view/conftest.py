@@ -11,30 +11,28 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
+from typing_extensions import override
 
 from processing.image.attributes.tile_cache import TileCache
 from processing.recording.drive import Drive
-from tests.mouse_events import NO_KEYS, move_mouse, turn_wheel
 from tests.widgets.builders import OpenMap
-from widgets.mouse_tools.mouse_tool import MouseTool
+from tests.widgets.view_user import ViewUser
 from widgets.scene_view.rendering.camera import SceneCamera
 from widgets.scene_view.view import SceneView
 from widgets.shared.cursor import PickedPosition
 
-LEFT = Qt.MouseButton.LeftButton
 RIGHT = Qt.MouseButton.RightButton
 
 
 @dataclass
-class SceneViewUser:
+class SceneViewUser(ViewUser):
     """A view and the hand at its mouse and keyboard."""
 
-    qtbot: QtBot
-    map: OpenMap
     view: SceneView
     drive: Drive
 
     @property
+    @override
     def picture(self) -> QWidget:
         """The widget that gets the mouse."""
         picture = self.view.picture
@@ -60,31 +58,6 @@ class SceneViewUser:
         assert pixel is not None
         return pixel.toPoint()
 
-    def take(self, tool: MouseTool) -> MouseTool:
-        self.map.listen_to(tool)
-        self.view.set_mouse_tool(tool)
-        return tool
-
-    def click(self, spot: QPoint, keys: Qt.KeyboardModifier = NO_KEYS, button=LEFT) -> None:
-        self.qtbot.mouseClick(self.picture, button, keys, spot)
-
-    def move(self, spot: QPoint, buttons: Qt.MouseButton = Qt.MouseButton.NoButton) -> None:
-        move_mouse(self.picture, spot, buttons)
-
-    def drag(
-        self, start: QPoint, end: QPoint, keys: Qt.KeyboardModifier = NO_KEYS, button=LEFT
-    ) -> None:
-        self.qtbot.mousePress(self.picture, button, keys, start)
-        self.move((start + end) / 2, button)
-        self.move(end, button)
-        self.qtbot.mouseRelease(self.picture, button, keys, end)
-
-    def wheel(self, spot: QPoint, notches: int, keys: Qt.KeyboardModifier = NO_KEYS) -> None:
-        turn_wheel(self.picture, spot, notches, keys)
-
-    def key(self, key: Qt.Key) -> None:
-        self.qtbot.keyClick(self.picture, key)
-
     def road_points(self, count: int) -> list[int]:
         """Points on the road some metres apart along the drive, with nothing above them."""
         vehicle_path = self.drive.trajectory
@@ -101,14 +74,6 @@ class SceneViewUser:
             int(road[np.hypot(*(xyz[road, :2] - stop[:2] - [0.4, 0.0]).T).argmin()])
             for stop in stops
         ]
-
-
-@pytest.fixture
-def tiles(open_map: OpenMap) -> Iterator[TileCache]:
-    cache = TileCache()
-    cache.use(open_map.drive)
-    yield cache
-    cache.close()
 
 
 @pytest.fixture

@@ -7,8 +7,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
-from PySide6.QtCore import QPoint, Qt
+from PySide6.QtCore import QPoint
+from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
+from typing_extensions import override
 
 from processing.core.text import Text
 from processing.map.catalogue import Geometry
@@ -16,28 +18,28 @@ from processing.map.change import Change
 from processing.map.feature import Feature, Vertex, new_feature_id
 from processing.recording.drive import Drive
 from tests.builders import START
-from tests.mouse_events import NO_KEYS, move_mouse
 from tests.street_scene import CURB_AT_M
 from tests.widgets.builders import OpenMap, position_on
-from widgets.mouse_tools.mouse_tool import MouseTool
+from tests.widgets.view_user import ViewUser
 from widgets.section_view.pane import SectionPane
 from widgets.section_view.view import SectionView
 from widgets.shared.cursor import PickedPosition
 
-LEFT = Qt.MouseButton.LeftButton
-
 
 @dataclass
-class SectionViewUser:
+class SectionViewUser(ViewUser):
     """A view and the hand at its mouse and keyboard."""
 
-    qtbot: QtBot
-    map: OpenMap
     view: SectionView
 
     @property
     def pane(self) -> SectionPane:
         return self.view.panes[0]
+
+    @property
+    @override
+    def picture(self) -> QWidget:
+        return self.pane
 
     def do(self, work: Callable[[], object]) -> None:
         """Do something after which the section is painted anew."""
@@ -86,20 +88,6 @@ class SectionViewUser:
                 drive = picture.request.drives[int(picture.drive_numbers[number])]
                 return position_on(drive, int(picture.points[number]))
         pytest.fail("every point has another one near it")
-
-    def take(self, tool: MouseTool) -> MouseTool:
-        self.map.listen_to(tool)
-        self.view.set_mouse_tool(tool)
-        return tool
-
-    def drag(self, start: QPoint, end: QPoint) -> None:
-        self.qtbot.mousePress(self.pane, LEFT, NO_KEYS, start)
-        move_mouse(self.pane, (start + end) / 2, LEFT)
-        move_mouse(self.pane, end, LEFT)
-        self.qtbot.mouseRelease(self.pane, LEFT, NO_KEYS, end)
-
-    def key(self, key: Qt.Key, keys: Qt.KeyboardModifier = NO_KEYS) -> None:
-        self.qtbot.keyClick(self.pane, key, keys)
 
 
 @pytest.fixture

@@ -19,13 +19,13 @@ from tests.mouse_events import NO_KEYS, move_mouse
 from tests.street_scene import CURB_AT_M, CURB_HEIGHT_M
 from tests.widgets.builders import OpenMap
 from tests.widgets.section_view.conftest import (
-    LEFT,
     SectionViewUser,
     curb_line,
     on_road,
     shown,
     station,
 )
+from tests.widgets.view_user import LEFT
 from widgets.mouse_tools.editing.edit_vertices import EditVertices
 from widgets.mouse_tools.snapping import SnappingTool
 from widgets.section_view.picture.marks import mark_under

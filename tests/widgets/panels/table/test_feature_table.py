@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import replace
 
-import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import (
@@ -22,7 +21,6 @@ from tests.widgets.panels.table_user import (
     LEFT,
     NONE,
     SHIFT,
-    MapWithPoles,
     cells,
     change,
     choose,
@@ -40,21 +38,6 @@ from tests.widgets.panels.table_user import (
 from widgets.panels.table.feature_table import FeatureTable
 from widgets.panels.table.feature_table_model import MOST_SINGLE_CHANGES
 from widgets.shared.cursor import PickedPosition
-
-
-@pytest.fixture
-def open_map() -> OpenMap:
-    return MapWithPoles()
-
-
-@pytest.fixture
-def table(qtbot: QtBot, open_map: OpenMap) -> FeatureTable:
-    made = FeatureTable(open_map, open_map.shared, "en")
-    made.change_requested.connect(open_map.apply)
-    qtbot.addWidget(made)
-    made.resize(1000, 400)
-    made.show()
-    return made
 
 
 def test_each_feature_is_a_row_with_what_is_known_of_it(

@@ -16,7 +16,6 @@ from processing.map.feature import Status
 from tests.widgets.builders import OpenMap
 from tests.widgets.panels.table_user import (
     NONE,
-    MapWithPoles,
     act,
     cells,
     change,
@@ -33,21 +32,6 @@ from tests.widgets.panels.table_user import (
 )
 from widgets.panels.table.feature_table import FeatureTable
 from widgets.shared.cursor import PickedPosition
-
-
-@pytest.fixture
-def open_map() -> OpenMap:
-    return MapWithPoles()
-
-
-@pytest.fixture
-def table(qtbot: QtBot, open_map: OpenMap) -> FeatureTable:
-    made = FeatureTable(open_map, open_map.shared, "en")
-    made.change_requested.connect(open_map.apply)
-    qtbot.addWidget(made)
-    made.resize(1000, 400)
-    made.show()
-    return made
 
 
 def test_the_menu_judges_the_chosen_rows_in_one_step(
