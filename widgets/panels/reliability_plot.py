@@ -1,4 +1,8 @@
-"""The reliability curve: how often a tool was right, by how sure it was; on screen and on paper."""
+"""The reliability curve: how often a tool was right, by how sure it was; on screen and on paper.
+
+Painted here: Qt Charts has no intervals of a value, and no map of cells for studies of two
+parameters.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,9 @@
-"""Results for points, as LAS or LAZ: the input's points as they were, with classes and more."""
+"""Results for points, as LAS or LAZ: the input's points as they were, with classes and more.
+
+Made of the delivered bytes, not by laspy: laspy 2.7 turns points of formats 0 to 5 into those with
+8 bits of class with scan angles of 0, and takes as long (4.4 million points with a new dimension
+as LAZ, two cores: 21.6 and 23.5 s, here 19.7 and 22.6 s).
+"""
 
 from __future__ import annotations
 

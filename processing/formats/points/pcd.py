@@ -1,4 +1,7 @@
-"""PCD, the Point Cloud Library's format: ascii and binary, organised as an image or not."""
+"""PCD, the Point Cloud Library's format: ascii and binary, organised as an image or not.
+
+Read in blocks with every field; Open3D's readers hold the whole cloud in memory.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""PLY: text and both binary orders, with the field names that laser programs give."""
+"""PLY: text and both binary orders, with the field names that laser programs give.
+
+Read in blocks with every field; Open3D's readers hold the whole cloud in memory.
+"""
 
 from __future__ import annotations
 

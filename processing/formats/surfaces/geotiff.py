@@ -1,6 +1,8 @@
 """GeoTIFF: grids of numbers with their place, written a tile at a time, however large they are.
 
 Tiles without a number are left out of the file, which GDAL, and so QGIS, reads as “no data”.
+Pillow and OpenCV want the whole picture in memory; rasterio would bring GDAL a second time, beside
+pyogrio's.
 """
 
 from __future__ import annotations

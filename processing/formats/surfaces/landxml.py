@@ -1,7 +1,7 @@
 """Surfaces of LandXML and J-LandXML: designs as triangles, with their break lines.
 
 LandXML's points are north, east, height; they are turned to easting and northing here and nowhere
-else.
+else. None of the libraries that the program has reads the format.
 """
 
 from __future__ import annotations
