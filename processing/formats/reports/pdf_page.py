@@ -2,7 +2,7 @@
 
 Pages, type and tables are reportlab's. Lines are broken here: of 4,210 lines to which reportlab 5.1
 (``wordWrap="CJK"``) sets the sentences of these reports in columns of 20 to 180 mm, 124 run out
-of the column, 69 end with an opening bracket and 9 begin with a mark that may not; of 4,249
+of the column, 69 end with an opening bracket and 9 begin with a mark that may not; of 4,268
 lines set here 3 begin so, and nothing else.
 """
 
@@ -43,9 +43,12 @@ _CAPITAL = 0.72
 _LEAST_SHRINK = 0.7
 _GETA = "〓"
 """What Japanese printers set for a character that they lack."""
-_WORDS = re.compile(r"[^\S　]+|[!-~\u00a0-\u024f]+|.", re.DOTALL)
+_WORDS = re.compile(
+    r"[^\S　]+|[+−±]?[\d.,]*\d (?:[cm]?m[²³]?|%|点)(?![A-Za-z])|[!-~\u00a0-\u024f]+|.", re.DOTALL
+)
+"""Blanks, a number with its unit, a word, or one character of Japanese."""
 _NOT_FIRST = frozenset("、。，．・：；？！）」』】〕］｝〉》ー々％℃,.:;?!)]}")
-_NOT_LAST = frozenset("（「『【〔［｛〈《([{")
+_NOT_LAST = frozenset("（「『【〔［｛〈《([{−±")
 
 
 class Paper:

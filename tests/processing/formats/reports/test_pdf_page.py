@@ -22,6 +22,14 @@ def test_lines_break_between_words_and_not_before_a_full_stop() -> None:
     assert lines == ["設計値より高", "い。低い"]
 
 
+def test_a_number_stays_with_its_sign_and_its_unit() -> None:
+    for words in ("誤差は −0.003 m である", "面積は ±36.5 m³ 以内", "割合は 95 % である"):
+        number = next(one for one in ("−0.003 m", "±36.5 m³", "95 %") if one in words)
+        for width in range(16, 40):
+            lines = break_lines(words, 8.0, float(width))
+            assert any(number in line for line in lines), (width, lines)
+
+
 def test_a_name_without_places_to_break_is_broken_where_the_line_is_full() -> None:
     lines = break_lines("a" * 90, 8.0, 40.0)
     assert "".join(lines) == "a" * 90
