@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
 from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
+from app.application import build_window, make_application
 from app.document.document import Document
 from app.jobs.jobs import JobQueue
+from app.settings.settings import Settings
+from app.window.window_parts import WindowParts
 from processing.project.importing.importing import ImportRequest
 
 WAIT_MS = 30_000
@@ -36,3 +40,23 @@ def street(
     jobs.close()
     document.close()
     document.tiles.close()
+
+
+@contextmanager
+def shown_window(qtbot: QtBot, folder: Path) -> Iterator[WindowParts]:
+    """The program's window as at its first start, with settings and projects of its own."""
+    make_application()
+    parts = build_window(Settings(folder / "settings.ini"), folder / "projects")
+    parts.window.resize(1366, 768)
+    parts.window.show()
+    qtbot.waitExposed(parts.window)
+    yield parts
+    parts.window.close()
+    parts.window.deleteLater()
+
+
+@pytest.fixture
+def parts(qtbot: QtBot, tmp_path: Path) -> Iterator[WindowParts]:
+    """The program's window."""
+    with shown_window(qtbot, tmp_path) as parts:
+        yield parts

@@ -7,8 +7,6 @@ from contextlib import closing
 import pytest
 from PySide6.QtWidgets import QToolButton
 
-from app.application import build_window, make_application
-from app.settings.settings import Settings
 from processing.project.importing import import_journal
 from processing.project.importing.import_request import ImportRequest
 from processing.project.importing.importing import import_drives
@@ -41,17 +39,6 @@ def interrupted(tmp_path, monkeypatch):
         with pytest.raises(RuntimeError):
             import_drives(request, import_folder(project.folder, request), _EndsEarly())
         return project.folder
-
-
-@pytest.fixture
-def parts(qtbot, tmp_path):
-    make_application()
-    parts = build_window(Settings(tmp_path / "settings.ini"), tmp_path / "projects")
-    parts.window.show()
-    qtbot.waitExposed(parts.window)
-    yield parts
-    parts.window.close()
-    parts.window.deleteLater()
 
 
 def _button(parts, words: str) -> QToolButton:

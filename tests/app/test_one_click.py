@@ -12,9 +12,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QPushButton, QToolBar, QToolButton
 from pytestqt.qtbot import QtBot
 
-from app.application import build_window, make_application
 from app.review.review import Review
-from app.settings.settings import Settings
 from app.window.window_parts import WindowParts
 from processing.core.monitor import Monitor
 from processing.project.importing.importing import ImportRequest
@@ -22,6 +20,7 @@ from processing.recording.drive import Drive
 from processing.tools.normals import NormalsParameters
 from processing.tools.registry import TOOLS
 from processing.tools.tool import Candidate, CandidateResult, Finder, Needs
+from tests.app.conftest import shown_window
 from tests.builders import simulated_drive, write_laz, write_trajectory_csv
 from tests.processing.project.candidates import FINDER
 
@@ -54,14 +53,8 @@ def parts(qtbot: QtBot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iter
         button=TOOLS["gutters"].button,
     )
     monkeypatch.setitem(TOOLS, "gutters", tool)
-    make_application()
-    parts = build_window(Settings(tmp_path / "settings.ini"), tmp_path / "projects")
-    parts.window.resize(1366, 768)
-    parts.window.show()
-    qtbot.waitExposed(parts.window)
-    yield parts
-    parts.window.close()
-    parts.window.deleteLater()
+    with shown_window(qtbot, tmp_path) as parts:
+        yield parts
 
 
 def open_street(

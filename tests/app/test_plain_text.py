@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -23,8 +22,7 @@ from PySide6.QtWidgets import (
 )
 from pytestqt.qtbot import QtBot
 
-from app.application import build_window, make_application
-from app.settings.settings import Settings
+from app.application import make_application
 from app.window.window_parts import WindowParts
 from processing.core.errors import BadFile
 from processing.core.text import Text
@@ -246,16 +244,6 @@ def test_menus_and_buttons_show_an_ampersand(
     bar.show_kind(open_map.kinds["wall"])
     assert bar.kind_name == HARMLESS
     assert SHOWN_HARMLESS in [one.text() for one in bar.findChildren(QToolButton)]
-
-
-@pytest.fixture
-def parts(qtbot: QtBot, tmp_path: Path) -> Iterator[WindowParts]:
-    parts = build_window(Settings(tmp_path / "settings.ini"), tmp_path / "projects")
-    parts.window.show()
-    qtbot.waitExposed(parts.window)
-    yield parts
-    parts.window.close()
-    parts.window.deleteLater()
 
 
 def test_the_window_shows_names_of_projects_and_steps(

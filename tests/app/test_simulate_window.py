@@ -4,11 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import pytest
 from PySide6.QtWidgets import QApplication, QLabel, QPushButton, QToolButton
 
-from app.application import build_window, make_application
-from app.settings.settings import Settings
 from processing.laboratory.simulate.requests import StreetRequest
 from widgets.dialogs.simulate import SimulateForm, SimulationRequest
 from widgets.parts.density_view import DensityView
@@ -17,17 +14,6 @@ WAIT_MS = 60_000
 SMALL = StreetRequest(
     style="highway", length_m=10.0, pulses=200, turns_per_s=30.0, speed_km_h=20.0, images=False
 )
-
-
-@pytest.fixture
-def parts(qtbot, tmp_path):
-    make_application()
-    parts = build_window(Settings(tmp_path / "settings.ini"), tmp_path / "projects")
-    parts.window.show()
-    qtbot.waitExposed(parts.window)
-    yield parts
-    parts.window.close()
-    parts.window.deleteLater()
 
 
 def form_of(parts) -> SimulateForm:

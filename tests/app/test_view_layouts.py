@@ -9,10 +9,9 @@ import pytest
 from PySide6.QtWidgets import QDockWidget
 from pytestqt.qtbot import QtBot
 
-from app.application import build_window, make_application
 from app.layout.view_docks import ViewLayout
-from app.settings.settings import Settings
 from app.window.window_parts import WindowParts
+from tests.app.conftest import shown_window
 
 _IN_FRONT = {
     ViewLayout.DRAWING: ["scene", "section"],
@@ -24,15 +23,9 @@ _IN_FRONT = {
 
 @pytest.fixture
 def parts(qtbot: QtBot, tmp_path: Path) -> Iterator[WindowParts]:
-    make_application()
-    parts = build_window(Settings(tmp_path / "settings.ini"), tmp_path / "projects")
-    parts.window.resize(1366, 768)
-    parts.window.show()
-    qtbot.waitExposed(parts.window)
-    parts.document.create(tmp_path / "street.zuka", "EPSG:6677")
-    yield parts
-    parts.window.close()
-    parts.window.deleteLater()
+    with shown_window(qtbot, tmp_path) as parts:
+        parts.document.create(tmp_path / "street.zuka", "EPSG:6677")
+        yield parts
 
 
 def in_front(parts: WindowParts) -> list[str]:

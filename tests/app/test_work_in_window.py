@@ -10,8 +10,6 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QDialogButtonBox, QFileDialog, QLineEdit
 from pytestqt.qtbot import QtBot
 
-from app.application import build_window, make_application
-from app.settings.settings import Settings
 from app.window.window_parts import WindowParts
 from processing.core.errors import NoSpace
 from processing.core.text import Text
@@ -20,6 +18,7 @@ from processing.project.store.project_settings import ProjectSettings
 from processing.project.work_details import WorkDetails
 from processing.project.work_store import WorkStore
 from resources import path_of
+from tests.app.conftest import shown_window
 from widgets.dialogs.work_details import WorkDetailsForm
 from widgets.panels.volume.limits_box import LimitsBox
 
@@ -29,14 +28,9 @@ WAIT_MS = 60_000
 @pytest.fixture
 def parts(qtbot: QtBot, tmp_path: Path) -> Iterator[WindowParts]:
     """The window with an empty project."""
-    make_application()
-    parts = build_window(Settings(tmp_path / "settings.ini"), tmp_path / "projects")
-    parts.window.show()
-    qtbot.waitExposed(parts.window)
-    assert parts.document.create(tmp_path / "造成.zuka", "EPSG:6677")
-    yield parts
-    parts.window.close()
-    parts.window.deleteLater()
+    with shown_window(qtbot, tmp_path) as parts:
+        assert parts.document.create(tmp_path / "造成.zuka", "EPSG:6677")
+        yield parts
 
 
 @pytest.fixture

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -14,9 +13,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QComboBox
 from pytestqt.qtbot import QtBot
 
-from app.application import build_window, make_application
 from app.cli.terminal import DONE, run_in_terminal
-from app.settings.settings import Settings
 from app.window.window_parts import WindowParts
 from processing.map.catalogue_file import read_catalogue
 from processing.project.importing.importing import ImportRequest
@@ -50,18 +47,6 @@ def recorded() -> SimulatedDrive:
 @pytest.fixture
 def cloud(recorded: SimulatedDrive, tmp_path: Path) -> Path:
     return write_laz(recorded, tmp_path / "left.laz")
-
-
-@pytest.fixture
-def parts(qtbot: QtBot, tmp_path: Path) -> Iterator[WindowParts]:
-    make_application()
-    parts = build_window(Settings(tmp_path / "settings.ini"), tmp_path / "projects")
-    parts.window.resize(1366, 768)
-    parts.window.show()
-    qtbot.waitExposed(parts.window)
-    yield parts
-    parts.window.close()
-    parts.window.deleteLater()
 
 
 @pytest.fixture

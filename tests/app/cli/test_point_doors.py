@@ -8,10 +8,8 @@ import numpy as np
 import pytest
 from PySide6.QtWidgets import QComboBox, QDialogButtonBox, QFileDialog
 
-from app.application import build_window, make_application
 from app.cli.opened import request_of
 from app.cli.parser import read_arguments
-from app.settings.settings import Settings
 from processing.core.errors import MissingInput
 from processing.formats.format import DELIVERED, Content
 from processing.formats.registry import FORMATS
@@ -80,26 +78,15 @@ def test_columns_are_named_on_the_command_line(tmp_path: Path, capsys) -> None:
     assert request_of(arguments).columns == ("-", "y", "x", "z")
 
 
-@pytest.fixture
-def window(qtbot, tmp_path: Path):
-    make_application()
-    parts = build_window(Settings(tmp_path / "settings.ini"), tmp_path / "projects")
-    with qtbot.waitExposed(parts.window):
-        parts.window.show()
-    yield parts
-    parts.window.close()
-    parts.window.deleteLater()
-
-
 def test_a_drop_with_an_unclear_header_is_asked_about_and_read_as_answered(
-    qtbot, tmp_path: Path, window
+    qtbot, tmp_path: Path, parts
 ) -> None:
     path = tmp_path / "points.txt"
     values = np.random.default_rng(5).uniform(0, 50, (500, 4))
     np.savetxt(path, values, header="x y z", fmt="%.3f")
-    window.window.files_dropped.emit((path,))
-    form = window.window.findChild(ColumnsForm)
-    assert window.document.project is None
+    parts.window.files_dropped.emit((path,))
+    form = parts.window.findChild(ColumnsForm)
+    assert parts.document.project is None
     boxes, buttons = form.findChildren(QComboBox), form.findChild(QDialogButtonBox)
     role = QDialogButtonBox.ButtonRole.AcceptRole
     (accept,) = (one for one in buttons.buttons() if buttons.buttonRole(one) is role)
@@ -107,10 +94,10 @@ def test_a_drop_with_an_unclear_header_is_asked_about_and_read_as_answered(
     for box, column in zip(boxes, ("z", "-", "y", "x"), strict=True):
         box.setCurrentIndex(box.findData(column))
     assert accept.isEnabled()
-    with qtbot.waitSignal(window.document.reported, timeout=60_000) as reported:
+    with qtbot.waitSignal(parts.document.reported, timeout=60_000) as reported:
         accept.click()
     assert "points.txt: columns taken as z - y x" in reported.args[0].en
-    (drive,) = window.document.drives()
+    (drive,) = parts.document.drives()
     order = np.argsort(drive.xyz(np.arange(drive.count))[:, 2])
     found = drive.xyz(np.arange(drive.count))[order]
     expected = np.round(values[np.argsort(values[:, 0])][:, [3, 2, 0]], 3)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -11,24 +10,11 @@ from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import QDialogButtonBox, QTextBrowser, QToolButton
 from pytestqt.qtbot import QtBot
 
-from app.application import build_window, make_application
-from app.settings.settings import Settings
 from app.window.window_parts import WindowParts
 from widgets.dialogs.manual import ManualWindow
 from widgets.dialogs.simulate import SimulateForm
 
 WAIT_MS = 30_000
-
-
-@pytest.fixture
-def parts(qtbot: QtBot, tmp_path: Path) -> Iterator[WindowParts]:
-    make_application()
-    parts = build_window(Settings(tmp_path / "settings.ini"), tmp_path / "projects")
-    parts.window.show()
-    qtbot.waitExposed(parts.window)
-    yield parts
-    parts.window.close()
-    parts.window.deleteLater()
 
 
 def shown(parts: WindowParts) -> list[ManualWindow]:

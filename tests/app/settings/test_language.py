@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import threading
-from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -13,8 +12,6 @@ from PySide6.QtCore import SIGNAL, QCoreApplication, QMetaMethod, QObject, Qt
 from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 
-from app.application import build_window, make_application
-from app.settings.settings import Settings
 from app.window.window_parts import WindowParts
 from processing.core.text import Text
 from processing.map.catalogue import Geometry
@@ -26,18 +23,6 @@ from widgets.mouse_tools.mouse_tool import Hit
 from widgets.shared.cursor import PickedPosition
 
 WAIT_MS = 60_000
-
-
-@pytest.fixture
-def parts(qtbot: QtBot, tmp_path: Path) -> Iterator[WindowParts]:
-    make_application()
-    parts = build_window(Settings(tmp_path / "settings.ini"), tmp_path / "projects")
-    parts.window.resize(1366, 768)
-    parts.window.show()
-    qtbot.waitExposed(parts.window)
-    yield parts
-    parts.window.close()
-    parts.window.deleteLater()
 
 
 @pytest.fixture

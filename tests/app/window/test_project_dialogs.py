@@ -17,10 +17,9 @@ from PySide6.QtWidgets import (
 )
 from pytestqt.qtbot import QtBot
 
-from app.application import build_window, make_application
 from app.classes.truth_evaluations import TruthEvaluations
-from app.settings.settings import Settings
 from app.window.window_parts import WindowParts
+from tests.app.conftest import shown_window
 from widgets.dialogs.export_map import ExportForm
 from widgets.dialogs.import_drive import ImportForm
 from widgets.dialogs.reference_systems import ReferenceSystemForm
@@ -41,15 +40,10 @@ FILE_DIALOGS = ("find-files", "adopt-catalogue", "export-catalogue")
 @pytest.fixture
 def parts(qtbot: QtBot, tmp_path: Path) -> Iterator[WindowParts]:
     """The window with the empty project A; B lies beside it."""
-    make_application()
-    parts = build_window(Settings(tmp_path / "settings.ini"), tmp_path / "projects")
-    parts.window.show()
-    qtbot.waitExposed(parts.window)
-    assert parts.document.create(tmp_path / "B.zuka", "EPSG:6677")
-    assert parts.document.create(tmp_path / "A.zuka", "EPSG:6677")
-    yield parts
-    parts.window.close()
-    parts.window.deleteLater()
+    with shown_window(qtbot, tmp_path) as parts:
+        assert parts.document.create(tmp_path / "B.zuka", "EPSG:6677")
+        assert parts.document.create(tmp_path / "A.zuka", "EPSG:6677")
+        yield parts
 
 
 def type_key(qtbot: QtBot, parts: WindowParts, key: Qt.Key) -> None:
