@@ -1,1 +1,1 @@
-"""What stands beside the road: plants, signs, poles, barriers, buildings."""
+"""What stands beside the road: signs, poles, barriers, buildings."""

@@ -7,11 +7,20 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.random import Generator
 
-from processing.laboratory.simulate.roadside.crowns import scatter_leaves
-from processing.laboratory.simulate.roadside.growth import CEDAR, GROWTHS, YARD_GROWTHS, Growth
-from processing.laboratory.simulate.roadside.rods import rods
-from processing.laboratory.simulate.roadside.tree_pits import PitStyle, add_pit, pit_habit, take_pit
-from processing.laboratory.simulate.roadside.trees import (
+from processing.laboratory.simulate.roadside.plants.crowns import scatter_leaves
+from processing.laboratory.simulate.roadside.plants.growth import (
+    CEDAR,
+    GROWTHS,
+    YARD_GROWTHS,
+    Growth,
+)
+from processing.laboratory.simulate.roadside.plants.tree_pits import (
+    PitStyle,
+    add_pit,
+    pit_habit,
+    take_pit,
+)
+from processing.laboratory.simulate.roadside.plants.trees import (
     CROWN,
     TRUNK,
     TRUTH_WITHIN_M,
@@ -20,6 +29,7 @@ from processing.laboratory.simulate.roadside.trees import (
     add_tree,
     leaf_share,
 )
+from processing.laboratory.simulate.roadside.rods import rods
 from processing.laboratory.simulate.scene.chance import chance
 from processing.laboratory.simulate.scene.materials import Material
 from processing.laboratory.simulate.scene.things import SectionBuilder

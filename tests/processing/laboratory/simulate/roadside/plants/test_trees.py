@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from processing.laboratory.simulate.assembly.street import Street
-from processing.laboratory.simulate.roadside.trunks import (
+from processing.laboratory.simulate.roadside.plants.trunks import (
     Stem,
     StemOptions,
     girth_of_stem_m,

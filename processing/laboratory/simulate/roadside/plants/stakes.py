@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.random import Generator
 
+from processing.laboratory.simulate.roadside.plants.trunks import Stem
 from processing.laboratory.simulate.roadside.rods import join_shapes, rod, rods
-from processing.laboratory.simulate.roadside.trunks import Stem
 from processing.laboratory.simulate.scene.mesh import Floats, TriangleShape
 
 _SUNK_M = 0.3

@@ -8,8 +8,13 @@ import numpy as np
 import pytest
 
 from processing.laboratory.simulate.assembly.street import Street
-from processing.laboratory.simulate.roadside.street_trees import add_street_trees
-from processing.laboratory.simulate.roadside.tree_pits import PitStyle, add_pit, pit_habit, take_pit
+from processing.laboratory.simulate.roadside.plants.street_trees import add_street_trees
+from processing.laboratory.simulate.roadside.plants.tree_pits import (
+    PitStyle,
+    add_pit,
+    pit_habit,
+    take_pit,
+)
 from processing.laboratory.simulate.scene.materials import Material
 from processing.laboratory.simulate.scene.mesh import Floats
 from processing.laboratory.simulate.scene.things import SectionBuilder

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from processing.laboratory.simulate.roadside.growth import Growth
+from processing.laboratory.simulate.roadside.plants.growth import Growth
+from processing.laboratory.simulate.roadside.plants.trunks import Stem
 from processing.laboratory.simulate.roadside.rods import join_shapes, rods
-from processing.laboratory.simulate.roadside.trunks import Stem
 from processing.laboratory.simulate.scene.mesh import Floats, TriangleShape
 
 _POSITIONS = 5  # of a branch

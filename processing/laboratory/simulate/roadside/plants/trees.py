@@ -8,16 +8,16 @@ from typing import Literal
 import numpy as np
 from numpy.random import Generator
 
-from processing.laboratory.simulate.roadside.crowns import (
+from processing.laboratory.simulate.roadside.plants.crowns import (
     CrownOptions,
     LeafFilter,
     branches_of,
     leaves_of,
     scatter_leaves,
 )
-from processing.laboratory.simulate.roadside.growth import Growth
-from processing.laboratory.simulate.roadside.stakes import stakes_of
-from processing.laboratory.simulate.roadside.trunks import (
+from processing.laboratory.simulate.roadside.plants.growth import Growth
+from processing.laboratory.simulate.roadside.plants.stakes import stakes_of
+from processing.laboratory.simulate.roadside.plants.trunks import (
     HIGH_PIECE,
     TAPE_M,
     Stem,

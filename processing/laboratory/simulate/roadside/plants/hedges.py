@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.random import Generator
 
-from processing.laboratory.simulate.roadside.crowns import scatter_leaves
+from processing.laboratory.simulate.roadside.plants.crowns import scatter_leaves
 from processing.laboratory.simulate.scene.chance import chance
 from processing.laboratory.simulate.scene.materials import Material
 from processing.laboratory.simulate.scene.mesh import Floats, grid

@@ -1,0 +1,1 @@
+"""What grows beside the road: trees in their pits, hedges, weeds."""
