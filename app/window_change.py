@@ -18,8 +18,8 @@ from app.window.window_parts import WindowParts
 from processing.core.errors import UserError
 from processing.core.text import Language
 from processing.project.volumes.volume import ChosenSide
+from widgets.image_view.orientation.viewport import Viewport
 from widgets.image_view.panes import ShownImage
-from widgets.image_view.viewport import Viewport
 from widgets.plane_view.viewport import PlaneViewport
 from widgets.scene_view.clipping import ClipChoice
 from widgets.scene_view.rendering.camera import SceneCamera

@@ -10,9 +10,9 @@ from PySide6.QtCore import Qt
 from app.window.window_parts import WindowParts
 from processing.core.errors import UserError
 from processing.core.text import Text
-from processing.formats.points.column_words import PASSED_OVER
 from processing.formats.points.point_files import columns_needed
-from processing.formats.points.text_header import read_beginning
+from processing.formats.points.text.column_words import PASSED_OVER
+from processing.formats.points.text.text_header import read_beginning
 from processing.project.importing.importing import ImportRequest
 from widgets.dialogs.point_columns import ColumnsForm
 

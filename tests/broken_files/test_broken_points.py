@@ -14,8 +14,8 @@ import pytest
 
 from processing.core.errors import BadFile, MissingInput, UserError
 from processing.core.monitor import SilentMonitor
-from processing.formats.points.decoder_panics import is_panic, panics_unprinted
-from processing.formats.points.las_header import read_header
+from processing.formats.points.las.decoder_panics import is_panic, panics_unprinted
+from processing.formats.points.las.las_header import read_header
 from processing.formats.points.las_results import write_results
 from processing.formats.points.point_files import read_chunks, read_info, read_sample
 from tests.broken_files.damage import check_refusal, flipped, outcome, overwritten

@@ -16,10 +16,10 @@ from processing.map.catalogue import Geometry
 from processing.map.feature import PointReference
 from processing.recording.columns.counted_classes import class_columns, seen_points
 from widgets.feature_drawing.outlines import are_inside, is_rectangle
-from widgets.image_view.feature_overlay import FeatureOverlay
-from widgets.image_view.oriented_image import OrientedImage, Span
-from widgets.image_view.picture_feature import PictureFeature
-from widgets.image_view.viewport import Viewport
+from widgets.image_view.features.feature_overlay import FeatureOverlay
+from widgets.image_view.features.picture_feature import PictureFeature
+from widgets.image_view.orientation.oriented_image import OrientedImage, Span
+from widgets.image_view.orientation.viewport import Viewport
 from widgets.mouse_tools.gesture import REACH_PX
 from widgets.mouse_tools.mouse_tool import EnclosedHits, Hit, Ray
 from widgets.shared.cursor import PickedPosition

@@ -7,9 +7,9 @@ from PySide6.QtWidgets import QWidget
 
 from processing.image.attributes.tile_cache import TileCache
 from widgets.image_view.minimap import Minimap
-from widgets.image_view.oriented_image import OrientedImage
+from widgets.image_view.orientation.oriented_image import OrientedImage
+from widgets.image_view.orientation.viewport import Viewport
 from widgets.image_view.ruler import Ruler
-from widgets.image_view.viewport import Viewport
 from widgets.parts.opening_page import OpeningPage
 from widgets.shared.view_settings import PointStyle
 

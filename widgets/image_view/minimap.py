@@ -14,9 +14,9 @@ from typing_extensions import override
 from processing.image.attributes.tile_cache import TileCache
 from widgets.feature_drawing.feature_style import ACCENT
 from widgets.image_view.mosaic import Mosaic
-from widgets.image_view.oriented_image import OrientedImage, Span
+from widgets.image_view.orientation.oriented_image import OrientedImage, Span
+from widgets.image_view.orientation.viewport import Viewport
 from widgets.image_view.tile_images import TileImages
-from widgets.image_view.viewport import Viewport
 from widgets.shared.image_orientation import ImageOrientation
 from widgets.shared.view_settings import PointStyle
 

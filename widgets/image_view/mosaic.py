@@ -9,9 +9,9 @@ from PySide6.QtGui import QColor, QImage, QPainter, QTransform
 
 from processing.image.search.tile_choice import tiles_in_window
 from processing.image.tiles.tiles import TileKey
-from widgets.image_view.oriented_image import OrientedImage, Span
+from widgets.image_view.orientation.oriented_image import OrientedImage, Span
+from widgets.image_view.orientation.viewport import Viewport
 from widgets.image_view.tile_images import THINNINGS, TileImages
-from widgets.image_view.viewport import Viewport
 from widgets.shared.image_orientation import ImageOrientation
 
 _UNKNOWN = QColor("#14161a")

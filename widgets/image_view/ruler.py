@@ -11,8 +11,8 @@ from PySide6.QtWidgets import QWidget
 from typing_extensions import override
 
 from processing.recording.kinds import ImageKind
-from widgets.image_view.oriented_image import OrientedImage
-from widgets.image_view.viewport import Viewport
+from widgets.image_view.orientation.oriented_image import OrientedImage
+from widgets.image_view.orientation.viewport import Viewport
 
 _LABEL_EVERY_PX = 96.0
 _BACKGROUND = QColor("#1b1e23")

@@ -13,12 +13,12 @@ from processing.core.text import Language
 from processing.image.attributes.attributes import ATTRIBUTES, most_telling_attribute
 from processing.map.catalogue import Catalogue
 from widgets.feature_drawing.screen_marks import paint_cross, paint_note, paint_outline, paint_snap
-from widgets.image_view.feature_overlay import FeatureOverlay
+from widgets.image_view.features.feature_overlay import FeatureOverlay
 from widgets.image_view.mosaic import Mosaic
-from widgets.image_view.oriented_image import OrientedImage
+from widgets.image_view.orientation.oriented_image import OrientedImage
+from widgets.image_view.orientation.viewport import Viewport
 from widgets.image_view.shown_cursor import ShownCursor
 from widgets.image_view.tile_images import TileImages
-from widgets.image_view.viewport import Viewport
 from widgets.shared.shared_state import SharedState
 from widgets.shared.sketch import Drawing
 from widgets.shared.snap_state import SNAP_NAMES, SnapMark

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from processing.image.search.nearest import nearest_point
-from widgets.image_view.oriented_image import OrientedImage
+from widgets.image_view.orientation.oriented_image import OrientedImage
 from widgets.shared.cursor import PickedPosition
 
 PicturePoint = tuple[float, float]

@@ -12,11 +12,11 @@ from typing_extensions import override
 from processing.core.text import Language
 from processing.image.attributes.tile_cache import TileCache
 from processing.recording.drive import Drive
-from widgets.image_view.locked_scrolling import following, is_opposite
-from widgets.image_view.oriented_image import OrientedImage
+from widgets.image_view.orientation.locked_scrolling import following, is_opposite
+from widgets.image_view.orientation.oriented_image import OrientedImage
+from widgets.image_view.orientation.viewport import Viewport
 from widgets.image_view.panes import Pane, PaneHeader, SecondaryImage, ShownImage
 from widgets.image_view.view import ImageView
-from widgets.image_view.viewport import Viewport
 from widgets.mouse_tools.mouse_tool import MouseTool
 from widgets.shared.cursor import PickedPosition
 from widgets.shared.image_view_settings import ImageViewSettings

@@ -22,7 +22,7 @@ from processing.image.search.touched_tiles import TouchedTiles
 from processing.image.tiles.tiles import TileKey
 from processing.recording.kinds import ImageKind
 from widgets.feature_drawing.feature_style import ACCENT
-from widgets.image_view.oriented_image import OrientedImage
+from widgets.image_view.orientation.oriented_image import OrientedImage
 from widgets.shared.view_settings import PointStyle
 
 MOST_BYTES = 96 * 2**20

@@ -18,18 +18,18 @@ from typing_extensions import override
 from processing.core.errors import UserError
 from processing.core.text import Language
 from processing.image.attributes.tile_cache import TileCache
-from widgets.image_view.feature_overlay import FeatureOverlay
-from widgets.image_view.feature_positions import FeaturePositions
+from widgets.image_view.features.feature_overlay import FeatureOverlay
+from widgets.image_view.features.feature_positions import FeaturePositions
+from widgets.image_view.features.position_search import PositionSearch
 from widgets.image_view.hit_finder import HitFinder
 from widgets.image_view.margins import ImageMargins
-from widgets.image_view.navigation import beginning, viewport_on, zoom_by_wheel
-from widgets.image_view.oriented_image import OrientedImage
-from widgets.image_view.position_search import PositionSearch
+from widgets.image_view.orientation.navigation import beginning, viewport_on, zoom_by_wheel
+from widgets.image_view.orientation.oriented_image import OrientedImage
+from widgets.image_view.orientation.viewport import Viewport
 from widgets.image_view.scene_painter import Overlays, ScenePainter
 from widgets.image_view.shown_cursor import ShownCursor
 from widgets.image_view.tile_images import TileImages
 from widgets.image_view.view_menu import view_menu
-from widgets.image_view.viewport import Viewport
 from widgets.mouse_tools.gesture import Gesture
 from widgets.mouse_tools.menu_request import MenuRequest
 from widgets.mouse_tools.mouse_tool import MouseTool

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from processing.core.errors import UNCHANGED, BadFile, report_as_user_error
 from processing.core.text import Text
-from processing.formats.points.delivered_floats import ColumnBlock, FloatFile
-from processing.formats.points.las_header import damaged
+from processing.formats.points.delivered.delivered_floats import ColumnBlock, FloatFile
+from processing.formats.points.las.las_header import damaged
 
 if TYPE_CHECKING:
     from pye57 import E57, ScanHeader

@@ -22,10 +22,10 @@ from processing.core.safe_write import write_safely
 from processing.core.text import Text
 from processing.formats.format import Content
 from processing.formats.map_delivery import MapDelivery, Position
-from processing.formats.points.las import read_records
-from processing.formats.points.las_header import RECORD_SIZES, read_header
-from processing.formats.points.las_output import LasFrame, frame_of, new_frame
-from processing.formats.points.las_records import (
+from processing.formats.points.las.las import read_records
+from processing.formats.points.las.las_header import RECORD_SIZES, read_header
+from processing.formats.points.las.las_output import LasFrame, frame_of, new_frame
+from processing.formats.points.las.las_records import (
     COLORED,
     HIGHEST_OLD_CLASS,
     PROMOTED,

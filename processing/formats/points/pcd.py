@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 
 from processing.core.errors import UNCHANGED, BadFile, report_as_user_error
 from processing.core.text import Text
-from processing.formats.points.delivered_floats import ColumnBlock, FloatFile
-from processing.formats.points.field_names import block_of, has_position
-from processing.formats.points.las_header import damaged
-from processing.formats.points.text_numbers import TextPart, number_blocks
+from processing.formats.points.delivered.delivered_floats import ColumnBlock, FloatFile
+from processing.formats.points.delivered.field_names import block_of, has_position
+from processing.formats.points.las.las_header import damaged
+from processing.formats.points.text.text_numbers import TextPart, number_blocks
 
 _LONGEST_HEADER = 1 << 16
 _BLOCK_POINTS = 500_000

@@ -14,7 +14,7 @@ from processing.core.errors import BadFile, MissingInput, report_as_user_error
 from processing.core.text import Text
 from processing.formats.format import Content
 from processing.formats.points.point_files import read_chunks, read_info
-from processing.formats.points.text_numbers import TextPart, number_blocks
+from processing.formats.points.text.text_numbers import TextPart, number_blocks
 from processing.formats.registry import FORMATS
 from processing.recording.columns.array_files import read_arrays
 from processing.recording.columns.quantisation import Quantisation

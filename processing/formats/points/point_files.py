@@ -14,11 +14,11 @@ from numpy.typing import NDArray
 from processing.core.errors import UNCHANGED, BadFile, UserError, report_as_user_error
 from processing.core.text import Text
 from processing.formats.format import Content
-from processing.formats.points import las
-from processing.formats.points.delivered_floats import FloatFile, chunks_of, info_of
-from processing.formats.points.point_chunk import PointChunk, PointFileInfo
-from processing.formats.points.text_header import ColumnsNeeded, read_heading
-from processing.formats.points.text_points import open_text_points
+from processing.formats.points.delivered.delivered_floats import FloatFile, chunks_of, info_of
+from processing.formats.points.delivered.point_chunk import PointChunk, PointFileInfo
+from processing.formats.points.las import las
+from processing.formats.points.text.text_header import ColumnsNeeded, read_heading
+from processing.formats.points.text.text_points import open_text_points
 from processing.formats.registry import FORMATS
 
 __all__ = [

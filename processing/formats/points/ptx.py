@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from processing.core.errors import BadFile, report_as_user_error
 from processing.core.text import Text
-from processing.formats.points.delivered_floats import ColumnBlock, FloatFile
-from processing.formats.points.field_names import block_of
-from processing.formats.points.las_header import damaged
-from processing.formats.points.text_numbers import NumberLines
+from processing.formats.points.delivered.delivered_floats import ColumnBlock, FloatFile
+from processing.formats.points.delivered.field_names import block_of
+from processing.formats.points.las.las_header import damaged
+from processing.formats.points.text.text_numbers import NumberLines
 
 _POSITION_LINES, _POSE_LINES = 4, 4
 _NAMES = ("x", "y", "z", "intensity", "red", "green", "blue")

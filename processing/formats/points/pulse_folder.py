@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from processing.core.errors import UNCHANGED, BadFile, report_as_user_error
 from processing.core.text import Text
-from processing.formats.points.delivered_floats import ColumnBlock, FloatFile
+from processing.formats.points.delivered.delivered_floats import ColumnBlock, FloatFile
 
 _FOLDER = re.compile(r"(pulse|echo)-(float32|uint8)-(\w+)")
 _DTYPES = {"float32": "<f4", "uint8": "u1"}

@@ -135,7 +135,7 @@ class FileJob:
     number : int
         Of the file in the import.
     format : str
-        As :class:`processing.formats.points.point_chunk.PointFileInfo` names it.
+        As :class:`processing.formats.points.delivered.point_chunk.PointFileInfo` names it.
     count : int
         Points it is said to have.
     size, modified_ns : int

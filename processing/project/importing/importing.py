@@ -36,7 +36,7 @@ from processing.core.owned_files import (
     remove_folder,
 )
 from processing.core.text import Text
-from processing.formats.points.point_chunk import Vector3
+from processing.formats.points.delivered.point_chunk import Vector3
 from processing.formats.points.point_files import PointFileInfo
 from processing.formats.trajectories.image_list import read_image_list
 from processing.project.importing.build_steps import BuildSteps

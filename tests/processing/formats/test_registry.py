@@ -11,7 +11,7 @@ from processing.core.errors import MissingInput, OutOfRange
 from processing.core.monitor import SilentMonitor
 from processing.formats.format import DELIVERED, MAP, Content, Format, function_of
 from processing.formats.format_list import FormatList
-from processing.formats.points.delivered_floats import chunks_of
+from processing.formats.points.delivered.delivered_floats import chunks_of
 from processing.formats.registry import FORMATS
 from processing.formats.vectors.feature_files import write_feature_file
 from processing.map.catalogue import Catalogue, Geometry

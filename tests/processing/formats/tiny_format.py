@@ -14,7 +14,7 @@ from processing.core.safe_write import write_safely
 from processing.core.text import Text
 from processing.formats.format import Content, Format
 from processing.formats.map_delivery import MapDelivery
-from processing.formats.points.delivered_floats import ColumnBlock, FloatFile
+from processing.formats.points.delivered.delivered_floats import ColumnBlock, FloatFile
 
 _HERE = "tests.processing.formats.tiny_format"
 

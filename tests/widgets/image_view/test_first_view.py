@@ -7,9 +7,9 @@ from processing.core.monitor import SilentMonitor
 from processing.project.importing.importing import ImportRequest, import_drives
 from processing.recording.drive import Drive
 from processing.recording.kinds import ImageKind
-from widgets.image_view.navigation import viewport_on
-from widgets.image_view.oriented_image import OrientedImage
-from widgets.image_view.viewport import Viewport
+from widgets.image_view.orientation.navigation import viewport_on
+from widgets.image_view.orientation.oriented_image import OrientedImage
+from widgets.image_view.orientation.viewport import Viewport
 
 
 @pytest.fixture

@@ -17,9 +17,9 @@ from processing.recording.kinds import ImageKind
 from tests.widgets.builders import path_tool, position_on
 from tests.widgets.image_view.conftest import ImageViewUser
 from widgets.image_view.minimap import Minimap
-from widgets.image_view.oriented_image import Span
+from widgets.image_view.orientation.oriented_image import Span
+from widgets.image_view.orientation.viewport import Viewport
 from widgets.image_view.ruler import Ruler
-from widgets.image_view.viewport import Viewport
 from widgets.mouse_tools.editing.select import Select
 from widgets.shared.image_orientation import ImageOrientation
 

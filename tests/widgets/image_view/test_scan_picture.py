@@ -8,8 +8,8 @@ from processing.project.importing.importing import ImportRequest, import_drives
 from processing.recording.drive import Drive
 from processing.recording.kinds import ImageKind
 from tests.structured_scans import SphereScan, ptx_text, sphere_scan
-from widgets.image_view.locked_scrolling import position_along
-from widgets.image_view.oriented_image import OrientedImage
+from widgets.image_view.orientation.locked_scrolling import position_along
+from widgets.image_view.orientation.oriented_image import OrientedImage
 from widgets.shared.image_orientation import ImageOrientation
 
 

@@ -24,12 +24,12 @@ from processing.recording.drive import Drive
 from processing.recording.kinds import ImageKind
 from tests.mouse_events import move_mouse, turn_wheel
 from tests.widgets.builders import OpenMap, path_tool, position_on
-from widgets.image_view.locked_scrolling import following, position_along
-from widgets.image_view.oriented_image import OrientedImage
+from widgets.image_view.orientation.locked_scrolling import following, position_along
+from widgets.image_view.orientation.oriented_image import OrientedImage
+from widgets.image_view.orientation.viewport import Viewport
 from widgets.image_view.panes import ShownImage
 from widgets.image_view.side_by_side import MOST, ImageViews
 from widgets.image_view.view import ImageView
-from widgets.image_view.viewport import Viewport
 from widgets.shared.image_orientation import ImageOrientation
 
 LEFT = Qt.MouseButton.LeftButton

@@ -12,7 +12,7 @@ from processing.image.attributes.tile_cache import TileCache, TilePixels, TileRe
 from processing.image.tiles.tiles import TileKey
 from processing.recording.drive import Drive
 from processing.recording.kinds import ImageKind
-from widgets.image_view.oriented_image import OrientedImage
+from widgets.image_view.orientation.oriented_image import OrientedImage
 from widgets.image_view.tile_images import TileImages
 from widgets.shared.view_settings import PointStyle
 

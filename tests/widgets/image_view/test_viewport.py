@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from widgets.image_view.oriented_image import Span
-from widgets.image_view.viewport import Viewport
+from widgets.image_view.orientation.oriented_image import Span
+from widgets.image_view.orientation.viewport import Viewport
 
 STREET = Viewport(1600, 900, (1300.0, 1000.0), stretch=6.0, zoom=0.9, centre=(300, 500), top=20)
 

@@ -9,8 +9,8 @@ import laspy
 import numpy as np
 import pytest
 
-from processing.formats.points.las import read_chunks, read_info
-from processing.formats.points.las_header import read_header
+from processing.formats.points.las.las import read_chunks, read_info
+from processing.formats.points.las.las_header import read_header
 from processing.formats.points.point_files import read_sample
 from tests.delivered_files import make_las
 

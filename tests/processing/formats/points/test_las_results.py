@@ -11,7 +11,7 @@ import pytest
 from processing.core.errors import Cancelled, InUse, OutOfRange
 from processing.core.monitor import SilentMonitor
 from processing.core.text import Text
-from processing.formats.points.las import read_info
+from processing.formats.points.las.las import read_info
 from processing.formats.points.las_results import write_results
 from tests.delivered_files import make_las, ply_bytes
 from tests.monitors import CancelledAfter

@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from processing.core.errors import BadFile
-from processing.formats.points.point_chunk import PointChunk, PointFileInfo
+from processing.formats.points.delivered.point_chunk import PointChunk, PointFileInfo
 from processing.formats.points.point_files import read_chunks, read_info, read_sample
 from tests.delivered_files import make_las, ply_bytes
 

@@ -10,9 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from processing.core.errors import BadFile, OutOfRange
-from processing.formats.points.column_words import PASSED_OVER, POSITION
 from processing.formats.points.point_files import columns_needed, read_chunks, read_info
-from processing.formats.points.text_header import ColumnsNeeded, read_heading
+from processing.formats.points.text.column_words import PASSED_OVER, POSITION
+from processing.formats.points.text.text_header import ColumnsNeeded, read_heading
 
 XYZ, XYZI = ("x", "y", "z"), ("x", "y", "z", "intensity")
 COLOURED = ("x", "y", "z", "red", "green", "blue")

@@ -16,7 +16,7 @@ from processing.core import owned_files
 from processing.core.disk_room import refuse_small_disk
 from processing.core.errors import BadFile, Cancelled, Interrupted, NoSpace
 from processing.core.monitor import SilentMonitor
-from processing.formats.points.las_header import read_header
+from processing.formats.points.las.las_header import read_header
 from processing.project.importing import import_journal, import_processes
 from processing.project.importing.importing import ImportRequest, import_drives
 from processing.project.importing.unfinished_imports import (

@@ -6,8 +6,8 @@ import numpy as np
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QWheelEvent
 
-from widgets.image_view.oriented_image import OrientedImage
-from widgets.image_view.viewport import Viewport
+from widgets.image_view.orientation.oriented_image import OrientedImage
+from widgets.image_view.orientation.viewport import Viewport
 from widgets.plane_view.navigation import ZOOM_PER_NOTCH, notches_of
 
 _ALONG_PER_NOTCH = 0.12  # of the window's size along the street

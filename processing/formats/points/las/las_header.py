@@ -15,7 +15,7 @@ import numpy as np
 
 from processing.core.errors import UNCHANGED, BadFile, report_as_user_error
 from processing.core.text import Text
-from processing.formats.points.point_chunk import Vector3
+from processing.formats.points.delivered.point_chunk import Vector3
 
 HEADER_SIZES = {0: 227, 1: 227, 2: 227, 3: 235, 4: 375}
 """Bytes of the header by minor version, without what a writer may put behind it."""

@@ -9,7 +9,7 @@ from PySide6.QtCore import QRectF
 from PySide6.QtGui import QTransform
 
 from processing.core.arrays import Floats
-from widgets.image_view.oriented_image import Span
+from widgets.image_view.orientation.oriented_image import Span
 from widgets.shared.image_orientation import ImageOrientation
 
 _MOST_ZOOM = 64.0

@@ -12,15 +12,15 @@ from processing.map.feature import Position, Vertex
 from widgets.feature_drawing.crowded_marks import FEW
 from widgets.feature_drawing.feature_style import sketch_style, style_of
 from widgets.feature_drawing.screen_marks import preview_pens
-from widgets.image_view.feature_positions import FeaturePositions
-from widgets.image_view.marks import MarkPainter
-from widgets.image_view.oriented_image import OrientedImage, Span
-from widgets.image_view.picture_feature import (
+from widgets.image_view.features.feature_positions import FeaturePositions
+from widgets.image_view.features.marks import MarkPainter
+from widgets.image_view.features.picture_feature import (
     PictureFeature,
     path_of_segments,
     segments_between,
 )
-from widgets.image_view.viewport import Viewport
+from widgets.image_view.orientation.oriented_image import OrientedImage, Span
+from widgets.image_view.orientation.viewport import Viewport
 from widgets.shared.sketch import Drawing
 from widgets.shared.view_settings import ViewSettings
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
-from processing.formats.points.column_words import PASSED_OVER
-from processing.formats.points.delivered_floats import ColumnBlock, FloatFile
-from processing.formats.points.field_names import block_of
-from processing.formats.points.text_header import Heading, read_heading
-from processing.formats.points.text_numbers import TextPart, number_blocks
+from processing.formats.points.delivered.delivered_floats import ColumnBlock, FloatFile
+from processing.formats.points.delivered.field_names import block_of
+from processing.formats.points.text.column_words import PASSED_OVER
+from processing.formats.points.text.text_header import Heading, read_heading
+from processing.formats.points.text.text_numbers import TextPart, number_blocks
 
 
 def open_text_points(path: Path, columns: tuple[str, ...] = ()) -> FloatFile:

@@ -12,7 +12,7 @@ from PySide6.QtGui import QPainterPath, QPolygonF
 from processing.core.arrays import Floats
 from processing.map.catalogue import Geometry
 from processing.map.feature import Feature
-from widgets.image_view.oriented_image import OrientedImage
+from widgets.image_view.orientation.oriented_image import OrientedImage
 
 
 @dataclass(frozen=True, eq=False)

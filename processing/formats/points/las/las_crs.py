@@ -5,7 +5,7 @@ from __future__ import annotations
 import struct
 from functools import lru_cache
 
-from processing.formats.points.las_header import LasHeader
+from processing.formats.points.las.las_header import LasHeader
 
 _USER = "LASF_Projection"
 _WKT, _KEYS, _WORDS = 2112, 34735, 34737

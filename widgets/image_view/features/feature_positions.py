@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 from processing.core.arrays import Floats
 from processing.image.search.nearest import NearestSearch, nearest_point, nearest_points
 from processing.map.feature import Feature, Vertex
-from widgets.image_view.oriented_image import OrientedImage, Span
-from widgets.image_view.picture_feature import PictureFeature, join_vertices
-from widgets.image_view.waiting_features import WaitingFeatures
+from widgets.image_view.features.picture_feature import PictureFeature, join_vertices
+from widgets.image_view.features.waiting_features import WaitingFeatures
+from widgets.image_view.orientation.oriented_image import OrientedImage, Span
 from widgets.shared.map_source import MapSource
 
 NEAR_M = 0.3

@@ -10,8 +10,8 @@ from processing.core.arrays import Floats
 from processing.image.search.nearest import nearest_point
 from processing.recording.drive import Drive
 from processing.recording.kinds import ImageKind
-from widgets.image_view.oriented_image import OrientedImage
-from widgets.image_view.viewport import Viewport
+from widgets.image_view.orientation.oriented_image import OrientedImage
+from widgets.image_view.orientation.viewport import Viewport
 
 FARTHEST_M = 50.0
 """Ways of two drives that are farther apart don't show the same street."""

@@ -19,8 +19,8 @@ from numpy.typing import NDArray
 
 from processing.core.errors import UNCHANGED, BadFile
 from processing.core.text import Text
-from processing.formats.points.decoder_panics import is_panic, panics_unprinted
-from processing.formats.points.las_header import LasHeader, damaged
+from processing.formats.points.las.decoder_panics import is_panic, panics_unprinted
+from processing.formats.points.las.las_header import LasHeader, damaged
 
 _VLR_USER, _VLR_ID = "laszip encoded", 22204
 _VLR_HEAD = struct.Struct("<HHBBHIIqqH")

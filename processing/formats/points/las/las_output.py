@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.core.errors import report_as_user_error
-from processing.formats.points.las_crs import crs_of
-from processing.formats.points.las_header import HEADER_SIZES, LasHeader
-from processing.formats.points.las_records import PROMOTED
-from processing.formats.points.point_chunk import PointFileInfo
+from processing.formats.points.delivered.point_chunk import PointFileInfo
+from processing.formats.points.las.las_crs import crs_of
+from processing.formats.points.las.las_header import HEADER_SIZES, LasHeader
+from processing.formats.points.las.las_records import PROMOTED
 from processing.recording.columns.quantisation import Quantisation
 
 _VLR_HEAD, _EVLR_HEAD = 54, 60

@@ -10,7 +10,7 @@ from pathlib import Path
 from processing.core.errors import UNCHANGED, BadFile, OutOfRange, report_as_user_error
 from processing.core.japanese_text import decode_text
 from processing.core.text import Text
-from processing.formats.points.column_words import (
+from processing.formats.points.text.column_words import (
     PASSED_OVER,
     POSITION,
     Certainty,
@@ -19,7 +19,7 @@ from processing.formats.points.column_words import (
     read_header,
     taken_columns,
 )
-from processing.formats.points.text_numbers import words_in
+from processing.formats.points.text.text_numbers import words_in
 
 _LOOKED_AT = 1 << 16
 _UTF8_MARK = b"\xef\xbb\xbf"

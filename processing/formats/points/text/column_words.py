@@ -12,7 +12,7 @@ import unicodedata
 from dataclasses import dataclass
 from enum import Enum
 
-from processing.formats.points.field_names import FIELD_NAMES, plain_name
+from processing.formats.points.delivered.field_names import FIELD_NAMES, plain_name
 
 POSITION = ("x", "y", "z")
 PASSED_OVER = "-"
@@ -73,8 +73,9 @@ class HeaderReading:
     Attributes
     ----------
     columns : tuple of str
-        The field of each column, as :data:`processing.formats.points.field_names.FIELD_NAMES` calls
-        it; ``-`` for one that is passed over. Empty where it is not certain.
+        The field of each column, as
+        :data:`processing.formats.points.delivered.field_names.FIELD_NAMES` calls it; ``-`` for one
+        that is passed over. Empty where it is not certain.
     """
 
     certainty: Certainty

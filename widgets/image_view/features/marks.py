@@ -9,7 +9,7 @@ from PySide6.QtGui import QBrush, QColor, QPainter, QPainterPath, QPen
 from processing.core.arrays import Floats
 from widgets.feature_drawing.feature_marks import FeatureMarks
 from widgets.feature_drawing.feature_style import FeatureStyle
-from widgets.image_view.viewport import Viewport
+from widgets.image_view.orientation.viewport import Viewport
 
 _FILL_ALPHA = 34
 

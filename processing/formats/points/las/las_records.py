@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from processing.core.errors import OutOfRange
 from processing.core.text import Text
-from processing.formats.points.las_header import RECORD_SIZES
-from processing.formats.points.point_chunk import PointChunk
+from processing.formats.points.delivered.point_chunk import PointChunk
+from processing.formats.points.las.las_header import RECORD_SIZES
 
 PROMOTED = {0: 6, 1: 6, 2: 7, 3: 7, 4: 9, 5: 10}
 """The format of LAS 1.4 that takes all that an older one holds, and 8 bits of class."""

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.formats.points.delivered_floats import ColumnBlock
+from processing.formats.points.delivered.delivered_floats import ColumnBlock
 
 _POSITION = (
     ("x", "easting", "eastingm", "east"),
@@ -58,9 +58,9 @@ def block_of(
     Returns
     -------
     Block
-        As :class:`processing.formats.points.delivered_floats.FloatFile` says. ``theta`` (rad) is
-        the scan angle where no other is. Colours of 8 bits become 16 bits, those of 0 to 1 too. A
-        column of a scan's grid is a sweep.
+        As :class:`processing.formats.points.delivered.delivered_floats.FloatFile` says.
+        ``theta`` (rad) is the scan angle where no other is. Colours of 8 bits become 16 bits,
+        those of 0 to 1 too. A column of a scan's grid is a sweep.
     """
     named = {plain_name(name): values for name, values in fields.items()}
     shift = np.array(offset)

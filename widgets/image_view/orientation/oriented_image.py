@@ -16,7 +16,7 @@ from processing.image.images_of_drives import image_of
 from processing.image.point_image import PointCloudImage
 from processing.recording.drive import Drive
 from processing.recording.kinds import ImageKind
-from widgets.image_view.drive_orientation import DriveOrientation, orientation_of
+from widgets.image_view.orientation.drive_orientation import DriveOrientation, orientation_of
 from widgets.shared.image_orientation import ImageOrientation
 from widgets.shared.map_source import MapSource
 from widgets.shared.view_settings import ViewSettings

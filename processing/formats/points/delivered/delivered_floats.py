@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from processing.core.errors import UNCHANGED, BadFile, report_as_user_error
 from processing.core.text import Text
-from processing.formats.points.point_chunk import PointChunk, PointFileInfo, Vector3
+from processing.formats.points.delivered.point_chunk import PointChunk, PointFileInfo, Vector3
 from processing.recording.columns.quantisation import Quantisation
 
 # Any numeric type as the file has it; what must come is said in FloatFile.

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from PySide6.QtCore import QObject, QTimer, Signal
 
-from widgets.image_view.feature_positions import FeaturePositions
+from widgets.image_view.features.feature_positions import FeaturePositions
 
 _SEARCH_S = 0.008
 _SEARCH_EVERY_MS = 10

@@ -13,12 +13,12 @@ from numpy.typing import NDArray
 
 from processing.core.errors import report_as_user_error
 from processing.core.text import Text
-from processing.formats.points.field_names import GRID_NAMES, plain_name, whole_numbers
-from processing.formats.points.las_crs import crs_of
-from processing.formats.points.las_header import RECORD_SIZES, LasHeader, damaged, read_header
-from processing.formats.points.las_records import ExtraDimension, extra_dimensions
-from processing.formats.points.laz_chunks import read_chunk_table
-from processing.formats.points.point_chunk import PointChunk, PointFileInfo
+from processing.formats.points.delivered.field_names import GRID_NAMES, plain_name, whole_numbers
+from processing.formats.points.delivered.point_chunk import PointChunk, PointFileInfo
+from processing.formats.points.las.las_crs import crs_of
+from processing.formats.points.las.las_header import RECORD_SIZES, LasHeader, damaged, read_header
+from processing.formats.points.las.las_records import ExtraDimension, extra_dimensions
+from processing.formats.points.las.laz_chunks import read_chunk_table
 
 __all__ = ["PointChunk", "PointFileInfo", "read_chunks", "read_info", "read_records"]
 

@@ -1,0 +1,1 @@
+"""What every reader of points gives: chunks, names of fields, delivered floats."""

@@ -1,0 +1,1 @@
+"""Points as text: which column is which, numbers, lines."""

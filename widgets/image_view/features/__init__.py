@@ -1,0 +1,1 @@
+"""The map's features on the image."""

@@ -1,0 +1,1 @@
+"""How the image lies on the screen: orientation, what part of it, how it scrolls."""
