@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Mapping
+from functools import partial
 
 from app.cli.output import print_json, print_lines
 from app.settings.language import system_language
@@ -40,8 +41,8 @@ CASES: Mapping[str, BenchmarkCase] = {
     "searchable": measure_searchable,
     "image": measure_image,
     "switch": measure_switch,
-    "start": measure_start,
-    "review": measure_review,
+    "start": partial(measure_start, window="app.large_steps.start_bench"),
+    "review": partial(measure_review, window="app.large_steps.review_bench"),
     "labels": measure_labels,
     "normals": measure_normals,
     "noise": measure_noise,
@@ -53,9 +54,13 @@ CASES: Mapping[str, BenchmarkCase] = {
     "volume-view": measure_volume_view,
     "memory": measure_import_memory,
     "growth": measure_growth,
-    "large": measure_large,
+    "large": partial(measure_large, window="app.large_steps.large_bench"),
 }
-"""Benchmarks by name, quick ones first."""
+"""Benchmarks by name, quick ones first.
+
+Those of the window are told by its name which module shows one, in a process of its own: Qt is
+loaded neither here nor in `processing`.
+"""
 
 _LEAST_POINTS = 10_000
 

@@ -1,1 +1,1 @@
-"""Steps of the benchmark of a large project; each gives the seconds of what it timed, by name."""
+"""Windows that benchmarks time, each in a process of its own; steps on a large project."""

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from app.cli.bench import CASES
 from processing.laboratory.bench.case import BenchmarkOptions
-from processing.laboratory.bench.cases.large_case import measure_large
 
 
 def test_every_step_is_done_and_told_on_little_data() -> None:
-    rows = {row.name: row for row in measure_large(BenchmarkOptions(points=300_000, share=0.02))}
+    rows = {row.name: row for row in CASES["large"](BenchmarkOptions(points=300_000, share=0.02))}
     assert len(rows) == 18
     for name, row in rows.items():
         if "memory" not in name:

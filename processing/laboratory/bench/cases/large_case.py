@@ -24,8 +24,15 @@ _REHEARSED = 100_000
 _DISPLAY = "display"
 
 
-def measure_large(options: BenchmarkOptions) -> tuple[Measurement, ...]:
+def measure_large(options: BenchmarkOptions, *, window: str) -> tuple[Measurement, ...]:
     """A project of 300 M points from the delivered files to the drawing that is handed in.
+
+    Parameters
+    ----------
+    options : BenchmarkOptions
+    window : str
+        The module that uses a window: run by ``python -m`` with the project, a folder for what
+        is exported and the share of the work, it prints a line of JSON for each step.
 
     Raises
     ------
@@ -47,9 +54,7 @@ def measure_large(options: BenchmarkOptions) -> tuple[Measurement, ...]:
                 rehearsal = write_long_delivery(folder, _REHEARSED, scanners=("left",))
                 import_watched(rehearsal, folder / "rehearsal.zuka")
             rows = measure_large_import(delivery, project, points)
-        run = run_watched(
-            "app.large_steps.large_bench", [str(project), str(out), str(options.share)]
-        )
+        run = run_watched(window, [str(project), str(out), str(options.share)])
         if run.status != 0:
             if _DISPLAY in run.complaints:
                 raise no_window(run.complaints)

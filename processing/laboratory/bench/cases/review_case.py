@@ -12,18 +12,28 @@ from processing.laboratory.bench.case import BenchmarkOptions, Measurement
 from processing.laboratory.bench.cases.start_case import no_window
 
 _COUNT = 50
+_LEAST_COUNT = 2
+"""After the last decision no candidate is left whose pictures become sharp."""
 
 
-def measure_review(options: BenchmarkOptions) -> tuple[Measurement, ...]:  # noqa: ARG001 - it takes no points
+def measure_review(options: BenchmarkOptions, *, window: str) -> tuple[Measurement, ...]:
     """Milliseconds until five views have the next of 50 candidates in their middle, painted.
+
+    Parameters
+    ----------
+    options : BenchmarkOptions
+    window : str
+        The module that reviews in a window: run by ``python -m`` with the number of candidates,
+        it prints the milliseconds ``centred`` and ``sharp`` of each decision as JSON.
 
     Raises
     ------
     MissingInput
         The window can't be shown, mostly for want of a display.
     """
+    count = max(_LEAST_COUNT, options.repeats(_COUNT))
     done = subprocess.run(  # noqa: S603 - our own program
-        [sys.executable, "-m", "app.large_steps.review_bench", str(_COUNT)],
+        [sys.executable, "-m", window, str(count)],
         check=False,
         capture_output=True,
         text=True,

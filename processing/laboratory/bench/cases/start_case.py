@@ -12,28 +12,16 @@ from processing.laboratory.bench.case import BenchmarkOptions, Measurement
 
 _REPEATS = 5
 
-# Runs in a process of its own; prints when the window has been painted and the loop is idle.
-_PROGRAM = """
-import sys, time, tempfile, pathlib
-from app.cli.terminal import run_in_terminal
-run_in_terminal([])
-from PySide6.QtCore import QTimer
-from app.application import build_window, make_application
-from app.settings.settings import Settings
-application = make_application()
-with tempfile.TemporaryDirectory() as folder:
-    parts = build_window(Settings(pathlib.Path(folder) / "settings.ini"), pathlib.Path(folder))
-    parts.window.show()
-    application.processEvents()
-    QTimer.singleShot(0, application.quit)
-    application.exec()
-    sys.stdout.write(f"{time.time()}\\n")
-    parts.window.close()
-"""
 
-
-def measure_start(options: BenchmarkOptions) -> tuple[Measurement, ...]:  # noqa: ARG001 - it takes no points
+def measure_start(options: BenchmarkOptions, *, window: str) -> tuple[Measurement, ...]:
     """Seconds from starting the process to a painted window that takes events.
+
+    Parameters
+    ----------
+    options : BenchmarkOptions
+    window : str
+        The module that shows the window: run by ``python -m``, it prints when the window was
+        usable, in seconds since 1970.
 
     Raises
     ------
@@ -41,10 +29,11 @@ def measure_start(options: BenchmarkOptions) -> tuple[Measurement, ...]:  # noqa
         The window can't be shown, mostly for want of a display.
     """
     times = []
-    for _ in range(_REPEATS + 1):
+    repeats = options.repeats(_REPEATS)
+    for _ in range(repeats + 1):
         start = time.time()
         done = subprocess.run(  # noqa: S603 - our own program
-            [sys.executable, "-c", _PROGRAM],
+            [sys.executable, "-m", window],
             check=False,
             capture_output=True,
             text=True,
@@ -57,7 +46,7 @@ def measure_start(options: BenchmarkOptions) -> tuple[Measurement, ...]:  # noqa
     row = Measurement(
         "start",
         Text("Window usable after start", "起動から操作可能になるまで"),
-        warm[_REPEATS // 2],
+        warm[repeats // 2],
         "s",
         2.0,
         is_at_most=True,
