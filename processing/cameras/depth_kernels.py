@@ -27,7 +27,21 @@ _LEAST_SINE = 0.3
 """Of the angle between row and column from which both span a plane: 17°."""
 
 _LIMIT = 3
-"""Place of the farthest distance of neighbours in what `_size_between` is given."""
+"""Index of the farthest distance of neighbours in what `_size_between` is given."""
+
+
+class PictureCell(NamedTuple):
+    """A cell of a picture or a raster of points."""
+
+    row: int
+    column: int
+
+
+class CellStep(NamedTuple):
+    """How many rows and columns from one cell to the next."""
+
+    rows: int
+    columns: int
 
 
 class HidingTolerance(NamedTuple):
@@ -49,8 +63,8 @@ class Discs(NamedTuple):
 def _size_between(
     xyz: NDArray[np.float64],
     is_filled: NDArray[np.bool_],
-    here: tuple[int, int],
-    step: tuple[int, int],
+    here: PictureCell,
+    step: CellStep,
     offset: NDArray[np.float64],
 ) -> float:
     """Distance to the nearer of two opposite neighbours; less where they form no surface.
@@ -63,7 +77,7 @@ def _size_between(
     nearest, product, found = np.inf, 0.0, 0
     length = 0.0
     for side in (1, -1):
-        i, j = r + side * step[0], c + side * step[1]
+        i, j = r + side * step.rows, c + side * step.columns
         if i < 0 or j < 0 or i >= height or j >= width or not is_filled[i, j]:
             continue
         x = xyz[i, j, 0] - xyz[r, c, 0]
@@ -104,8 +118,9 @@ def sizes_kernel(
         for c in range(width):
             if not is_filled[r, c]:
                 continue
-            along = _size_between(xyz, is_filled, (r, c), (0, 1), a)
-            across = _size_between(xyz, is_filled, (r, c), (1, 0), b)
+            here = PictureCell(r, c)
+            along = _size_between(xyz, is_filled, here, CellStep(0, 1), a)
+            across = _size_between(xyz, is_filled, here, CellStep(1, 0), b)
             sizes[r, c] = max(along, across, ALONE_M)
             if along == 0.0 or across == 0.0:
                 continue
@@ -172,7 +187,7 @@ def front_kernel(
 
 
 @kernel
-def _slope(front: NDArray[np.float32], cell: tuple[int, int], step: tuple[int, int]) -> float:
+def _slope(front: NDArray[np.float32], cell: PictureCell, step: CellStep) -> float:
     """How much the inverse range of a surface changes from a cell to the next in a direction.
 
     A surface goes on to both sides, nearer on one and farther on the other; of both changes the
@@ -184,8 +199,8 @@ def _slope(front: NDArray[np.float32], cell: tuple[int, int], step: tuple[int, i
     largest = 0.0
     # Over two cells as well: a sparse surface has the same point in neighbouring ones.
     for far in (1, 2):
-        i, j = r - far * step[0], c - far * step[1]
-        k, m = r + far * step[0], c + far * step[1]
+        i, j = r - far * step.rows, c - far * step.columns
+        k, m = r + far * step.rows, c + far * step.columns
         if i < 0 or j < 0 or k >= height or m >= width:
             continue
         before, after = here - 1.0 / front[i, j], 1.0 / front[k, m] - here
@@ -206,14 +221,16 @@ def hidden_kernel(
 
     ``cells``: (n, 2) column and row, −1: outside.
     The inverse range of a plane is linear in the image, so the far end of a tilted surface
-    within its cell is foretold from the cells beside it.
+    within its cell is extrapolated from the cells beside it.
     """
     for k in range(cells.shape[0]):
         c, r = cells[k, 0], cells[k, 1]
         hidden[k] = False
         if c < 0 or r < 0 or front[r, c] == np.inf:
             continue
-        far = 1.0 / front[r, c] - _slope(front, (r, c), (0, 1)) - _slope(front, (r, c), (1, 0))
+        cell = PictureCell(r, c)
+        across, down = _slope(front, cell, CellStep(0, 1)), _slope(front, cell, CellStep(1, 0))
+        far = 1.0 / front[r, c] - across - down
         if far > 0.0:
             hidden[k] = ranges[k] > 1.0 / far + tolerance.distance_m + tolerance.share * ranges[k]
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats, Integers
 from processing.core.errors import Unsuitable
 from processing.core.kernels import kernel
 from processing.core.text import Text
@@ -17,16 +19,20 @@ from processing.recording.drive import Drive
 from processing.section.cut import Cut
 from processing.section.points_in_cut import points_in_cut
 
-_Floats = NDArray[np.float64]
-_Integers = NDArray[np.int64]
-
 SEGMENT = "segment"
 _POINTS_AT_ONCE = 4_000_000
 _FIRST_ROOM = 1 << 14
 
 
-def points_under_brush(drive: Drive, start: _Floats, end: _Floats, radius_m: float) -> _Integers:
-    """All measured points as near as a radius to the straight way of a brush.
+class Stroke(NamedTuple):
+    """Both ends of a brush's straight path, (2, 3) in the integers' own units; its radius, m."""
+
+    ends: Floats
+    radius_m: float
+
+
+def points_under_brush(drive: Drive, start: Floats, end: Floats, radius_m: float) -> Integers:
+    """All measured points as near as a radius to the straight path of a brush.
 
     Parameters
     ----------
@@ -42,7 +48,7 @@ def points_under_brush(drive: Drive, start: _Floats, end: _Floats, radius_m: flo
 
     Notes
     -----
-    1. The tiles whose bounds come near the way are looked up in the image's pyramid.
+    1. The tiles whose bounds come near the path are looked up in the image's pyramid.
     2. The rows of those tiles are runs of points; each point in them is measured.
     """
     if drive.count == 0:
@@ -51,24 +57,25 @@ def points_under_brush(drive: Drive, start: _Floats, end: _Floats, radius_m: flo
     stretches = _stretches_near(image, np.stack([start, end]), radius_m)
     quantisation, part = drive.coordinates.quantisation, drive.coordinates.stretched(stretches)
     scale = np.array(quantisation.scale)
-    # The way in the integers' own units, so that no coordinate is computed for a point far off.
-    way = quantisation.in_units(np.stack([start, end]))
+    # In the integers' own units, so that no coordinate is computed for a point far off.
+    ends = quantisation.in_units(np.stack([start, end]))
+    stroke = Stroke(ends, radius_m)
     room = np.empty(_FIRST_ROOM, np.int64)
-    count = _near_stroke_kernel(part.integers, scale, part.stretches, (way, radius_m), room)
+    count = _near_stroke_kernel(part.integers, scale, part.stretches, stroke, room)
     if count > room.size:
         room = np.empty(count, np.int64)
-        _near_stroke_kernel(part.integers, scale, part.stretches, (way, radius_m), room)
+        _near_stroke_kernel(part.integers, scale, part.stretches, stroke, room)
     return part.points(room[:count])
 
 
-def points_in_slab(drive: Drive, cut: Cut, way: _Floats, radius_m: float) -> _Integers:
-    """All measured points of a section's slab as near in its picture to the way of a brush.
+def points_in_slab(drive: Drive, cut: Cut, ends: Floats, radius_m: float) -> Integers:
+    """All measured points of a section's slab as near in its picture to the path of a brush.
 
     Parameters
     ----------
     cut : Cut
         Points outside its slab are not painted, however near they are.
-    way : (2, 2) float64
+    ends : (2, 2) float64
         Offset and height of both ends, m; the same for a click.
     radius_m : float
 
@@ -77,25 +84,25 @@ def points_in_slab(drive: Drive, cut: Cut, way: _Floats, radius_m: float) -> _In
     (n,) int64
         Rising.
     """
-    offsets = way[:, 0]
+    offsets = ends[:, 0]
     east, north, _ = cut.to_space([[offsets.mean(), 0.0, 0.0]])[0].tolist()
     half_m = float(np.ptp(offsets)) / 2 + radius_m
     around = replace(cut, middle=(east, north, cut.middle[2]), half_length_m=half_m)
     points = points_in_cut(drive, around, drive.count)
     positions = cut.to_section(drive.xyz(points))[:, :2]
-    along = way[1] - way[0]
+    along = ends[1] - ends[0]
     length = float(along @ along)
     share = (
-        np.clip((positions - way[0]) @ along / length, 0.0, 1.0)
+        np.clip((positions - ends[0]) @ along / length, 0.0, 1.0)
         if length
         else np.zeros(len(positions))
     )
-    away = positions - way[0] - share[:, None] * along
+    away = positions - ends[0] - share[:, None] * along
     is_near = (away**2).sum(axis=1) <= radius_m**2
     return np.asarray(points[is_near])
 
 
-def segments_of(drive: Drive, points: _Integers) -> NDArray[np.int32]:
+def segments_of(drive: Drive, points: Integers) -> NDArray[np.int32]:
     """Numbers of the connected segments that points belong to; negative ones are none.
 
     Raises
@@ -115,7 +122,7 @@ def segments_of(drive: Drive, points: _Integers) -> NDArray[np.int32]:
     return np.asarray(drive.columns[SEGMENT][points])
 
 
-def points_of_segment(drive: Drive, segment: int) -> _Integers:
+def points_of_segment(drive: Drive, segment: int) -> Integers:
     """All points of a connected segment, rising: (n,) int64.
 
     Raises
@@ -138,10 +145,10 @@ def _ready_image(drive: Drive) -> PointCloudImage:
     return next((image for image in images if image.pyramid.is_ready), images[0])
 
 
-def _stretches_near(image: PointCloudImage, way: _Floats, radius_m: float) -> _Integers:
-    """(k, 2) first and last + 1 points of the rows of tiles that come near a way."""
+def _stretches_near(image: PointCloudImage, ends: Floats, radius_m: float) -> Integers:
+    """(k, 2) first and last + 1 points of the rows of tiles that come near a brush's path."""
     pyramid = image.pyramid
-    low, high = way.min(axis=0) - radius_m, way.max(axis=0) + radius_m
+    low, high = ends.min(axis=0) - radius_m, ends.max(axis=0) + radius_m
     waiting, rows = [pyramid.top], set()
     while waiting:
         key = waiting.pop()
@@ -161,14 +168,13 @@ def _stretches_near(image: PointCloudImage, way: _Floats, radius_m: float) -> _I
 @kernel
 def _near_stroke_kernel(
     integers: NDArray[np.int32],
-    scale: _Floats,
-    stretches: _Integers,
-    near: tuple[_Floats, float],
-    found: _Integers,
+    scale: Floats,
+    stretches: Integers,
+    stroke: Stroke,
+    found: Integers,
 ) -> int:
-    """Points of stretches that lie near a way; gives how many, also of those without room."""
-    way, radius = near
-    start, along = way[0], way[1] - way[0]
+    """Points of stretches that lie near a stroke; gives how many, also of those without room."""
+    start, along = stroke.ends[0], stroke.ends[1] - stroke.ends[0]
     length = 0.0
     for j in range(3):
         length += (along[j] * scale[j]) ** 2
@@ -184,19 +190,19 @@ def _near_stroke_kernel(
             for j in range(3):
                 away = (integers[i, j] - start[j] - share * along[j]) * scale[j]
                 square += away * away
-            if square <= radius * radius:
+            if square <= stroke.radius_m * stroke.radius_m:
                 if count < found.size:
                     found[count] = i
                 count += 1
     return count
 
 
-def stroke_is_short(start: _Floats, end: _Floats, radius_m: float) -> bool:
-    """Whether a brush went over the surface between two places, and did not jump off it."""
+def stroke_is_short(start: Floats, end: Floats, radius_m: float) -> bool:
+    """Whether a brush went over the surface between two positions, and did not jump off it."""
     return math.dist(start, end) <= max(10 * radius_m, 2.0)
 
 
 def warm_up() -> None:
     """Compile the kernel."""
-    near, room = (np.zeros((2, 3)), 1.0), np.empty(1, np.int64)
-    _near_stroke_kernel(np.zeros((1, 3), np.int32), np.ones(3), np.array([[0, 1]]), near, room)
+    stroke, room = Stroke(np.zeros((2, 3)), 1.0), np.empty(1, np.int64)
+    _near_stroke_kernel(np.zeros((1, 3), np.int32), np.ones(3), np.array([[0, 1]]), stroke, room)

@@ -3,19 +3,17 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats, Integers
 from processing.core.kernels import kernel
 from processing.recording.columns.counted_classes import class_columns
 
 if TYPE_CHECKING:  # processing.recording.drive makes images, so importing it here would be a circle
     from processing.recording.drive import Drive
-
-_Floats = NDArray[np.float64]
-_Integers = NDArray[np.int64]
 
 _SPAN_PART, _NEAR_PART, _LEAST_SPAN = 4, 8, 2
 """In a row beside, points are looked for within a quarter of a revolution to either side of the
@@ -30,7 +28,14 @@ _ROWS_ASIDE = 16
 every second, fourth … row is."""
 
 
-def neighbours(drive: Drive, point: int, radius_m: float) -> _Integers:
+class SearchSphere(NamedTuple):
+    """Where points are looked for: its middle, (3,) in the integers' own units; its radius, m."""
+
+    middle: Floats
+    radius_m: float
+
+
+def neighbours(drive: Drive, point: int, radius_m: float) -> Integers:
     """Points within a distance of a point, in rising order, taken from the rows around its own.
 
     Rows are skipped where they are so close that others reach as far. Noise is no surface: of
@@ -53,7 +58,9 @@ def neighbours(drive: Drive, point: int, radius_m: float) -> _Integers:
     part = coordinates.stretched(np.column_stack([starts, stops]))
     middle = coordinates.integers(np.array([point]))[0].astype(np.float64)
     scale = np.array(coordinates.quantisation.scale)
-    count = _near_kernel(part.integers, scale, part.stretches, (middle, radius_m), found)
+    count = _near_kernel(
+        part.integers, scale, part.stretches, SearchSphere(middle, radius_m), found
+    )
     near = part.points(found[:count])
     is_noise = class_columns(drive.columns).are_noise(near)
     return np.asarray(near[~is_noise | (near == point)])
@@ -91,10 +98,10 @@ def _pulses_per_row(drive: Drive) -> float:
 @kernel
 def _near_kernel(
     integers: NDArray[np.int32],
-    scale: _Floats,
-    stretches: _Integers,
-    near: tuple[_Floats, float],
-    found: _Integers,
+    scale: Floats,
+    stretches: Integers,
+    near: SearchSphere,
+    found: Integers,
 ) -> int:
     """Points of some stretches within a distance of a point's integers; gives their number."""
     middle, radius = near
@@ -116,4 +123,4 @@ def warm_up() -> None:
     stretches, found = np.array([[0, 1]]), np.empty(1, np.int64)
     integers = np.zeros((1, 3), np.int32)
     integers.flags.writeable = False
-    _near_kernel(integers, np.ones(3), stretches, (np.zeros(3), 1.0), found)
+    _near_kernel(integers, np.ones(3), stretches, SearchSphere(np.zeros(3), 1.0), found)

@@ -13,7 +13,7 @@ from processing.recording.drive import Drive
 from processing.recording.passes import Pass
 
 USUAL_HEIGHT_M = 2.6
-"""Of the scanner above the road in Takahashi 2022, Table 6-1: taken where no point tells it."""
+"""Of the scanner above the road in Takahashi 2022, Table 6-1: taken where no point shows it."""
 
 _ROWS = 40
 """Rows over a pass that are asked; their median counts."""
@@ -45,8 +45,8 @@ def height_above_road(drive: Drive, vehicle_path: Pass) -> float:
     heights = []
     for row in range(len(rows)):
         points = read_rows(drive, vehicle_path, rows.part(row, row + 1), rows.half_width)
-        _, across, above = points.arrays[2].T
-        is_below = (np.abs(across) <= _ASIDE_M) & (above < _ABOVE_M) & ~points.arrays[5]
+        _, across, above = points.arrays.on_path.T
+        is_below = (np.abs(across) <= _ASIDE_M) & (above < _ABOVE_M) & ~points.arrays.is_noise
         if np.count_nonzero(is_below) >= _FEWEST:
             heights.append(-float(np.median(above[is_below])))
     return float(np.median(heights)) if heights else USUAL_HEIGHT_M

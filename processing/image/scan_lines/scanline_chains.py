@@ -5,14 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Integers
 from processing.core.kernels import kernel
-from processing.image.scan_lines.scanline_arrays import Crossings
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
-ChainInput = tuple[
-    Integers, Floats, Floats, Floats, NDArray[np.float32], Integers, NDArray[np.bool_]
-]
+from processing.image.scan_lines.scanline_arrays import ChainArrays, Crossings
 
 
 @kernel
@@ -59,14 +54,14 @@ def chains_kernel(crossings: Crossings, last_level: int, order: Integers, chains
     is_done = np.zeros(count, np.bool_)
     found, at = 0, 0
     # Open chains first, from their ends; what is left then are loops, cut where they are leftmost.
-    for turn in range(2):
+    for is_loop in (False, True):
         for vertex in range(count):
             if is_done[vertex] or crossings[vertex].level > last_level:
                 continue
             a, b = crossings[vertex].first >= 0, crossings[vertex].second >= 0
-            if a == b if turn == 0 else not (a and b):
+            if not (a and b) if is_loop else a == b:
                 continue
-            start = vertex if turn == 0 else _leftmost(crossings, vertex)
+            start = _leftmost(crossings, vertex) if is_loop else vertex
             end = _walk(crossings, start, is_done, order, at)
             if crossings[order[end - 1]].across < crossings[order[at]].across:
                 order[at:end] = order[at:end][::-1].copy()
@@ -98,12 +93,9 @@ def kept_kernel(crossings: Crossings, count: int, last_level: int, moved: Intege
 
 @kernel
 def gather_kernel(
-    crossings: Crossings, order: Integers, chains: Integers, given: ChainInput
+    crossings: Crossings, order: Integers, chains: Integers, given: ChainArrays
 ) -> None:
-    """Copy the crossings chain by chain; ``chains`` (k, 2) are their ends in the order.
-
-    ``given`` are level, across, height, time, intensity, point, and whether the line breaks before.
-    """
+    """Copy the crossings chain by chain; ``chains`` (k, 2) are their ends in the order."""
     level, across, height, time, intensity, point, is_break = given
     to = 0
     for chain in range(chains.shape[0]):

@@ -3,16 +3,25 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from processing.core.arrays import Integers
 from processing.core.kernels import kernel
-from processing.image.scan_lines.scanline_arrays import Crossings, MeshLimits, Pixels, PointArrays
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
-MeshRule = tuple[float, float, int]
-CrossingLevels = tuple[int, int, int, int]
-
+from processing.image.scan_lines.scanline_arrays import (
+    CellBases,
+    CellLevels,
+    CellSides,
+    Crossings,
+    MeshCell,
+    MeshEdge,
+    MeshLimits,
+    MeshRows,
+    MeshRule,
+    Pixels,
+    PointArrays,
+    RowPair,
+    TriangleBases,
+    TriangleLevels,
+)
 
 _BEGIN, _END, _FIRST_POINT, _FIRST_PULSE, _IS_BREAK = range(5)
 """Columns of the ends of a row: its points, the number of the first point, the pulse of the first
@@ -42,10 +51,8 @@ def fill_row(
 ) -> None:
     """Put the points of a row into its pixels (w,), the last return of each pulse.
 
-    ``extent`` (2,) is the first filled column and the one behind the last; ``points`` are pulse,
-    place, (station, across, height above the way), time, intensity and whether it is noise;
-    ``ends`` the first and end point, the number in the drive of point 0, and the pulse of column
-    0; ``row_station`` is the vehicle's.
+    ``extent`` (2,) is the first filled column and the one behind the last; ``ends`` (5,) a row of
+    `MeshRows.ends`; ``row_station`` is the vehicle's, m.
     """
     pulse, position, found, time, intensity, is_noise = points
     for column in range(extent[0], extent[1]):
@@ -121,7 +128,7 @@ def strip_bound(pixels: Pixels, extents: Integers, old: int) -> int:
 @kernel
 def _crossed(
     pixels: Pixels,
-    edge: tuple[int, int, int, int],
+    edge: MeshEdge,
     spacing: float,
     crossings: Crossings,
     count: int,
@@ -168,21 +175,17 @@ def _vertex(one: int, other: int, base: int, level: int) -> int:
 
 
 @kernel
-def _link_cell(
-    levels: CrossingLevels, bases: CrossingLevels, cut: int, crossings: Crossings
-) -> None:
+def _link_cell(levels: CellLevels, bases: CellBases, cut: int, crossings: Crossings) -> None:
     """Join the crossings of a cell with two triangles, across its diagonal.
 
-    ``levels`` are those of the pixels old left, old right, new left, new right; ``bases`` the
-    first crossings on the old, new, left and right edges; ``cut`` is 1 where it is cut rising,
-    −1 falling.
+    ``cut`` is 1 where it is cut rising, −1 falling.
     """
     oc, od, nc, nd = levels
     for level in range(min(min(oc, od), min(nc, nd)) + 1, max(max(oc, od), max(nc, nd)) + 1):
-        a = _vertex(oc, od, bases[0], level)
-        b = _vertex(nc, nd, bases[1], level)
-        c = _vertex(oc, nc, bases[2], level)
-        d = _vertex(od, nd, bases[3], level)
+        a = _vertex(oc, od, bases.old, level)
+        b = _vertex(nc, nd, bases.new, level)
+        c = _vertex(oc, nc, bases.left, level)
+        d = _vertex(od, nd, bases.right, level)
         # In the lower triangle with the old edge lies one side, in the upper one the other.
         lower, upper = (d, c) if cut > 0 else (c, d)
         if a >= 0 and lower >= 0:
@@ -196,15 +199,13 @@ def _link_cell(
 
 
 @kernel
-def _link_triangle(
-    levels: tuple[int, int, int], bases: tuple[int, int, int], crossings: Crossings
-) -> None:
+def _link_triangle(levels: TriangleLevels, bases: TriangleBases, crossings: Crossings) -> None:
     """Join the crossings on a triangle's edges 0–1, 1–2 and 2–0, section by section."""
     a, b, c = levels
     for level in range(min(a, b, c) + 1, max(a, b, c) + 1):
-        first = _vertex(a, b, bases[0], level)
-        second = _vertex(b, c, bases[1], level)
-        third = _vertex(c, a, bases[2], level)
+        first = _vertex(a, b, bases.first_second, level)
+        second = _vertex(b, c, bases.second_third, level)
+        third = _vertex(c, a, bases.third_first, level)
         if first < 0:
             first = third
         elif second < 0:
@@ -224,12 +225,12 @@ def _spans(pixels: Pixels, a: int, c: int, third: int, most: int) -> bool:
 
 @kernel
 def _triangles(
-    pixels: Pixels, old: int, c: int, sides: tuple[bool, bool], rule: MeshRule
+    pixels: Pixels, old: int, c: int, sides: CellSides, rule: MeshRule
 ) -> tuple[bool, bool, bool]:
     """How a cell is cut, and whether the triangles with its old and its new edge are there.
 
-    ``sides`` say whether its left and right edges are short. It is cut along the shorter diagonal,
-    rising from its old left pixel to its new right one, or falling.
+    It is cut along the shorter diagonal, rising from its old left pixel to its new right one, or
+    falling.
     """
     new, d = 1 - old, c + 1
     rising, falling = np.inf, np.inf
@@ -237,21 +238,22 @@ def _triangles(
         rising = _square_between(pixels, old, c, new, d)
     if pixels[old, d].point >= 0 and pixels[new, c].point >= 0:
         falling = _square_between(pixels, old, d, new, c)
-    if min(rising, falling) > rule[1]:
+    if min(rising, falling) > rule.longest_square:
         return False, False, False
     is_rising = rising <= falling
-    lower, upper = (sides[1], sides[0]) if is_rising else sides
+    lower = sides.right if is_rising else sides.left
+    upper = sides.left if is_rising else sides.right
     lower = lower and pixels[old, c].is_short
     upper = upper and pixels[new, c].is_short
-    lower = lower and _spans(pixels, old, c, d if is_rising else c, rule[2])
-    upper = upper and _spans(pixels, new, c, c if is_rising else d, rule[2])
+    lower = lower and _spans(pixels, old, c, d if is_rising else c, rule.most_levels)
+    upper = upper and _spans(pixels, new, c, c if is_rising else d, rule.most_levels)
     return is_rising, lower, upper
 
 
 @kernel
 def _mesh_cell(
     pixels: Pixels,
-    cell: tuple[int, int, bool, bool, bool],
+    cell: MeshCell,
     left: int,
     spacing: float,
     crossings: Crossings,
@@ -259,37 +261,37 @@ def _mesh_cell(
 ) -> tuple[int, int]:
     """Cross one cell; gives how many crossings there are then, and the first on its right edge.
 
-    ``cell`` is the old row, its left column, whether it is cut rising, and which triangles it has;
-    ``left`` the first crossing on its left edge, or −1.
+    ``left`` is the first crossing on its left edge, or −1.
     """
     old, c, is_rising, has_lower, has_upper = cell
     new, d, right, cut = 1 - old, c + 1, -1, -1
     if left < 0 and (has_upper if is_rising else has_lower):
-        left, count = count, _crossed(pixels, (old, c, new, c), spacing, crossings, count)
+        left, count = count, _crossed(pixels, MeshEdge(old, c, new, c), spacing, crossings, count)
     if has_lower if is_rising else has_upper:
-        right, count = count, _crossed(pixels, (old, d, new, d), spacing, crossings, count)
+        right, count = count, _crossed(pixels, MeshEdge(old, d, new, d), spacing, crossings, count)
     if has_lower and pixels[old, c].crossing < 0:
         pixels[old, c].crossing = count
-        count = _crossed(pixels, (old, c, old, d), spacing, crossings, count)
+        count = _crossed(pixels, MeshEdge(old, c, old, d), spacing, crossings, count)
     if has_upper:
         pixels[new, c].crossing = count
-        count = _crossed(pixels, (new, c, new, d), spacing, crossings, count)
-    bases = (pixels[old, c].crossing, pixels[new, c].crossing, left, right)
+        count = _crossed(pixels, MeshEdge(new, c, new, d), spacing, crossings, count)
+    bases = CellBases(pixels[old, c].crossing, pixels[new, c].crossing, left, right)
     oc, od = pixels[old, c].level, pixels[old, d].level
     nc, nd = pixels[new, c].level, pixels[new, d].level
     if has_lower and has_upper:
-        _link_cell((oc, od, nc, nd), bases, 1 if is_rising else -1, crossings)
+        _link_cell(CellLevels(oc, od, nc, nd), bases, 1 if is_rising else -1, crossings)
         return count, right
-    diagonal = (old, c, new, d) if is_rising else (old, d, new, c)
+    diagonal = MeshEdge(old, c, new, d) if is_rising else MeshEdge(old, d, new, c)
     cut, count = count, _crossed(pixels, diagonal, spacing, crossings, count)
     if has_lower and is_rising:
-        _link_triangle((oc, od, nd), (bases[0], right, cut), crossings)
+        corners, edges = TriangleLevels(oc, od, nd), TriangleBases(bases.old, right, cut)
     elif has_lower:
-        _link_triangle((oc, od, nc), (bases[0], cut, left), crossings)
+        corners, edges = TriangleLevels(oc, od, nc), TriangleBases(bases.old, cut, left)
     elif is_rising:
-        _link_triangle((nc, nd, oc), (bases[1], cut, left), crossings)
+        corners, edges = TriangleLevels(nc, nd, oc), TriangleBases(bases.new, cut, left)
     else:
-        _link_triangle((nc, nd, od), (bases[1], right, cut), crossings)
+        corners, edges = TriangleLevels(nc, nd, od), TriangleBases(bases.new, right, cut)
+    _link_triangle(corners, edges, crossings)
     return count, right
 
 
@@ -299,9 +301,8 @@ def mesh_strip(
 ) -> int:
     """Cross the triangles between two rows; gives how many crossings there are then.
 
-    ``rule`` is the spacing, the square of the longest edge, and the most sections an edge may
-    cross. A section has vertices on the edges along and between rows, on diagonals only where the
-    mesh ends.
+    A section has vertices on the edges along and between rows, on diagonals only where the mesh
+    ends.
     """
     new = 1 - old
     low, high = min(extents[0, 0], extents[1, 0]), max(extents[0, 1], extents[1, 1])
@@ -309,32 +310,30 @@ def mesh_strip(
     for c in range(low - 1, high - 1):
         d, left, side, is_left = c + 1, side, -1, is_side
         is_side = pixels[old, d].point >= 0 and pixels[new, d].point >= 0
-        is_side = is_side and _square_between(pixels, old, d, new, d) <= rule[1]
+        is_side = is_side and _square_between(pixels, old, d, new, d) <= rule.longest_square
         if c < low or not (is_left or is_side):
             continue
-        is_rising, has_lower, has_upper = _triangles(pixels, old, c, (is_left, is_side), rule)
+        sides = CellSides(is_left, is_side)
+        is_rising, has_lower, has_upper = _triangles(pixels, old, c, sides, rule)
         if has_lower or has_upper:
-            cell = (old, c, is_rising, has_lower, has_upper)
-            count, side = _mesh_cell(pixels, cell, left, rule[0], crossings, count)
+            cell = MeshCell(old, c, is_rising, has_lower, has_upper)
+            count, side = _mesh_cell(pixels, cell, left, rule.spacing_m, crossings, count)
     return count
 
 
 @kernel
 def mesh_rows(
-    image: tuple[Pixels, Integers],
+    image: RowPair,
     state: Integers,
     points: PointArrays,
-    rows: tuple[Integers, Floats],
+    rows: MeshRows,
     band: MeshLimits,
     crossings: Crossings,
 ) -> None:
     """Mesh rows from the next on, as long as there is room for crossings.
 
-    ``image`` are the pixels of two rows, (2, w), and the first filled column and the one behind the
-    last of each, (2, 2). ``state`` is the next row, which of the pixels' rows holds the last one,
-    the number of crossings, and whether the next row is filled already. ``rows`` are the ends of
-    each as in `fill_row` and whether the mesh breaks before it, (k, 5), and the station of each,
-    after that of the row before the first.
+    ``state`` (4,) is the next row, which of the pixels' rows holds the last one, the number of
+    crossings, and whether the next row is filled already.
     """
     pixels, extents = image
     ends, stations = rows
@@ -352,7 +351,7 @@ def mesh_rows(
             room = crossings.shape[0] - state[_CROSSINGS]
             if room < 4 * most * pixels.shape[1] and room < strip_bound(pixels, extents, old):
                 return
-            rule = (band.spacing_m, longest * longest, most)
+            rule = MeshRule(band.spacing_m, longest * longest, most)
             state[_CROSSINGS] = mesh_strip(pixels, extents, old, rule, crossings, state[_CROSSINGS])
         state[_OLD] = new
         state[_IS_FILLED] = 0

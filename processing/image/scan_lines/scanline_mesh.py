@@ -7,22 +7,24 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats, Integers
 from processing.image.scan_lines.scanline_arrays import (
     CROSSING,
     PIXEL,
+    ChainArrays,
     Crossings,
     MeshLimits,
+    MeshRows,
     PointArrays,
+    RowPair,
 )
 from processing.image.scan_lines.scanline_chains import chains_kernel, gather_kernel, kept_kernel
 from processing.image.scan_lines.scanline_kernels import mesh_rows
 from processing.image.scan_lines.scanline_rows import RowPoints
 
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
-
 _ROOM, _MOST_ROOM = 1 << 13, 1 << 20
-"""For crossings: so many for each section at first, and no more in all before they are needed."""
+"""For crossings: so many for each section at first, and no more in all, 48 MB, before they are
+needed. Room is doubled when it runs out, so no result depends on them."""
 
 _ROW, _OLD, _COUNT = 0, 1, 2
 """Of the state: see `scanline_kernels`."""
@@ -86,10 +88,10 @@ class SectionMesh:
         self._state[_ROW] = 0
         while True:
             mesh_rows(
-                (self._pixels, self._extents),
+                RowPair(self._pixels, self._extents),
                 self._state,
                 points.arrays,
-                (points.rows, passed),
+                MeshRows(points.rows, passed),
                 self._band,
                 self._crossings,
             )
@@ -126,7 +128,7 @@ def _in_order(held: Crossings, order: Integers, chains: Integers) -> SectionVert
     ranks = np.lexsort((held["across"][order[starts]], levels))
     ends = np.column_stack([starts, chains[1:, 0]])[ranks]
     count = int((ends[:, 1] - ends[:, 0]).sum())
-    given = (
+    given = ChainArrays(
         np.empty(count, np.int64),
         np.empty(count),
         np.empty(count),
@@ -145,7 +147,7 @@ def warm_up() -> None:
     mesh = SectionMesh(4, band)
     pulses = np.array([0, 1, 10, 11])
     positions = np.array([[0.0, 0, 0], [0, 1, 0], [1, 0, 0], [1, 1, 0]])
-    arrays: PointArrays = (
+    arrays = PointArrays(
         pulses,
         positions,
         positions,

@@ -1,8 +1,8 @@
 """The rows of a pass that are meshed, and their points, some hundred thousand at a time.
 
-A row here is a turn about the moment at which the beam points at the road below the vehicle, so
-the road isn't cut, and the pulses counted from that moment are the columns: the same column of two
-rows looks the same way.
+A row here is a revolution about the moment at which the beam points at the road below the vehicle,
+so the road isn't cut, and the pulses counted from that moment are the columns: the same column of
+two rows looks the same way.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats, Integers
 from processing.image.scan_lines.scanline_arrays import PointArrays
 from processing.recording.columns.counted_classes import class_columns
 from processing.recording.columns.damaged_pulses import damaged_pulses
@@ -21,9 +22,6 @@ from processing.recording.drive import Drive
 from processing.recording.passes import Pass, PathSurroundings
 from processing.recording.revolutions.revolutions import Revolutions
 from processing.recording.vehicle_path.pass_kernels import advanced_kernel
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 PULSES_AT_ONCE = 600_000
 """Rows of one to some seconds, some 30 MB, and short enough for a cancel to be felt."""
@@ -96,11 +94,8 @@ class RowPoints:
     Attributes
     ----------
     arrays : PointArrays
-        Pulse; place about the origin of the pass, m; station, across and height above the way, m;
-        time; intensity; whether it is noise.
     rows : (k, 5) int64
-        First and end point among these; the number in the drive of the first of all; the pulse of
-        column 0; whether the mesh breaks before the row.
+        As `MeshRows.ends`.
     """
 
     arrays: PointArrays
@@ -145,8 +140,8 @@ def read_rows(
     ----------
     half_width : int
         The column of the fold.
-    asked : Beside, optional
-        Of what lies elsewhere nothing need be told.
+    asked : PathSurroundings, optional
+        Of what lies elsewhere nothing need be known.
     """
     pulses = drive.columns["pulse"]
     bounds = [int(rows.ends[0, 0]), int(rows.ends[:, 1].max())]
@@ -164,5 +159,5 @@ def read_rows(
     table = np.column_stack(
         [ends, np.full(count, start), rows.folds - half_width, rows.are_breaks]
     ).astype(np.int64)
-    arrays = (read["pulse"], local, found, read["time"], read["intensity"], is_noise)
+    arrays = PointArrays(read["pulse"], local, found, read["time"], read["intensity"], is_noise)
     return RowPoints(arrays, table)

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from processing.core.arrays import Floats, Integers
 from processing.core.monitor import Monitor, SilentMonitor, parts_of
 from processing.core.worked_ahead import one_ahead
 from processing.image.scan_lines.road_height import height_above_road
@@ -26,9 +27,6 @@ from processing.image.scan_lines.scanline_rows import (
 )
 from processing.recording.drive import Drive
 from processing.recording.passes import REACH_M, Pass, passes_of
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -78,7 +76,7 @@ class Scanlines:
         Unit vector in plan to the right of the path.
     starts : (s + 1,) int64
     across_m : (n,) float64
-        To the right of the way.
+        To the right of the vehicle's path.
     height_m : (n,) float64
         Above ``positions[i, 2]``.
     is_break : (n,) bool
@@ -153,9 +151,8 @@ def scanlines_of(
     1. Rows in which the vehicle has hardly gone on are left out.
     2. Neighbouring pixels of the rows make a mesh: two triangles of four filled pixels, one of
        three, none with a long edge; the last return of each pulse counts, noise doesn't.
-    3. A section is where the station of the mesh, told from the vehicle's path about the time of
-    each point,
-       is a multiple of the spacing; triangles that follow each other make it a line.
+    3. A section is where the station of the mesh, computed from the vehicle's path about the time
+       of each point, is a multiple of the spacing; triangles that follow each other make it a line.
 
     References
     ----------
@@ -290,29 +287,29 @@ def _sections(
         reached = last if end == len(rows) else min(reached, last)
         if reached >= first:
             vertices = mesh.finished(reached)
-            yield _scanlines(vehicle_path, height, (first, reached), spacing, vertices)
+            sections = np.arange(first, reached + 1)
+            yield _scanlines(vehicle_path, height, sections, spacing, vertices)
             first = reached + 1
 
 
 def _scanlines(
     vehicle_path: Pass,
     height: float,
-    levels: tuple[int, int],
+    sections: Integers,
     spacing: float,
     vertices: SectionVertices,
 ) -> Scanlines:
-    sections = np.arange(levels[0], levels[1] + 1)
     stations = sections.astype(np.float64) * spacing
     positions = vehicle_path.positions_at(stations)
     positions[:, 2] -= height
-    own = vertices.levels - levels[0]
+    own = vertices.levels - sections[0]
     above = vertices.height + vehicle_path.origin[2] - positions[own, 2]
     return Scanlines(
         number=vehicle_path.number,
         stations_m=stations,
         positions=positions,
         rights=vehicle_path.rights_at(stations),
-        starts=np.searchsorted(vertices.levels, np.append(sections, levels[1] + 1)),
+        starts=np.searchsorted(vertices.levels, np.append(sections, sections[-1] + 1)),
         across_m=vertices.across,
         height_m=above,
         is_break=vertices.is_break,

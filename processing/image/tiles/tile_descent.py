@@ -23,7 +23,7 @@ list."""
 MET_VALUES = 8
 
 _SCALE, _IS_PARALLEL, _FINE_ENOUGH_PX, _WANTS_ALL = range(3, 7)
-"""Of an eye, behind its place: pixels per metre one metre in front of it; whether it sees in
+"""Of an eye, behind its position: pixels per metre one metre in front of it; whether it sees in
 parallel; the gap that is fine enough; whether it wants points that no pixel shows."""
 
 _DIRECTION, _RADIUS, _WIDENING, _LEAST_DEPTH = 3, 6, 7, 8
@@ -39,6 +39,14 @@ not worth its loading. By trial; no measurement is recorded."""
 
 _NEAREST_M, _LEAST_SLOPE = 1e-3, 1e-12
 """Guards of divisions: of an eye within a box, of a ray square to an axis."""
+
+
+class TileAddress(NamedTuple):
+    """A tile of the pyramid: its level, 0 the finest, and its row and column of tiles."""
+
+    level: int
+    row: int
+    column: int
 
 
 class SpendingLimits(NamedTuple):
@@ -59,16 +67,16 @@ def descent_kernel(
     """List the tiles that are seen, each before its children; says how many they are.
 
     ``shapes``: rows and columns of tiles and the first line in ``facts`` of each level. ``eye``:
-    place, pixels per metre one metre in front of it, whether it sees in parallel, the gap that is
-    fine enough, and whether it wants points that no pixel shows: below the finest tiles, as level
-    −1, are then those with all their points. A tile is seen that isn't wholly beyond one of
+    position, pixels per metre one metre in front of it, whether it sees in parallel, the gap that
+    is fine enough, and whether it wants points that no pixel shows: below the finest tiles, as
+    level −1, are then those with all their points. A tile is seen that isn't wholly beyond one of
     ``planes`` (a, b, c, d): where a·x + b·y + c·z ≤ d. ``met`` has room for all of them.
     """
     top = shapes.shape[0] - 1
     if not _is_seen(facts[shapes[top, 2]], planes):
         return 0
     count, at = 1, 0
-    _put(facts, shapes, eye, (top, 0, 0), met[0])
+    _put(facts, shapes, eye, TileAddress(top, 0, 0), met[0])
     while at < count:
         level, row, column = int(met[at, LEVEL]), int(met[at, ROW]), int(met[at, COLUMN])
         met[at, FIRST] = count
@@ -77,7 +85,7 @@ def descent_kernel(
                 for j in range(2 * column, min(2 * column + 2, shapes[level - 1, 1])):
                     line = shapes[level - 1, 2] + i * shapes[level - 1, 1] + j
                     if _is_seen(facts[line], planes):
-                        _put(facts, shapes, eye, (level - 1, i, j), met[count])
+                        _put(facts, shapes, eye, TileAddress(level - 1, i, j), met[count])
                         count += 1
         if level == 0 and eye[_WANTS_ALL] and met[at, GAP_PX] > eye[_FINE_ENOUGH_PX]:
             count = _put_all(facts[int(met[at, LINE])], met, at, count)
@@ -192,7 +200,7 @@ def _put(
     facts: NDArray[np.float64],
     shapes: NDArray[np.int64],
     eye: NDArray[np.float64],
-    tile: tuple[int, int, int],
+    tile: TileAddress,
     met: NDArray[np.float64],
 ) -> None:
     """What a view has to know of a tile."""

@@ -9,6 +9,7 @@ from processing.core.errors import Unsuitable
 from processing.labels import strokes
 from processing.labels.rules import PaintOver, PaintRule
 from processing.labels.strokes import (
+    Stroke,
     points_of_segment,
     points_under_brush,
     segments_of,
@@ -55,14 +56,14 @@ def test_a_brush_far_from_everything_takes_nothing(drive):
 def test_the_compiled_loop_does_what_the_plain_one_does(drive):
     integers = np.asarray(drive.columns["xyz"][:300])
     scale, stretches = np.array(drive.info.scale), np.array([[0, 200], [250, 300]])
-    way = np.stack([integers[10], integers[260]]).astype(float)
+    stroke = Stroke(np.stack([integers[10], integers[260]]).astype(float), 0.5)
     plain, compiled = np.empty(300, np.int64), np.empty(300, np.int64)
     kernel = strokes._near_stroke_kernel
-    count = kernel.py_func(integers, scale, stretches, (way, 0.5), plain)
-    assert kernel(integers, scale, stretches, (way, 0.5), compiled) == count
+    count = kernel.py_func(integers, scale, stretches, stroke, plain)
+    assert kernel(integers, scale, stretches, stroke, compiled) == count
     np.testing.assert_array_equal(plain[:count], compiled[:count])
     none = np.empty(0, np.int64)
-    assert kernel.py_func(integers, scale, stretches, (way, 0.5), none) == count
+    assert kernel.py_func(integers, scale, stretches, stroke, none) == count
 
 
 def test_a_segment_is_all_its_points(tmp_path):
