@@ -21,10 +21,9 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.recording.vehicle_path.trajectory import Trajectory
 from tests.street_scene import Rays, StreetScene
-
-Floats = NDArray[np.float64]
 
 SCALE = (0.001, 0.001, 0.001)
 OFFSET = (-11_000.0, -35_000.0, 100.0)

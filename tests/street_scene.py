@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from processing.core.arrays import Floats
 
 CURB_AT_M = 4.0
 CURB_HEIGHT_M = 0.15

@@ -10,7 +10,7 @@ import pye57
 from numpy.typing import NDArray
 from pye57 import libe57
 
-Floats = NDArray[np.float64]
+from processing.core.arrays import Floats
 
 
 @dataclass(frozen=True)

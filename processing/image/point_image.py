@@ -12,6 +12,7 @@ from typing import Self, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Integers
 from processing.image.rows.fixed_raster import FixedRaster, fixed_raster_of
 from processing.image.rows.grid import PixelGrid
 from processing.image.rows.image_rows import forget_rows, image_rows
@@ -32,8 +33,6 @@ from processing.recording.columns.damaged_pulses import damaged_pulses
 from processing.recording.columns.quantisation import Quantisation
 from processing.recording.drive import Drive
 from processing.recording.kinds import ImageKind
-
-_Integers = NDArray[np.int64]
 
 _MOST_ROWS_ASIDE = 8
 """Rows of a top view above and below in which the nearest filled cell is looked for."""
@@ -78,7 +77,7 @@ class PointCloudImage:
     def __init__(
         self,
         kind: ImageKind,
-        pulses: _Integers,
+        pulses: Integers,
         folding: RevolutionSource | int,
         *,
         coordinates: Coordinates | None = None,
@@ -119,7 +118,7 @@ class PointCloudImage:
         return int(np.bincount(self.row_widths).argmax()) if self.rows else 0
 
     @property
-    def split_rows(self) -> _Integers:
+    def split_rows(self) -> Integers:
         """(k,) int64: the first row after each stop."""
         return np.flatnonzero(np.diff(self.segments)) + 1
 
@@ -152,7 +151,7 @@ class PointCloudImage:
             self._refuse_damage(columns_kernel(self.layout, first, columns))
         return columns
 
-    def points_at(self, row: int, column: int) -> _Integers:
+    def points_at(self, row: int, column: int) -> Integers:
         """All points of a pixel, the shown one first; empty where there are none.
 
         Returns
@@ -168,7 +167,7 @@ class PointCloudImage:
         shown = shown_point(self.layout, row, start, end)
         return np.concatenate([points[points == shown], points[points != shown]])
 
-    def pixel_of(self, points: _Integers) -> tuple[_Integers, NDArray[np.int32]]:
+    def pixel_of(self, points: Integers) -> tuple[Integers, NDArray[np.int32]]:
         """Row and column of points.
 
         Parameters
@@ -227,7 +226,7 @@ class PointCloudImage:
         step: int = 1,
         *,
         without_noise: ClassColumns | None = None,
-    ) -> _Integers:
+    ) -> Integers:
         """The points shown in a window.
 
         Parameters
@@ -257,7 +256,7 @@ class PointCloudImage:
             self._refuse_damage(is_whole)
         return raster
 
-    def stretches_in(self, windows: _Integers) -> _Integers:
+    def stretches_in(self, windows: Integers) -> Integers:
         """The points of windows, row by row.
 
         Parameters
@@ -274,7 +273,7 @@ class PointCloudImage:
         self._refuse_damage(stretches_kernel(self.layout, windows, stretches))
         return stretches
 
-    def points_in(self, rows: range, columns: range) -> _Integers:
+    def points_in(self, rows: range, columns: range) -> Integers:
         """(n,) int64: all points of the pixels of a window, rising; shown or not."""
         self._check_window(rows, columns)
         stretches = self.stretches_in(
@@ -282,7 +281,7 @@ class PointCloudImage:
         )
         counts = stretches[:, 1] - stretches[:, 0]
         before = np.cumsum(counts) - counts
-        points: _Integers = np.arange(int(counts.sum())) + np.repeat(
+        points: Integers = np.arange(int(counts.sum())) + np.repeat(
             stretches[:, 0] - before, counts
         )
         return points

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.ndimage import maximum_filter1d, minimum_filter1d
 
+from processing.core.arrays import Floats
 from processing.core.errors import MissingInput
 from processing.core.text import Text
 from processing.recording.drive import Drive
@@ -33,8 +34,6 @@ from processing.recording.vehicle_path.smooth_path import (
     smooth_way,
 )
 from processing.recording.vehicle_path.trajectory import LONGEST_GAP_S, Trajectory
-
-Floats = NDArray[np.float64]
 
 REACH_M = 25.0
 """A beam that leaves at 45° meets a place 15 m aside as far ahead, in bends somewhat farther."""

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.core.arrays import Floats
+from processing.core.arrays import Flags, Floats
 from processing.scoring.line_positions import middle_positions
 from processing.scoring.mapped_features import MappedFeature, MappedFile
 from processing.scoring.object_matches import is_in_span, shows_enough
@@ -31,7 +31,6 @@ _MOST_CORNERS = 2
 
 # Any: shapely's geometries.
 Areas = NDArray[Any]
-Bools = NDArray[np.bool_]
 
 
 @dataclass(frozen=True)
@@ -52,8 +51,8 @@ class GutterSlots:
 
     axis: Floats
     slots: Floats
-    has_lid: Bools
-    is_asked: Bools
+    has_lid: Flags
+    is_asked: Flags
 
 
 def is_seen(truth: MappedFile, lid: MappedFeature) -> bool:
@@ -121,7 +120,7 @@ def _ordered(truth: MappedFile, lids: Sequence[MappedFeature], members: list[int
     return [members[position] for position in np.argsort(positions, kind="stable")]
 
 
-def _run(lids: Sequence[MappedFeature], areas: Areas, seen: Bools) -> GutterSlots:
+def _run(lids: Sequence[MappedFeature], areas: Areas, seen: Flags) -> GutterSlots:
     import shapely
 
     axis = _axis(lids)

@@ -8,10 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from processing.core.arrays import Floats
 from processing.core.errors import OutOfRange
 from processing.core.text import Text
-
-Floats = NDArray[np.float64]
 
 _UNIT_TOLERANCE = 1e-6
 """By which a unit vector's length may be off: a micrometre on a metre, more than rounding."""

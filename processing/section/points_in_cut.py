@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats, Integers
 from processing.core.kernels import kernel
 from processing.image.images_of_drives import image_of
 from processing.image.tiles.tile_kernels import COUNT, HIGHEST, LOWEST
@@ -18,8 +19,6 @@ from processing.section.cut import Cut
 if TYPE_CHECKING:  # processing.recording.drive makes images, so importing it here would be a circle
     from processing.recording.drive import Drive
 
-_Floats = NDArray[np.float64]
-_Integers = NDArray[np.int64]
 
 MOST_POINTS = 300_000
 """More points than this make a section no clearer: most then lie behind others on a screen."""
@@ -53,13 +52,13 @@ class SectionPoints:
     """
 
     drive_id: str
-    points: _Integers
-    section: _Floats
+    points: Integers
+    section: Floats
 
 
 def points_in_cut(
     drive: Drive, cut: Cut, most: int = MOST_POINTS, *, hides_noise: bool = False
-) -> _Integers:
+) -> Integers:
     """The measured points within a cut, at any height.
 
     Parameters
@@ -119,7 +118,7 @@ def ground_near(drive: Drive, cut: Cut) -> int:
     return int(points[(from_middle**2).sum(axis=1).argmin()])
 
 
-def _tiles_touched(drive: Drive, cut: Cut) -> _Integers:
+def _tiles_touched(drive: Drive, cut: Cut) -> Integers:
     """(k, 4): first and end row, first and end column of the finest tiles that a cut touches."""
     pyramid = image_of(drive, drive.image_kinds[-1]).pyramid
     rows, columns = pyramid.shape(0)
@@ -159,10 +158,10 @@ def _plan_of(drive: Drive, cut: Cut) -> _CutPlan:
 @kernel
 def _inside_kernel(
     integers: NDArray[np.int32],
-    scale: _Floats,
-    stretches: _Integers,
+    scale: Floats,
+    stretches: Integers,
     plan: _CutPlan,
-    found: _Integers,
+    found: Integers,
 ) -> int:
     """Points of stretches within a cut; gives their number."""
     count = 0

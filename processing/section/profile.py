@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from processing.core.arrays import Floats
 from processing.core.text import Text
 from processing.section.cut import Cut
 from processing.section.points_in_cut import section_points
@@ -16,7 +17,6 @@ from processing.section.points_in_cut import section_points
 if TYPE_CHECKING:  # processing.recording.drive makes images, so importing it here would be a circle
     from processing.recording.drive import Drive
 
-Floats = NDArray[np.float64]
 
 BIN_M = 0.05
 """The ground line has a vertex for each so many metres: fine enough for a curb's face."""

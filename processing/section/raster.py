@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.core.kernels import kernel
 
-Floats = NDArray[np.float64]
 Colours = NDArray[np.uint8]
 
 

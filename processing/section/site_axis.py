@@ -7,15 +7,14 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.core.errors import UserError
 from processing.section.stations import Stations
 
 if TYPE_CHECKING:  # processing.recording.drive makes images, so importing it here would be a circle
     from processing.recording.drive import Drive
 
-Floats = NDArray[np.float64]
 
 _PIECES, _PIECE_POINTS = 64, 256
 """Of a drive that is sampled: some 16,000 points, by judgement enough for a middle line."""

@@ -7,13 +7,12 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from processing.core.arrays import Floats
 from processing.core.errors import Unsuitable
 from processing.core.text import Text
 from processing.recording.vehicle_path.smooth_path import apart
 from processing.recording.vehicle_path.trajectory import Trajectory
 from processing.section.cut import Cut
-
-Floats = NDArray[np.float64]
 
 _CHORD_M = 0.5
 """The direction at a station is that of the chord from so far before to so far behind it: a trace's

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Integers
 from processing.core.errors import OutOfRange, report_as_user_error
 from processing.core.monitor import Monitor
 from processing.core.text import Text
@@ -20,8 +21,6 @@ from processing.image.neighbourhoods.segment_kernels import (
     unite_kernel,
 )
 from processing.recording.columns.columns import ColumnWriter, column_path
-
-_Integers = NDArray[np.int64]
 
 _POINTS_AT_ONCE = 2_000_000
 _MOST = int(np.iinfo(np.int32).max)
@@ -49,10 +48,10 @@ class ComponentColumn:
         self._path = column_path(folder, name)
         self._name = name
         self._writer = ColumnWriter(folder)
-        self._last: _Integers = np.empty(0, np.int64)
+        self._last: Integers = np.empty(0, np.int64)
         self._known_end = 0
         self._used = 0
-        self._pairs: list[_Integers] = []
+        self._pairs: list[Integers] = []
 
     def add(self, labels: NDArray[np.int32], first: int, end: int) -> None:
         """Take in the labels of the points ``first … end − 1``, which begin in the last block.
@@ -107,7 +106,7 @@ class ComponentColumn:
         """Close the file; may be called again."""
         self._writer.close()
 
-    def _numbers_of(self, labels: NDArray[np.int32], earlier: _Integers) -> _Integers:
+    def _numbers_of(self, labels: NDArray[np.int32], earlier: Integers) -> Integers:
         """The number of each label that points of the last block have; notes what is one."""
         count = int(labels.max(initial=-1)) + 1
         numbers = np.full(count, np.iinfo(np.int64).max)
@@ -120,7 +119,7 @@ class ComponentColumn:
         return numbers
 
 
-def _united(pairs: _Integers) -> tuple[_Integers, _Integers]:
+def _united(pairs: Integers) -> tuple[Integers, Integers]:
     """Numbers that give way, rising, and the final number of each."""
     numbers, positions = np.unique(pairs, return_inverse=True)
     positions = positions.reshape(pairs.shape)

@@ -10,18 +10,16 @@ from pathlib import Path
 import ezdxf
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from PySide6.QtCore import Qt
 from scipy.spatial import cKDTree
 
+from processing.core.arrays import Floats
 from processing.operations.export import ExportRequest
 from processing.project.importing.dropped_files import request_of_files
 from processing.recording.drive import Drive
 from tests.journeys.conftest import Surveyor
 from tests.journeys.true_street import TrueStreet
 from tests.journeys.window_user import WindowUser
-
-Floats = NDArray[np.float64]
 
 OTHER = os.environ.get("ZUKA_STREET", "")
 """A folder with left.laz, right.laz, trajectory.csv and truth/, to be drawn instead."""

@@ -10,10 +10,9 @@ from typing import Any
 
 import laspy
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-Floats = NDArray[np.float64]
+from processing.core.arrays import Floats
 
 _STEP_M = 0.2
 _SEEN_M, _SEEN_POINTS = 0.12, 6

@@ -13,8 +13,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.core.errors import Unsuitable
 from processing.core.monitor import Monitor, SilentMonitor
 from processing.core.safe_write import write_safely
@@ -45,7 +45,6 @@ _LINES_M = 0.003
 _BAR_M = 0.04
 _CHECK_EVERY = 64
 
-Floats = NDArray[np.float64]
 
 _INDEX, _CONTOUR = Ink(34, (110, 60, 15)), Ink(32, (150, 90, 40))
 _BOUNDARY, _BLACK, _GREY = Ink(1, (220, 0, 0)), Ink(7), Ink(8, (120, 120, 120))

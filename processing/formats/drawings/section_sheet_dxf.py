@@ -15,8 +15,8 @@ from pathlib import Path
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.core.errors import OutOfRange, Unsuitable
 from processing.core.monitor import Monitor, SilentMonitor
 from processing.core.safe_write import write_safely
@@ -34,8 +34,6 @@ from processing.methods.earthwork.sections.drawing_parts import (
     earth_moved,
     parts_with_ground,
 )
-
-Floats = NDArray[np.float64]
 
 BEFORE_LAYER, AFTER_LAYER = "横断_地盤線_前", "横断_地盤線_後"
 CUT_LAYER, FILL_LAYER = "横断_切土", "横断_盛土"

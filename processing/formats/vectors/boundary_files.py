@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.core.errors import (
     BadFile,
     OutOfRange,
@@ -27,8 +27,6 @@ from processing.formats.format import Content, function_of
 from processing.formats.registry import FORMATS
 from processing.formats.vectors.geojson_shapes import WHERE, read_collection, shapes_of, system_of
 from processing.map.catalogue import Geometry
-
-Floats = NDArray[np.float64]
 
 _LEAST_AREA_M2 = 1e-4
 _POSITION = re.compile(r"\[(\S+) (\S+)\]")

@@ -8,12 +8,11 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.core.errors import BadFile, Unsuitable, report_as_user_error
 from processing.core.text import Text
 from processing.formats.format import Content
 from processing.formats.registry import FORMATS
-
-Floats = NDArray[np.float64]
 
 
 def read_lines(path: Path, *, crs: str = "") -> tuple[Floats, ...]:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Colours
 from processing.core.errors import Unsuitable, UserError
 from processing.core.text import Text
 from processing.image.attributes.colour_maps import (
@@ -43,7 +44,6 @@ narrower than a kerb is wide."""
 _UNLABELLED_GREYS = 64, 191
 """The darkest and the brightest point without a label: black and white are left to classes."""
 
-_Colours = NDArray[np.uint8]
 _Points = NDArray[np.int64]
 
 
@@ -107,7 +107,7 @@ SHOWS_LABELS = frozenset({"label", "class", "judged"})
 
 def colours(
     drive: Drive, points: _Points, attribute: str, low_percent: float, high_percent: float
-) -> _Colours:
+) -> Colours:
     """Colours of points.
 
     Parameters
@@ -246,7 +246,7 @@ def _check(drive: Drive, attribute: Attribute) -> None:
     )
 
 
-def _intensity(drive: Drive, points: _Points, low: float, high: float) -> _Colours:
+def _intensity(drive: Drive, points: _Points, low: float, high: float) -> Colours:
     ends = [
         value_at_percent(drive.folder, "intensity", drive.count, None, percent)
         for percent in (low, high)
@@ -255,7 +255,7 @@ def _intensity(drive: Drive, points: _Points, low: float, high: float) -> _Colou
     return grey_ramp()[stretch_values(values, *ends)]
 
 
-def _height(drive: Drive, points: _Points, low: float, high: float) -> _Colours:
+def _height(drive: Drive, points: _Points, low: float, high: float) -> Colours:
     ends = [
         value_at_percent(drive.folder, "xyz", drive.count, 2, percent) for percent in (low, high)
     ]
@@ -263,7 +263,7 @@ def _height(drive: Drive, points: _Points, low: float, high: float) -> _Colours:
     return height_ramp()[stretch_values(values, *ends)]
 
 
-def _normal(drive: Drive, points: _Points) -> _Colours:
+def _normal(drive: Drive, points: _Points) -> Colours:
     if drive.columns.has("normal"):
         normals = np.asarray(drive.columns["normal"][points], np.float32) / np.float32(127)
     else:
@@ -273,7 +273,7 @@ def _normal(drive: Drive, points: _Points) -> _Colours:
     return shown
 
 
-def _shape(drive: Drive, points: _Points) -> _Colours:
+def _shape(drive: Drive, points: _Points) -> Colours:
     if drive.columns.has("shape"):
         shapes = np.asarray(drive.columns["shape"][points], dtype=np.uint8)
     else:
@@ -299,11 +299,11 @@ def _surfaces(drive: Drive, points: _Points) -> SurfaceShapes:
     )
 
 
-def _segment(drive: Drive, points: _Points) -> _Colours:
+def _segment(drive: Drive, points: _Points) -> Colours:
     return segment_colours(drive.columns["segment"][points])
 
 
-def _color(drive: Drive, points: _Points) -> _Colours:
+def _color(drive: Drive, points: _Points) -> Colours:
     """What the tool “colour” saw; elsewhere the delivered colours, or those of the images."""
     if not (drive.columns.has("seen_color") and drive.columns.has("is_seen")):
         return _other_color(drive, points)
@@ -317,7 +317,7 @@ def _color(drive: Drive, points: _Points) -> _Colours:
     return shown
 
 
-def _other_color(drive: Drive, points: _Points) -> _Colours:
+def _other_color(drive: Drive, points: _Points) -> Colours:
     if drive.columns.has("color"):
         # Some deliveries fill only the lower eight of the sixteen bits.
         brightest = max(
@@ -332,7 +332,7 @@ def _other_color(drive: Drive, points: _Points) -> _Colours:
     return seen.colours
 
 
-def _label(drive: Drive, points: _Points, low: float, high: float) -> _Colours:
+def _label(drive: Drive, points: _Points, low: float, high: float) -> Colours:
     """Colours of classes over the intensity, so that one sees the street while painting."""
     dark, bright = _UNLABELLED_GREYS
     grey = _intensity(drive, points, low, high).astype(np.uint16)
@@ -344,21 +344,21 @@ def _label(drive: Drive, points: _Points, low: float, high: float) -> _Colours:
     return shown
 
 
-def _judged(drive: Drive, points: _Points) -> _Colours:
+def _judged(drive: Drive, points: _Points) -> Colours:
     return np.asarray(error_map_colours()[drive.columns[ERROR_MAP][points]])
 
 
-def _class(drive: Drive, points: _Points) -> _Colours:
+def _class(drive: Drive, points: _Points) -> Colours:
     """What counts: labels, by hand or by a tool, over the delivered classes."""
     return np.asarray(class_colours()[class_columns(drive.columns).codes_of(points)])
 
 
-_STRETCHED: Mapping[str, Callable[[Drive, _Points, float, float], _Colours]] = {
+_STRETCHED: Mapping[str, Callable[[Drive, _Points, float, float], Colours]] = {
     "intensity": _intensity,
     "height": _height,
     "label": _label,
 }
-_PLAIN: Mapping[str, Callable[[Drive, _Points], _Colours]] = {
+_PLAIN: Mapping[str, Callable[[Drive, _Points], Colours]] = {
     "normal": _normal,
     "shape": _shape,
     "segment": _segment,

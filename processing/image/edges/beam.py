@@ -9,12 +9,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.image.point_image import PointCloudImage
 from processing.recording.drive import Drive
 
-Floats = NDArray[np.float64]
 BeamPoint = tuple[float, float, float]
 
 _FEWEST_POINTS = 30

@@ -13,9 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.core.kernels import kernel
-
-_Floats = NDArray[np.float64]
 
 ACROSS, HEIGHT, BEND, STRENGTH, BEFORE, AFTER, ORDER = range(7)
 """Columns of a corner: its place in the section, m; the bend, rad, positive where the surface is
@@ -126,7 +125,7 @@ class SectionLimits(NamedTuple):
 
 @kernel
 def corners_kernel(
-    local: _Floats, limits: SectionLimits, frame: _Floats, corners: _Floats
+    local: Floats, limits: SectionLimits, frame: Floats, corners: Floats
 ) -> tuple[int, float, float]:
     """Corners of the profile of points about a place.
 
@@ -173,7 +172,7 @@ def corners_kernel(
 
 
 @kernel
-def _project(local: _Floats, limits: SectionLimits, frame: _Floats, profile: _Floats) -> int:
+def _project(local: Floats, limits: SectionLimits, frame: Floats, profile: Floats) -> int:
     cos, sin, grade = math.cos(frame[_HEADING]), math.sin(frame[_HEADING]), frame[_GRADE]
     number = 0
     for i in range(local.shape[0]):
@@ -191,7 +190,7 @@ def _project(local: _Floats, limits: SectionLimits, frame: _Floats, profile: _Fl
 
 
 @kernel
-def _add(sums: _Floats, u: float, v: float) -> None:
+def _add(sums: Floats, u: float, v: float) -> None:
     sums[_N] += 1
     sums[_U] += u
     sums[_V] += v
@@ -201,7 +200,7 @@ def _add(sums: _Floats, u: float, v: float) -> None:
 
 
 @kernel
-def _least_squares(sums: _Floats, order: int) -> float:
+def _least_squares(sums: Floats, order: int) -> float:
     """Sum of squared distances from the best line that doesn't run across the profile's order."""
     n = sums[_N]
     uu = sums[_UU] - sums[_U] * sums[_U] / n
@@ -218,7 +217,7 @@ def _least_squares(sums: _Floats, order: int) -> float:
 
 
 @kernel
-def _cut(profile: _Floats, order: int, noise: float, pieces: _Floats) -> tuple[int, float]:
+def _cut(profile: Floats, order: int, noise: float, pieces: Floats) -> tuple[int, float]:
     """The cheapest cut of a profile into straight pieces; gives their number and the price.
 
     Points are sorted by u + v where the profile rises (u − v where it falls): along any profile
@@ -248,7 +247,7 @@ def _cut(profile: _Floats, order: int, noise: float, pieces: _Floats) -> tuple[i
 
 
 @kernel
-def _cheapest(sums: _Floats, order: int, noise: float, cut: NDArray[np.int64]) -> float:
+def _cheapest(sums: Floats, order: int, noise: float, cut: NDArray[np.int64]) -> float:
     """Where the last piece of the cheapest cut of the first bins begins; the price of them all."""
     price = np.full(cut.size, math.inf)
     price[0] = 0.0
@@ -267,7 +266,7 @@ def _cheapest(sums: _Floats, order: int, noise: float, cut: NDArray[np.int64]) -
 
 @kernel
 def _bins_of(
-    profile: _Floats,
+    profile: Floats,
     by_order: NDArray[np.int64],
     order: int,
     noise: float,
@@ -290,7 +289,7 @@ def _bins_of(
 
 
 @kernel
-def _describe(profile: _Floats, chosen: NDArray[np.int64], order: int, piece: _Floats) -> None:
+def _describe(profile: Floats, chosen: NDArray[np.int64], order: int, piece: Floats) -> None:
     sums = np.zeros(_SUMS)
     mean_a, mean_aa = 0.0, 0.0
     for i in chosen:
@@ -317,7 +316,7 @@ def _describe(profile: _Floats, chosen: NDArray[np.int64], order: int, piece: _F
 
 
 @kernel
-def _turn_frame(profile: _Floats, noise: float, pieces: _Floats, frame: _Floats) -> None:
+def _turn_frame(profile: Floats, noise: float, pieces: Floats, frame: Floats) -> None:
     """One Gauss-Newton step: what is left of the distances along the edge turns the frame."""
     matrix = np.zeros((3, 3))
     right = np.zeros(3)
@@ -353,7 +352,7 @@ def _turn_frame(profile: _Floats, noise: float, pieces: _Floats, frame: _Floats)
 
 
 @kernel
-def _corners_of(pieces: _Floats, order: int, noise: float, along: float, corners: _Floats) -> int:
+def _corners_of(pieces: Floats, order: int, noise: float, along: float, corners: Floats) -> int:
     count, k = 0, -1
     last = _next_piece(pieces, -1, noise, along)
     while last >= 0 and count < MOST_CORNERS - 1:
@@ -376,7 +375,7 @@ def _corners_of(pieces: _Floats, order: int, noise: float, along: float, corners
 
 
 @kernel
-def _next_piece(pieces: _Floats, k: int, noise: float, along: float) -> int:
+def _next_piece(pieces: Floats, k: int, noise: float, along: float) -> int:
     """The next piece that is a surface, seen by several rows; −1 after the last."""
     for other in range(k + 1, pieces.shape[0]):
         piece = pieces[other]
@@ -397,7 +396,7 @@ def _between(before: float, after: float) -> float:
 
 
 @kernel
-def _crossing(before: _Floats, after: _Floats, order: int, corner: _Floats) -> int:
+def _crossing(before: Floats, after: Floats, order: int, corner: Floats) -> int:
     """The corner where two pieces cross, if they come near it."""
     c1, s1 = math.cos(before[_ANGLE]), math.sin(before[_ANGLE])
     c2, s2 = math.cos(after[_ANGLE]), math.sin(after[_ANGLE])
@@ -435,7 +434,7 @@ def _crossing(before: _Floats, after: _Floats, order: int, corner: _Floats) -> i
 
 
 @kernel
-def _jump(before: _Floats, after: _Floats, order: int, noise: float, corners: _Floats) -> int:
+def _jump(before: Floats, after: Floats, order: int, noise: float, corners: Floats) -> int:
     """Two corners where one surface ends and goes on higher or lower, no point on the face."""
     cos, sin = math.cos(before[_ANGLE]), math.sin(before[_ANGLE])
     end_u, end_v = before[_MEAN_U] + before[_LAST] * cos, before[_MEAN_V] + before[_LAST] * sin
@@ -464,5 +463,5 @@ def _jump(before: _Floats, after: _Floats, order: int, noise: float, corners: _F
 
 
 @kernel
-def _store(corner: _Floats, u: float, v: float, order: int) -> None:
+def _store(corner: Floats, u: float, v: float, order: int) -> None:
     corner[ACROSS], corner[HEIGHT], corner[ORDER] = u, v, order

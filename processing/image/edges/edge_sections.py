@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.image.edges.edge_kernels import (
     ACROSS,
     BEND,
@@ -17,8 +17,6 @@ from processing.image.edges.edge_kernels import (
     SectionLimits,
     corners_kernel,
 )
-
-_Floats = NDArray[np.float64]
 
 PATCH_M = 0.5
 """Radius of what is looked at as one piece of edge: longer than a curb is high, and yet in a bend
@@ -96,21 +94,21 @@ class EdgeProfile:
         How far points lie off the profile, its pieces being paid for.
     """
 
-    center: _Floats
+    center: Floats
     heading_rad: float
     grade: float
     curvature: float
-    corners: _Floats
+    corners: Floats
     spread_m: float
 
     @property
-    def direction(self) -> _Floats:
+    def direction(self) -> Floats:
         """(3,) unit vector along the edge."""
         along = np.array([math.cos(self.heading_rad), math.sin(self.heading_rad), self.grade])
         return np.asarray(along / np.linalg.norm(along))
 
     @property
-    def positions(self) -> _Floats:
+    def positions(self) -> Floats:
         """(k, 3) the corners, m, project CRS."""
         left = np.array([-math.sin(self.heading_rad), math.cos(self.heading_rad), 0.0])
         up = np.array([0.0, 0.0, 1.0])
@@ -120,7 +118,7 @@ class EdgeProfile:
         )
 
 
-def section_at(xyz: _Floats, center: _Floats) -> EdgeProfile | None:
+def section_at(xyz: Floats, center: Floats) -> EdgeProfile | None:
     """The profile of points about a place, seen along the edge that runs there.
 
     Parameters
@@ -157,7 +155,7 @@ def section_at(xyz: _Floats, center: _Floats) -> EdgeProfile | None:
 
 
 def section_along(
-    local: _Floats, frame: _Floats, reach: tuple[float, float], order: int
+    local: Floats, frame: Floats, reach: tuple[float, float], order: int
 ) -> EdgeProfile | None:
     """The profile of points about the origin when the direction of the edge is nearly known."""
     corners = np.empty((MOST_CORNERS, CORNER_COLUMNS))
@@ -184,7 +182,7 @@ def section_along(
     )
 
 
-def _runs_with_rows(local: _Floats, frame: _Floats) -> bool:
+def _runs_with_rows(local: Floats, frame: Floats) -> bool:
     """Whether points fall on few places of the profile, since rows run along that direction."""
     across = local[:, 1] * math.cos(frame[0]) - local[:, 0] * math.sin(frame[0])
     bins = round(2 * PATCH_M / _DENSE_M)
@@ -192,7 +190,7 @@ def _runs_with_rows(local: _Floats, frame: _Floats) -> bool:
     return filled < _EVENLY_FILLED * bins * (1 - math.exp(-across.size / bins))
 
 
-def length_needed(local: _Floats, frame: _Floats, most_m: float = PATCH_M) -> float:
+def length_needed(local: Floats, frame: Floats, most_m: float = PATCH_M) -> float:
     """Half the length of edge that has enough points: the shorter, the straighter it is."""
     along = np.abs(local[:, 0] * math.cos(frame[0]) + local[:, 1] * math.sin(frame[0]))
     if along.size <= _ENOUGH:
@@ -200,7 +198,7 @@ def length_needed(local: _Floats, frame: _Floats, most_m: float = PATCH_M) -> fl
     return max(_LEAST_ALONG_M, float(np.partition(along, _ENOUGH)[_ENOUGH]))
 
 
-def _first_frame(local: _Floats) -> _Floats:
+def _first_frame(local: Floats) -> Floats:
     """Heading and grade of the direction square to all normals."""
     step = max(1, local.shape[0] // _ENOUGH)
     thinned = local[::step]
@@ -218,7 +216,7 @@ def _first_frame(local: _Floats) -> _Floats:
     return np.array([heading, grade, 0.0])
 
 
-def _scatters(xyz: _Floats, radius: float) -> _Floats:
+def _scatters(xyz: Floats, radius: float) -> Floats:
     """(n, 3, 3) covariance of the neighbours of every point."""
     squares = (xyz**2).sum(axis=1)
     apart = squares[:, None] + squares - 2 * xyz @ xyz.T
@@ -229,7 +227,7 @@ def _scatters(xyz: _Floats, radius: float) -> _Floats:
     return np.asarray(products.reshape(-1, 3, 3) - np.einsum("ij,ik->ijk", means, means))
 
 
-def _roughness(local: _Floats, frames: _Floats) -> _Floats:
+def _roughness(local: Floats, frames: Floats) -> Floats:
     """(k,) how badly points fall on one profile when looked at along each of some frames, m².
 
     Mean squares of the distance from short straight pieces, of profiles that rise or fall.

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from enum import Enum
 
 import numpy as np
-from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.image.edges.step_kernels import (
     ACROSS_M,
     BASE,
@@ -29,8 +29,6 @@ from processing.image.edges.step_kernels import (
     WIDTH,
     step_kernel,
 )
-
-_Floats = NDArray[np.float64]
 
 _WANTED, _MOST = 80, 300
 """Points that are enough for a step, over whose length they are taken; more make it slower, not
@@ -68,8 +66,8 @@ class EdgeStep:
         Directions across, to the left, of the lower surface, the face and the upper surface.
     """
 
-    lower: _Floats
-    upper: _Floats
+    lower: Floats
+    upper: Floats
     heading_rad: float
     grades: tuple[float, float]
     slopes_rad: tuple[float, float, float]
@@ -80,7 +78,7 @@ class EdgeStep:
         return float(self.upper[2] - self.lower[2])
 
     @property
-    def edges(self) -> tuple[tuple[_Floats, _Floats], tuple[_Floats, _Floats]]:
+    def edges(self) -> tuple[tuple[Floats, Floats], tuple[Floats, Floats]]:
         """Places and unit vectors of the lower and the upper edge."""
         lower, upper = (
             np.array([math.cos(self.heading_rad), math.sin(self.heading_rad), grade])
@@ -90,7 +88,7 @@ class EdgeStep:
         return (self.lower, lower), (self.upper, upper)
 
 
-def step_at(xyz: _Floats, center: _Floats) -> EdgeStep | StepGround:
+def step_at(xyz: Floats, center: Floats) -> EdgeStep | StepGround:
     """The low step within 18 cm of a place, in any direction.
 
     Parameters
@@ -107,19 +105,19 @@ def step_at(xyz: _Floats, center: _Floats) -> EdgeStep | StepGround:
     return _step_along(local, center, max(_SHORTEST_M, min(LONGEST_M, needed)))
 
 
-def reach_needed(xyz: _Floats, center: _Floats) -> float:
+def reach_needed(xyz: Floats, center: Floats) -> float:
     """How far around a place points are looked at, m."""
     needed = _length_needed(xyz - center)
     return math.hypot(ACROSS_M, LONGER_M if needed > LONGEST_M else LONGEST_M)
 
 
-def _length_needed(local: _Floats) -> float:
+def _length_needed(local: Floats) -> float:
     """Half the length that has enough points."""
     near = int(((local**2).sum(axis=1) <= LONGEST_M**2).sum())
     return _WANTED / max(1.0, 4 * ACROSS_M * near / (math.pi * LONGEST_M**2))
 
 
-def _step_along(local: _Floats, center: _Floats, along: float) -> EdgeStep | StepGround:
+def _step_along(local: Floats, center: Floats, along: float) -> EdgeStep | StepGround:
     local = local[(local**2).sum(axis=1) <= along**2 + ACROSS_M**2]
     local = np.ascontiguousarray(local[:: 1 + local.shape[0] // _MOST])
     found = np.zeros(UNKNOWNS)
@@ -129,7 +127,7 @@ def _step_along(local: _Floats, center: _Floats, along: float) -> EdgeStep | Ste
     return _step(found, center)
 
 
-def _step(found: _Floats, center: _Floats) -> EdgeStep:
+def _step(found: Floats, center: Floats) -> EdgeStep:
     cos, sin = math.cos(found[HEADING]), math.sin(found[HEADING])
     far = found[POSITION] + found[WIDTH]
     lower = np.array([-found[POSITION] * sin, found[POSITION] * cos, found[BASE]])

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from processing.core.arrays import Floats, Integers
 from processing.image.edges.edge_kernels import ACROSS, BEND, HEIGHT, LONGEST_ARM_M, ORDER, STRENGTH
 from processing.image.edges.edge_sections import (
     LEAST_STRENGTH_M,
@@ -29,8 +29,6 @@ from processing.recording.columns.damaged_pulses import damaged_pulses
 if TYPE_CHECKING:  # processing.recording.drive makes images, so importing it here would be a circle
     from processing.recording.drive import Drive
 
-_Floats = NDArray[np.float64]
-_Integers = NDArray[np.int64]
 
 """No point."""
 
@@ -195,13 +193,13 @@ def _extreme_point(drive: Drive, point: int, radius_m: float, sign: float) -> in
 class _Edge:
     """An edge that passes a row: place and direction, strength, distance from the row's middle."""
 
-    position: _Floats
-    direction: _Floats
+    position: Floats
+    direction: Floats
     strength_m: float
     distance_m: float
 
 
-def _edges_beside(xyz: _Floats, row: _Row, center: _Floats, within_px: int) -> list[_Edge]:
+def _edges_beside(xyz: Floats, row: _Row, center: Floats, within_px: int) -> list[_Edge]:
     """Strong edges near a place that pass the row within the pixels, each looked at again.
 
     Where one of a section's edges is confirmed, its other plain ones are believed.
@@ -226,7 +224,7 @@ def _edges_beside(xyz: _Floats, row: _Row, center: _Floats, within_px: int) -> l
     return edges
 
 
-def _around_row(drive: Drive, point: int, reach_m: float) -> tuple[_Integers, _Floats]:
+def _around_row(drive: Drive, point: int, reach_m: float) -> tuple[Integers, Floats]:
     """Points about a row, farther where they are few, and where they are."""
     around = neighbours(drive, point, reach_m + PATCH_M)
     xyz = drive.xyz(around)
@@ -237,7 +235,7 @@ def _around_row(drive: Drive, point: int, reach_m: float) -> tuple[_Integers, _F
     return around, xyz
 
 
-def _edges_of_step(xyz: _Floats, row: _Row, step: EdgeStep, within_px: int) -> list[_Edge]:
+def _edges_of_step(xyz: Floats, row: _Row, step: EdgeStep, within_px: int) -> list[_Edge]:
     """Both edges of a step where the row cuts it; tested as a whole, they count like plain ones."""
     again = step_at(xyz, row.nearest_on(*step.edges[0]))
     step = again if isinstance(again, EdgeStep) else step
@@ -249,8 +247,8 @@ def _edges_of_step(xyz: _Floats, row: _Row, step: EdgeStep, within_px: int) -> l
 class _SeenEdge(NamedTuple):
     """An edge: a place of it, m, its direction, its strength, m."""
 
-    position: _Floats
-    direction: _Floats
+    position: Floats
+    direction: Floats
     strength_m: float
 
 
@@ -268,7 +266,7 @@ def _passing(row: _Row, seen: _SeenEdge, within_px: int) -> _Edge | None:
     return _Edge(position, direction, strength, float(off[row.middle]))
 
 
-def _seen_again(xyz: _Floats, row: _Row, section: EdgeProfile, corner: int) -> _SeenEdge | None:
+def _seen_again(xyz: Floats, row: _Row, section: EdgeProfile, corner: int) -> _SeenEdge | None:
     """The same corner in a narrow profile where the row cuts it; None where it isn't there."""
     position = row.nearest_on(section.positions[corner], section.direction)
     local = xyz - position
@@ -295,8 +293,8 @@ def _seen_again(xyz: _Floats, row: _Row, section: EdgeProfile, corner: int) -> _
 class _Row:
     """Points of a row near a point: their distance in pixels, and places."""
 
-    offsets: _Integers
-    xyz: _Floats
+    offsets: Integers
+    xyz: Floats
     middle: int
 
     @property
@@ -305,12 +303,12 @@ class _Row:
         away = self.xyz - self.xyz[self.middle]
         return min(_MOST_REACH_M, float(np.linalg.norm(away, axis=1).max()))
 
-    def nearest_to(self, position: _Floats, direction: _Floats) -> int:
+    def nearest_to(self, position: Floats, direction: Floats) -> int:
         """The point of the row nearest to a line; near the middle where the row runs along it."""
         aside = np.linalg.norm(self.xyz - self.xyz[self.middle], axis=1)
         return int((_off_line(self.xyz, position, direction) + _AS_NEAR * aside).argmin())
 
-    def nearest_on(self, position: _Floats, direction: _Floats) -> _Floats:
+    def nearest_on(self, position: Floats, direction: Floats) -> Floats:
         """(3,) where the row comes nearest to a line."""
         nearest = self.nearest_to(position, direction)
         return np.asarray(position + ((self.xyz[nearest] - position) @ direction) * direction)
@@ -326,7 +324,7 @@ def _row_around(drive: Drive, point: int, within_px: int) -> _Row:
     return _Row(np.asarray(pulses[start:stop], np.int64) - here, xyz, point - int(start))
 
 
-def _outward(xyz: _Floats, middle: int) -> list[int]:
+def _outward(xyz: Floats, middle: int) -> list[int]:
     """Places along a row from its middle to both sides, so far apart that patches overlap well."""
     chosen = [middle]
     order = np.argsort(np.linalg.norm(xyz - xyz[middle], axis=1), kind="stable")
@@ -338,7 +336,7 @@ def _outward(xyz: _Floats, middle: int) -> list[int]:
     return chosen
 
 
-def _off_line(xyz: _Floats, position: _Floats, direction: _Floats) -> _Floats:
+def _off_line(xyz: Floats, position: Floats, direction: Floats) -> Floats:
     """(n,) distances of points from a line."""
     away = xyz - position
     along = away @ direction

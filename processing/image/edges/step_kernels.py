@@ -12,11 +12,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.core.kernels import kernel
-
-_Floats = NDArray[np.float64]
 
 OTHER, FLAT, STEP = 0, 1, 2
 """What a patch of points is: neither of the two; a surface without a step; a step."""
@@ -136,7 +134,7 @@ class _FitLimits(NamedTuple):
 
 
 @kernel
-def step_kernel(local: _Floats, along: float, step: _Floats) -> int:
+def step_kernel(local: Floats, along: float, step: Floats) -> int:
     """Whether points about a place are a low step, and where.
 
     Parameters
@@ -175,7 +173,7 @@ def step_kernel(local: _Floats, along: float, step: _Floats) -> int:
 
 
 @kernel
-def is_step(step: _Floats, fit: _Floats) -> bool:
+def is_step(step: Floats, fit: Floats) -> bool:
     """Whether a fitted step is one: high, steep and sure enough, between gentle surfaces."""
     beside = max(abs(step[LEFT]), abs(step[RIGHT]))
     return bool(
@@ -189,7 +187,7 @@ def is_step(step: _Floats, fit: _Floats) -> bool:
 
 
 @kernel
-def _near_plane(local: _Floats, surface: _Floats) -> int:
+def _near_plane(local: Floats, surface: Floats) -> int:
     """The points near the plane that most of them lie on; 0 where many don't."""
     plane = np.zeros(3)
     matrix, right = np.zeros((3, 3)), np.zeros(3)
@@ -217,7 +215,7 @@ def _near_plane(local: _Floats, surface: _Floats) -> int:
 
 
 @kernel
-def _scan(surface: _Floats, along: float, step: _Floats) -> float:
+def _scan(surface: Floats, along: float, step: Floats) -> float:
     """The best sharp step over all headings and places; gives what is left of the heights, m.
 
     The unknown of the width holds how sure the jump is, in its standard deviations. −1 where too
@@ -255,7 +253,7 @@ def _scan(surface: _Floats, along: float, step: _Floats) -> float:
 
 
 @kernel
-def _try_cut(sums: _Floats, total: float, cut: int, system: _Floats, unknowns: _Floats) -> float:
+def _try_cut(sums: Floats, total: float, cut: int, system: Floats, unknowns: Floats) -> float:
     """What is left of the squares of heights per point with a sharp step at a place, m²."""
     matrix, right = system[:_LINEAR], system[_LINEAR]
     _normal_equations(sums, cut, matrix, right)
@@ -268,7 +266,7 @@ def _try_cut(sums: _Floats, total: float, cut: int, system: _Floats, unknowns: _
 
 
 @kernel
-def _turn_round(step: _Floats) -> None:
+def _turn_round(step: Floats) -> None:
     """The same sharp step, its upper surface on the left."""
     step[BASE] += step[JUMP]
     step[GRADE] = -step[GRADE] - step[TWIST]
@@ -279,7 +277,7 @@ def _turn_round(step: _Floats) -> None:
 
 
 @kernel
-def _sum_up(surface: _Floats, along: float, heading: float, sums: _Floats) -> float:
+def _sum_up(surface: Floats, along: float, heading: float, sums: Floats) -> float:
     """Sums of 1, u, v, a, u², uv, ua, va, a² over points before each place; gives that of v²."""
     cos, sin = math.cos(heading), math.sin(heading)
     sums[:] = 0.0
@@ -308,7 +306,7 @@ def _sum_up(surface: _Floats, along: float, heading: float, sums: _Floats) -> fl
 
 
 @kernel
-def _normal_equations(sums: _Floats, cut: int, matrix: _Floats, right: _Floats) -> None:
+def _normal_equations(sums: Floats, cut: int, matrix: Floats, right: Floats) -> None:
     """Of height over 1, a, u before the cut, u beyond it, 1 beyond it, a beyond it."""
     c = cut * _BIN_M - ACROSS_M
     whole, before = sums[_BINS], sums[cut]
@@ -334,7 +332,7 @@ def _normal_equations(sums: _Floats, cut: int, matrix: _Floats, right: _Floats) 
 
 
 @kernel
-def fit_step(surface: _Floats, along: float, step: _Floats, fit: _Floats) -> None:
+def fit_step(surface: Floats, along: float, step: Floats, fit: Floats) -> None:
     """Make a nearly known step better by Gauss-Newton steps over all unknowns.
 
     Face, place and heading are held by what is known of them: few points lie on a face of 2 cm.
@@ -377,11 +375,11 @@ def fit_step(surface: _Floats, along: float, step: _Floats, fit: _Floats) -> Non
 
 @kernel
 def _sum_rows(
-    surface: _Floats,
+    surface: Floats,
     limits: _FitLimits,
-    step: _Floats,
-    system: _Floats,
-    sums: _Floats,
+    step: Floats,
+    system: Floats,
+    sums: Floats,
 ) -> None:
     """Normal equations; number, weights, squares of all points, number and weights at the face."""
     along, noise, coarseness = limits
@@ -409,7 +407,7 @@ def _sum_rows(
 
 
 @kernel
-def _add(matrix: _Floats, right: _Floats, row: _Floats, weight: float, off: float) -> None:
+def _add(matrix: Floats, right: Floats, row: Floats, weight: float, off: float) -> None:
     for j in range(row.size):
         right[j] += weight * row[j] * off
         for k in range(row.size):
@@ -417,13 +415,13 @@ def _add(matrix: _Floats, right: _Floats, row: _Floats, weight: float, off: floa
 
 
 @kernel
-def _hold(matrix: _Floats, right: _Floats, unknown: int, away: float, sure: float) -> None:
+def _hold(matrix: Floats, right: Floats, unknown: int, away: float, sure: float) -> None:
     matrix[unknown, unknown] += 1 / sure**2
     right[unknown] += away / sure**2
 
 
 @kernel
-def _row_of(step: _Floats, a: float, u: float, v: float, row: _Floats) -> float:
+def _row_of(step: Floats, a: float, u: float, v: float, row: Floats) -> float:
     """Derivatives of the height of the nearest surface at a place; gives its slope across.
 
     That of the place holds the height. Noise moves points of an upright face across, where they
@@ -455,7 +453,7 @@ def _row_of(step: _Floats, a: float, u: float, v: float, row: _Floats) -> float:
 
 
 @kernel
-def _solve(matrix: _Floats, right: _Floats, unknowns: _Floats, size: int) -> bool:
+def _solve(matrix: Floats, right: Floats, unknowns: Floats, size: int) -> bool:
     """Cholesky; the matrix and the right side stay as they are."""
     lower = np.empty((size, size))
     for j in range(size):

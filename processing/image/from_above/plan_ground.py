@@ -3,14 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.image.images_of_drives import image_of
 from processing.image.search.nearest import nearest_point
 from processing.recording.drive import Drive
 from processing.recording.kinds import ImageKind
-
-Floats = NDArray[np.float64]
 
 _POINTS_A_ROW = 8
 """Points below the vehicle that stand for a row: their median passes over a single stray. By trial;

@@ -7,17 +7,14 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from processing.core.arrays import Floats, Integers
 from processing.image.images_of_drives import image_of
 from processing.image.tiles.tile_kernels import COUNT, HIGHEST, LOWEST
 from processing.image.tiles.tiles import TileKey
 from processing.recording.columns.counted_classes import class_columns
 from processing.recording.drive import Drive
 from processing.recording.kinds import ImageKind
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 _MOST_REMEMBERED = 48
 """Tiles whose points are kept: more than a view shows at a time."""

@@ -11,9 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.core.kernels import kernel
-
-Floats = NDArray[np.float64]
 
 CEILING_PX = 16
 """Side of the squares of pixels that have one ceiling: heights of ground change little over it on

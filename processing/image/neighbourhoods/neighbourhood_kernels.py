@@ -12,10 +12,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats, Integers
 from processing.core.kernels import kernel
-
-_Integers = NDArray[np.int64]
-_Floats = NDArray[np.float64]
 
 STEPS_ASIDE = 4
 """Neighbours in a row to either side; the two other rows have as many, so that 8 to 26 points make
@@ -55,10 +53,10 @@ class PointRows(NamedTuple):
     """
 
     xyz: NDArray[Any]
-    scale: _Floats
+    scale: Floats
     clocks: NDArray[Any]
-    row_starts: _Integers
-    origins: _Integers
+    row_starts: Integers
+    origins: Integers
     segments: NDArray[np.int32]
     is_regular: bool
 
@@ -79,7 +77,7 @@ class Surfaces(NamedTuple):
 
 @kernel
 def neighbourhood_kernel(
-    rows: PointRows, points: _Integers, radius: float, surfaces: Surfaces
+    rows: PointRows, points: Integers, radius: float, surfaces: Surfaces
 ) -> None:
     """Normal, shape and mesh vector of chosen points; −1 among the points is left as zero."""
     sums = np.empty(9)
@@ -111,9 +109,9 @@ def _gather(
     point: int,
     row: int,
     radius: float,
-    sums: _Floats,
-    along: _Floats,
-    across: _Floats,
+    sums: Floats,
+    along: Floats,
+    across: Floats,
 ) -> int:
     """Sums over the neighbours of a point; gives their number."""
     if rows.is_regular:
@@ -162,7 +160,7 @@ def _sampling(step: float, gap: float, reach: float) -> tuple[int, int, int]:
 
 
 @kernel
-def _row_of(row_starts: _Integers, point: int, hint: int) -> int:
+def _row_of(row_starts: Integers, point: int, hint: int) -> int:
     if row_starts[hint] <= point < row_starts[hint + 1]:
         return hint
     low, high = 0, row_starts.size - 1
@@ -325,8 +323,8 @@ def _add_row(
     stride: int,
     count: int,
     reach: float,
-    sums: _Floats,
-    along: _Floats,
+    sums: Floats,
+    along: Floats,
 ) -> int:
     """Take in a row's middle, unless it is the point, and points within reach on its both sides."""
     start, stop = _continued(rows, row)
@@ -372,7 +370,7 @@ def _add_row(
 
 @kernel
 def _fit_plane(
-    sums: _Floats, count: int, normal: NDArray[np.float32], shape: NDArray[np.float32]
+    sums: Floats, count: int, normal: NDArray[np.float32], shape: NDArray[np.float32]
 ) -> None:
     """Eigenvalues of the covariance by the cosine formula, the normal by cross products."""
     mx, my, mz = sums[0] / count, sums[1] / count, sums[2] / count

@@ -8,10 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats, Integers
 from processing.core.kernels import kernel
-
-_Integers = NDArray[np.int64]
-_Floats = NDArray[np.float64]
 
 _COLUMNS_ASIDE = 3
 """A neighbour in the next row is looked for so many columns to either side: rows are shifted by a
@@ -45,15 +43,15 @@ class JoiningRows(NamedTuple):
     component.
     """
 
-    xyz: _Floats
+    xyz: Floats
     columns: NDArray[np.int32]
-    row_starts: _Integers
+    row_starts: Integers
     segments: NDArray[np.int32]
-    limits: _Floats
-    scratch: _Floats
+    limits: Floats
+    scratch: Floats
     tangents: NDArray[np.float32]
     is_bent: NDArray[np.bool_]
-    parents: _Integers
+    parents: Integers
 
 
 @kernel
@@ -99,7 +97,7 @@ def join_rows_kernel(rows: JoiningRows, first: int, end: int) -> None:
 
 
 @kernel
-def roots_kernel(parents: _Integers) -> None:
+def roots_kernel(parents: Integers) -> None:
     """Let every point name its component's first point itself."""
     for point in range(parents.size):
         # Parents come before their children, so the parent's own root is known already.
@@ -107,14 +105,14 @@ def roots_kernel(parents: _Integers) -> None:
 
 
 @kernel
-def unite_kernel(parents: _Integers, one: _Integers, other: _Integers) -> None:
+def unite_kernel(parents: Integers, one: Integers, other: Integers) -> None:
     """Join pairs of numbers."""
     for i in range(one.size):
         _join(parents, one[i], other[i])
 
 
 @kernel
-def renumber_kernel(numbers: NDArray[np.int32], gone: _Integers, ranks: _Integers) -> None:
+def renumber_kernel(numbers: NDArray[np.int32], gone: Integers, ranks: Integers) -> None:
     """Close up numbers of which some give way to others.
 
     ``gone``: those that give way, rising; ``ranks``: what each becomes. Any other falls by as many
@@ -138,7 +136,7 @@ def renumber_kernel(numbers: NDArray[np.int32], gone: _Integers, ranks: _Integer
 
 
 @kernel
-def _limit(limits: _Floats, expected: float) -> float:
+def _limit(limits: Floats, expected: float) -> float:
     return float(min(max(limits[0], limits[1] * expected), limits[2]))
 
 
@@ -179,7 +177,7 @@ def _go_together(rows: JoiningRows, one: int, other: int) -> bool:
 
 @kernel
 def _chord(
-    rows: JoiningRows, point: int, side: int, start: int, stop: int, chord: _Floats
+    rows: JoiningRows, point: int, side: int, start: int, stop: int, chord: Floats
 ) -> tuple[float, int]:
     """Distance and steps to the first point at least a chord away in the row; 0 if none is."""
     chord[:] = 0
@@ -233,7 +231,7 @@ def _nearest(rows: JoiningRows, point: int, below: int, after: int) -> tuple[int
 
 
 @kernel
-def _distance(xyz: _Floats, one: int, other: int) -> float:
+def _distance(xyz: Floats, one: int, other: int) -> float:
     dx = xyz[other, 0] - xyz[one, 0]
     dy = xyz[other, 1] - xyz[one, 1]
     dz = xyz[other, 2] - xyz[one, 2]
@@ -241,7 +239,7 @@ def _distance(xyz: _Floats, one: int, other: int) -> float:
 
 
 @kernel
-def _join(parents: _Integers, one: int, other: int) -> None:
+def _join(parents: Integers, one: int, other: int) -> None:
     while parents[one] != one:
         parents[one] = parents[parents[one]]
         one = parents[one]

@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Integers
 from processing.core.owned_files import new_file
 from processing.image.rows.gaps import STOP_S, close_gaps
 from processing.image.rows.rows_of_kind import (
@@ -29,8 +30,6 @@ from processing.recording.columns.columns import column_path
 from processing.recording.columns.damaged_pulses import damaged_pulses
 from processing.recording.columns.ordering import chunk_ranges, read_chunk
 from processing.recording.kinds import ImageKind
-
-_Integers = NDArray[np.int64]
 
 _POINTS_AT_ONCE = 4_000_000
 """Pulses read at a time: 32 MB."""
@@ -63,16 +62,16 @@ class ImageRows:
     widths : (rows,) int64
     """
 
-    row_starts: _Integers
-    origins: _Integers
-    spans: _Integers
+    row_starts: Integers
+    origins: Integers
+    spans: Integers
     per_span: int
     segments: NDArray[np.int32]
-    widths: _Integers
+    widths: Integers
 
 
 def image_rows(
-    kind: ImageKind, pulses: _Integers, folding: RevolutionSource | int, folder: Path | None = None
+    kind: ImageKind, pulses: Integers, folding: RevolutionSource | int, folder: Path | None = None
 ) -> ImageRows:
     """The rows of an image.
 
@@ -119,7 +118,7 @@ def _path(folder: Path, kind: ImageKind) -> Path:
 
 
 def _found(
-    plan: RowPlan, pulses: _Integers, folding: RevolutionSource | int, folder: Path | None
+    plan: RowPlan, pulses: Integers, folding: RevolutionSource | int, folder: Path | None
 ) -> ImageRows:
     starts = _row_starts(plan, pulses, folder)
     if not isinstance(folding, int):
@@ -137,7 +136,7 @@ def _found(
     return found
 
 
-def _row_starts(plan: RowPlan, pulses: _Integers, folder: Path | None) -> _Integers:
+def _row_starts(plan: RowPlan, pulses: Integers, folder: Path | None) -> Integers:
     """(rows + 1,) int64: where the points of each row begin; refuses pulses that fall."""
     firsts = plan.first_pulses
     starts = np.full(firsts.size + 1, pulses.size, np.int64)
@@ -153,7 +152,7 @@ def _row_starts(plan: RowPlan, pulses: _Integers, folder: Path | None) -> _Integ
     return starts
 
 
-def _stretches_of(pulses: _Integers, folder: Path | None) -> Iterator[tuple[int, _Integers]]:
+def _stretches_of(pulses: Integers, folder: Path | None) -> Iterator[tuple[int, Integers]]:
     """First point and pulses of consecutive stretches; read, for what is mapped stays in memory."""
     for start, stop in chunk_ranges(pulses.size, _POINTS_AT_ONCE):
         if folder is None:
@@ -162,7 +161,7 @@ def _stretches_of(pulses: _Integers, folder: Path | None) -> Iterator[tuple[int,
             yield start, read_chunk(folder, "pulse", start, stop)
 
 
-def _made_of(pulses: _Integers, folding: RevolutionSource | int, folder: Path) -> _Integers:
+def _made_of(pulses: Integers, folding: RevolutionSource | int, folder: Path) -> Integers:
     """A few numbers that are others for other pulses or turns, or for pulses written since."""
     path = column_path(folder, "pulse")
     written_ns = path.stat().st_mtime_ns if path.is_file() else 0
@@ -177,7 +176,7 @@ def _made_of(pulses: _Integers, folding: RevolutionSource | int, folder: Path) -
     return np.array([*ends, folding.fold_pulses.size, *sums, *rates.tolist()], np.int64)
 
 
-def _read(path: Path, made_of: _Integers) -> ImageRows | None:
+def _read(path: Path, made_of: Integers) -> ImageRows | None:
     try:
         kept = read_arrays(path)
         if not np.array_equal(kept[_MADE_OF], made_of):
@@ -212,7 +211,7 @@ def _fits(rows: ImageRows, points: int) -> bool:
     return bool(ends_fit and are_rising and least >= 1 and pixels <= _MOST_PIXELS)
 
 
-def _belongs(kept: ImageRows, plan: RowPlan, pulses: _Integers) -> bool:
+def _belongs(kept: ImageRows, plan: RowPlan, pulses: Integers) -> bool:
     """Whether kept rows are some of a plan's, and points lie in theirs, as far as is asked."""
     if kept.per_span != plan.columns_per_span:
         return False
@@ -232,7 +231,7 @@ def _belongs(kept: ImageRows, plan: RowPlan, pulses: _Integers) -> bool:
     return bool(is_planned.all() and are_inside.all())
 
 
-def _write(path: Path, rows: ImageRows, made_of: _Integers) -> None:
+def _write(path: Path, rows: ImageRows, made_of: Integers) -> None:
     temporary = path.with_suffix(f".{threading.get_ident()}.part")
     try:
         with new_file(temporary) as file:

@@ -7,10 +7,9 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Integers
 from processing.recording.columns.counted_classes import ClassColumns
 from processing.recording.kinds import ImageKind
-
-_Integers = NDArray[np.int64]
 
 
 class PixelRows(Protocol):
@@ -31,7 +30,7 @@ class PixelRows(Protocol):
     rows: int
     width: int
     drive_count: int
-    row_starts: _Integers
+    row_starts: Integers
 
     @property
     def mode_width(self) -> int:
@@ -40,7 +39,7 @@ class PixelRows(Protocol):
     def columns_of(self, start: int, stop: int) -> NDArray[np.int32]:
         """Columns of the points ``start … stop − 1``."""
 
-    def points_in(self, rows: range, columns: range) -> _Integers:
+    def points_in(self, rows: range, columns: range) -> Integers:
         """(n,) int64: all points of the pixels of a window, rising."""
 
     def raster(
@@ -50,5 +49,5 @@ class PixelRows(Protocol):
         step: int = 1,
         *,
         without_noise: ClassColumns | None = None,
-    ) -> _Integers:
+    ) -> Integers:
         """The points shown in a window, −1 for empty pixels."""

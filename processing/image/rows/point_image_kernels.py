@@ -7,10 +7,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Integers
 from processing.core.kernels import kernel
 from processing.recording.columns.counted_classes import NOISE_CODES, ClassColumns
 
-_Integers = NDArray[np.int64]
 _FIRST_ROW, _STEP, _FIRST_COLUMN, _END_COLUMN, _WIDTH = range(5)
 """Of a window: first row, step of rows, first column, end of columns, width of the image."""
 
@@ -30,15 +30,15 @@ class PixelLayout(NamedTuple):
     :class:`processing.image.rows.rows_of_kind.RowPlan`.
     """
 
-    pulses: _Integers
-    row_starts: _Integers
-    origins: _Integers
-    spans: _Integers
+    pulses: Integers
+    row_starts: Integers
+    origins: Integers
+    spans: Integers
     per_span: int
 
 
 @kernel
-def first_at(pulses: _Integers, start: int, stop: int, pulse: int) -> int:
+def first_at(pulses: Integers, start: int, stop: int, pulse: int) -> int:
     """The first of the points ``start … stop − 1`` whose pulse isn't less; else ``stop``."""
     low, high = start, stop
     while low < high:
@@ -73,7 +73,7 @@ def shown_point(layout: PixelLayout, row: int, start: int, end: int) -> int:
 
 
 @kernel
-def raster_kernel(layout: PixelLayout, window: _Integers, raster: _Integers) -> bool:
+def raster_kernel(layout: PixelLayout, window: Integers, raster: Integers) -> bool:
     """Fill a raster with the point shown in every pixel, −1 where there is none.
 
     ``window``: first row, step, first column, end of columns, width of the image. False, and
@@ -105,7 +105,7 @@ def raster_kernel(layout: PixelLayout, window: _Integers, raster: _Integers) -> 
 
 @kernel
 def noiseless_raster_kernel(
-    layout: PixelLayout, classes: ClassColumns, window: _Integers, raster: _Integers
+    layout: PixelLayout, classes: ClassColumns, window: Integers, raster: Integers
 ) -> bool:
     """As :func:`raster_kernel`, but points of noise are not there."""
     step, first_column = window[_STEP], window[_FIRST_COLUMN]
@@ -135,7 +135,7 @@ def noiseless_raster_kernel(
 
 
 @kernel
-def columns_kernel(layout: PixelLayout, first: _Integers, columns: NDArray[np.int32]) -> bool:
+def columns_kernel(layout: PixelLayout, first: Integers, columns: NDArray[np.int32]) -> bool:
     """Columns of consecutive points; ``first``: the first point, its row, width of the image.
 
     False, and only some columns, where they fall within a row or lie outside of the image.
@@ -153,7 +153,7 @@ def columns_kernel(layout: PixelLayout, first: _Integers, columns: NDArray[np.in
 
 
 @kernel
-def stretches_kernel(layout: PixelLayout, windows: _Integers, stretches: _Integers) -> bool:
+def stretches_kernel(layout: PixelLayout, windows: Integers, stretches: Integers) -> bool:
     """The points of windows, row by row: (rows of all windows, 2) first and end.
 
     ``windows``: first and end row, first and end column. False where an end comes before its

@@ -14,13 +14,13 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Integers
 from processing.recording.columns.damaged_pulses import damaged_pulses
 from processing.recording.kinds import ImageKind
 
 FIXED_WIDTH_SHARE = 0.99
 """Width of fixed-width kinds in pulses per revolution: a little less, so that no stripes appear."""
 
-_Integers = NDArray[np.int64]
 
 _MOST_ROWS = 1 << 25
 """More than a scanner of 200 Hz makes in a day and a half: no recording has as many."""
@@ -50,7 +50,7 @@ class RevolutionSource(Protocol):
         """Pulses in a second."""
 
     @property
-    def fold_pulses(self) -> _Integers:
+    def fold_pulses(self) -> Integers:
         """First pulses."""
 
     @property
@@ -58,7 +58,7 @@ class RevolutionSource(Protocol):
         """Times of the first pulses."""
 
     @property
-    def row_ends(self) -> _Integers:
+    def row_ends(self) -> Integers:
         """First pulses after the revolutions."""
 
     @property
@@ -90,13 +90,13 @@ class RowPlan:
         Columns of each row.
     """
 
-    first_pulses: _Integers
-    end_pulses: _Integers
-    doubled_origins: _Integers
-    doubled_spans: _Integers
+    first_pulses: Integers
+    end_pulses: Integers
+    doubled_origins: Integers
+    doubled_spans: Integers
     columns_per_span: int
     segments: NDArray[np.int32]
-    widths: _Integers
+    widths: Integers
 
     def kept(self, rows: NDArray[np.bool_], segments: NDArray[np.int32]) -> RowPlan:
         """The plan of some of the rows, with the segments of all rows numbered anew."""
@@ -112,7 +112,7 @@ class RowPlan:
 
 
 def plan_of_revolutions(
-    kind: ImageKind, revolutions: RevolutionSource, pulses: _Integers, folder: Path | None = None
+    kind: ImageKind, revolutions: RevolutionSource, pulses: Integers, folder: Path | None = None
 ) -> RowPlan:
     """The rows of a recording with revolutions.
 
@@ -152,7 +152,7 @@ def plan_of_revolutions(
     return RowPlan(firsts, ends, origins, spans, width, segments, np.full_like(spans, width))
 
 
-def plan_of_cells(cells_per_row: int, cells: _Integers, folder: Path | None = None) -> RowPlan:
+def plan_of_cells(cells_per_row: int, cells: Integers, folder: Path | None = None) -> RowPlan:
     """The rows of a top view or a standing scanner's grid, whose cells play the pulses.
 
     Parameters
@@ -188,7 +188,7 @@ class _Stretch:
 
     start: int
     stop: int
-    folds: _Integers
+    folds: Integers
 
     def is_possible(self, pulses_per_revolution: int) -> bool:
         """Whether pulses don't fall in it, and no more rows cover it than a recording has."""
@@ -206,7 +206,7 @@ class _Stretch:
 
 
 def _stretches(
-    revolutions: RevolutionSource, pulses: _Integers, pulses_per_revolution: int
+    revolutions: RevolutionSource, pulses: Integers, pulses_per_revolution: int
 ) -> Iterator[_Stretch]:
     """Parts of the recording between stops; together they hold every pulse with a point."""
     rows = revolutions.row_ends.size
@@ -230,7 +230,7 @@ def _stretches(
 
 def _rows_of_stretch(
     kind: ImageKind, stretch: _Stretch, pulses_per_revolution: int
-) -> tuple[_Integers, _Integers, _Integers]:
+) -> tuple[Integers, Integers, Integers]:
     """Doubled row edges (rows + 1,), first and end pulses (rows,) of a stretch."""
     folds = stretch.folds
     if kind is ImageKind.REVERSIBLE:

@@ -7,10 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.core.kernels import kernel
 from processing.image.search.corridor import Corridor
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

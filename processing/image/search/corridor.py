@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats, Integers
 from processing.core.kernels import kernel
 from processing.image.search.nearest import nearest_point
 from processing.recording.drive import Drive
@@ -16,8 +17,6 @@ from processing.recording.drive import Drive
 if TYPE_CHECKING:  # its import takes a third of a second, which the program's start hasn't got
     from scipy.spatial import cKDTree
 
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 _CELLS_PER_REACH = 4.0
 """Cells of the search across a corridor: finer ones save no time. By trial; no measurement is

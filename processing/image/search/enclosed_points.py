@@ -10,13 +10,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.core.kernels import kernel
 from processing.image.point_image import PointCloudImage
 from processing.image.tiles.tile_kernels import COUNT, HIGHEST, LOWEST
 from processing.image.tiles.tiles import TILE
 from processing.recording.drive import Drive
-
-Floats = NDArray[np.float64]
 
 _POINTS_AT_ONCE = 2_000_000
 """24 MB of coordinates, and short enough for a cancel to be felt at once."""

@@ -5,15 +5,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats, Integers
 from processing.image.images_of_drives import image_of
 from processing.image.point_image import PointCloudImage
 from processing.image.tiles.tile_kernels import HIGHEST, LOWEST
 from processing.image.tiles.tiles import TILE
 from processing.recording.columns.coordinates import Coordinates
 from processing.recording.drive import Drive
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 NONE = -1
 """No point."""

@@ -12,15 +12,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats, Integers
 from processing.core.kernels import kernel
 from processing.image.point_image import PointCloudImage
 from processing.image.search.clip import Clip
 from processing.image.tiles.tiles import TileKey
 from processing.recording.columns.counted_classes import class_columns
 from processing.recording.drive import Drive
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 TOLERANCE_PX = 6.0
 """How near to a pixel a point must be drawn to be meant: about what a hand misses by. By trial; no

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.image.search.clip import Clip
 from processing.image.tiles.tile_descent import (
     COLUMN,
@@ -25,7 +25,6 @@ from processing.image.tiles.tile_descent import (
 from processing.image.tiles.tile_kernels import HIGHEST, LOWEST
 from processing.image.tiles.tiles import TILE, TileKey, TilePyramid
 
-Floats = NDArray[np.float64]
 Triple = tuple[float, float, float]
 
 FINE_ENOUGH_PX = 1.0

@@ -13,6 +13,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats, Integers
 from processing.image.rows.pixel_rows import PixelRows
 from processing.image.tiles.tile_files import TileFiles
 from processing.image.tiles.tile_kernels import (
@@ -26,9 +27,6 @@ from processing.image.tiles.tile_kernels import (
     tile_kernel,
 )
 from processing.recording.columns.coordinates import Coordinates
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 PORTION_POINTS = 1_000_000
 """Points that one step of the pass reads: 12 MB, short enough for views to wait."""

@@ -9,15 +9,12 @@ from pathlib import Path
 from typing import BinaryIO
 
 import numpy as np
-from numpy.typing import NDArray
 
+from processing.core.arrays import Flags, Floats
 from processing.core.owned_files import new_file
 from processing.image.tiles.tile_kernels import COUNT, HIGHEST, LOWEST
 from processing.recording.columns.array_files import read_array, read_arrays
 from processing.recording.kinds import ImageKind
-
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
 
 
 class TileFiles:

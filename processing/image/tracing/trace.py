@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from processing.core.arrays import Floats, Integers
 from processing.core.text import Text
 from processing.image.tracing.trace_edges import EdgeFollower
 from processing.image.tracing.trace_markings import MarkingFollower
@@ -24,8 +24,6 @@ from processing.image.tracing.trace_search import (
 if TYPE_CHECKING:  # processing.recording.drive makes images, so importing it here would be a circle
     from processing.recording.drive import Drive
 
-_Floats = NDArray[np.float64]
-_Integers = NDArray[np.int64]
 
 TOLERANCE_M = 0.01
 """The polyline stays this near to all places where the line was found."""
@@ -72,8 +70,8 @@ class TraceResult:
         Why it doesn't; empty when it does.
     """
 
-    points: _Integers
-    xyz: _Floats
+    points: Integers
+    xyz: Floats
     is_complete: bool
     reason: Text
 
@@ -137,7 +135,7 @@ def _marking_follower(drive: Drive, cloud: PointsBetween) -> MarkingFollower:
     return MarkingFollower(cloud, intensity)
 
 
-def _line_at_both(followers: Sequence[Follower], goal: _Floats) -> _Line | None:
+def _line_at_both(followers: Sequence[Follower], goal: Floats) -> _Line | None:
     """What passes both points; or one of them, where nothing is found at the other."""
     here = np.zeros(3)
     for follower in followers:
@@ -152,7 +150,7 @@ def _line_at_both(followers: Sequence[Follower], goal: _Floats) -> _Line | None:
     return None
 
 
-def _off(positions: Sequence[TracePoint], kind: float, xyz: _Floats) -> float:
+def _off(positions: Sequence[TracePoint], kind: float, xyz: Floats) -> float:
     """How far the nearest line of a kind passes a place."""
     of_kind = (off_line(xyz, position) for position in positions if position.look[0] == kind)
     return min(of_kind, default=_UNSEEN_M)
@@ -171,7 +169,7 @@ def _of_kind(
 
 
 def _positions_between(
-    line: _Line, goal: _Floats, *, across_gaps: bool
+    line: _Line, goal: Floats, *, across_gaps: bool
 ) -> tuple[list[TracePoint], bool]:
     """Places from the start on, and whether they lead to the end."""
     vehicle_path = find_trace(line.follower, line.starts, goal)
@@ -192,13 +190,13 @@ def _positions_between(
     return positions, is_complete
 
 
-def _beside(position: TracePoint, xyz: _Floats) -> _Floats:
+def _beside(position: TracePoint, xyz: Floats) -> Floats:
     """(3,) where the line through a place passes another, if it isn't far."""
     along = float((xyz - position.xyz) @ position.direction)
     return position.ahead(max(-_REACHED_M, min(_REACHED_M, along))).xyz
 
 
-def _between(positions: Sequence[TracePoint], start: _Floats, goal: _Floats) -> list[_Floats]:
+def _between(positions: Sequence[TracePoint], start: Floats, goal: Floats) -> list[Floats]:
     """Places that lie ahead of the start and before the end."""
     first, last = positions[0].direction, positions[-1].direction
     return [
@@ -209,11 +207,11 @@ def _between(positions: Sequence[TracePoint], start: _Floats, goal: _Floats) -> 
     ]
 
 
-def _is_far(away: _Floats) -> bool:
+def _is_far(away: Floats) -> bool:
     return float(np.linalg.norm(away)) > _REACHED_M
 
 
-def _thinned(xyz: _Floats) -> _Integers:
+def _thinned(xyz: Floats) -> Integers:
     """Which vertices the polyline needs to stay within the tolerance of all (Douglas, Peucker)."""
     is_kept = np.zeros(xyz.shape[0], dtype=np.bool_)
     is_kept[[0, -1]] = True
@@ -234,5 +232,5 @@ def _thinned(xyz: _Floats) -> _Integers:
     return np.flatnonzero(is_kept)
 
 
-def _reason(cloud: PointsBetween, ahead: _Floats) -> Text:
+def _reason(cloud: PointsBetween, ahead: Floats) -> Text:
     return _SPARSE if cloud.near(ahead, _AHEAD_REACH_M).size < _FEW_POINTS else _LOST

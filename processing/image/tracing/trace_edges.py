@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.image.edges.edge_kernels import AFTER, BEFORE, BEND, STRENGTH
 from processing.image.edges.edge_sections import (
     LEAST_STRENGTH_M,
@@ -21,8 +21,6 @@ from processing.image.edges.edge_sections import (
 from processing.image.edges.edge_steps import LONGER_M, EdgeStep, step_at
 from processing.image.tracing.trace_points import PointsBetween
 from processing.image.tracing.trace_search import TracePoint, off_line
-
-_Floats = NDArray[np.float64]
 
 _BESIDE_M = 0.12
 """Lines this near to a click are meant: less than half the height of a curb beside its other edge.
@@ -66,7 +64,7 @@ class EdgeFollower:
     def __init__(self, cloud: PointsBetween) -> None:
         self._cloud = cloud
 
-    def positions_at(self, xyz: _Floats) -> Sequence[TracePoint]:
+    def positions_at(self, xyz: Floats) -> Sequence[TracePoint]:
         """Edges that pass a place within 12 cm, the nearest first.
 
         A place may be the very end of an edge, or a car may stand there: then what passes it is
@@ -104,7 +102,7 @@ class EdgeFollower:
         # A long piece would lead on beyond the last points.
         return [one for one in found if self._cloud.near(one[0].xyz, _SEEN_M).size]
 
-    def _around(self, xyz: _Floats) -> _Floats:
+    def _around(self, xyz: Floats) -> Floats:
         """Points about a place, about it; of a longer piece where they are few."""
         near = self._cloud.near(xyz, PATCH_M)
         if near.size < _FEW_POINTS:
@@ -112,7 +110,7 @@ class EdgeFollower:
         local = self._cloud.xyz[near] - xyz
         return np.ascontiguousarray(local[:: max(1, local.shape[0] // _MOST_POINTS)])
 
-    def _edges_about(self, center: _Floats, xyz: _Floats) -> list[TracePoint]:
+    def _edges_about(self, center: Floats, xyz: Floats) -> list[TracePoint]:
         step = step_at(self._cloud.xyz[self._cloud.near(center, LONGER_M)], center)
         if isinstance(step, EdgeStep):
             positions = _positions_of_step(step, step.heading_rad)

@@ -9,10 +9,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.image.tracing.trace_points import PointsBetween
 from processing.image.tracing.trace_search import TracePoint
-
-_Floats = NDArray[np.float64]
 
 MIDDLE, LEFT, RIGHT = 0.0, 1.0, -1.0
 """Which line of the stripe is followed; left and right in the direction of the trace."""
@@ -64,11 +63,11 @@ class MarkingFollower:
         Of the points of the cloud.
     """
 
-    def __init__(self, cloud: PointsBetween, intensity: _Floats) -> None:
+    def __init__(self, cloud: PointsBetween, intensity: Floats) -> None:
         self._cloud = cloud
         self._intensity = intensity
 
-    def positions_at(self, xyz: _Floats) -> Sequence[TracePoint]:
+    def positions_at(self, xyz: Floats) -> Sequence[TracePoint]:
         """The line of a stripe nearest to a place within 12 cm of it; none on plain ground."""
         near = self._cloud.near(xyz, _REACH_M)
         heading = _first_heading(self._cloud.xyz[near] - xyz, self._intensity[near])
@@ -138,7 +137,7 @@ class MarkingFollower:
         )
 
 
-def _bright(intensity: _Floats) -> NDArray[np.bool_] | None:
+def _bright(intensity: Floats) -> NDArray[np.bool_] | None:
     """Which points are paint: the split with the least spread on both sides (Otsu 1979)."""
     ordered = np.sort(intensity)
     count = np.arange(1, ordered.size)
@@ -153,7 +152,7 @@ def _bright(intensity: _Floats) -> NDArray[np.bool_] | None:
     return is_bright if contrast > _LEAST_CONTRAST * max(spread, _LEAST_SPREAD) else None
 
 
-def _borders(across: _Floats, is_bright: NDArray[np.bool_]) -> tuple[float, float] | None:
+def _borders(across: Floats, is_bright: NDArray[np.bool_]) -> tuple[float, float] | None:
     """The stretch that holds the most bright points and the fewest dark ones."""
     order = np.argsort(across)
     sorted_across = across[order]
@@ -170,7 +169,7 @@ def _borders(across: _Floats, is_bright: NDArray[np.bool_]) -> tuple[float, floa
     return (left, right) if is_stripe else None
 
 
-def _first_heading(local: _Floats, intensity: _Floats) -> float | None:
+def _first_heading(local: Floats, intensity: Floats) -> float | None:
     """The long axis of the bright points around a place."""
     is_bright = _bright(intensity) if intensity.size >= _FEWEST else None
     if is_bright is None:
@@ -183,7 +182,7 @@ def _first_heading(local: _Floats, intensity: _Floats) -> float | None:
     return math.atan2(vectors[1, 1], vectors[0, 1])
 
 
-def _slope(along: _Floats, across: _Floats) -> float:
+def _slope(along: Floats, across: Floats) -> float:
     spread = float(((along - along.mean()) ** 2).sum())
     if spread <= 0:
         return 0.0
@@ -200,6 +199,6 @@ def _middle(line: TracePoint) -> TracePoint:
     return replace(line, xyz=line.xyz - _aside(line, side), look=(MIDDLE, width))
 
 
-def _aside(position: TracePoint, side: float) -> _Floats:
+def _aside(position: TracePoint, side: float) -> Floats:
     left = np.array([-math.sin(position.heading_rad), math.cos(position.heading_rad), 0.0])
     return np.asarray(side * position.look[1] / 2 * left) if side else np.zeros(3)

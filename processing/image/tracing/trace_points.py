@@ -5,16 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from processing.core.arrays import Floats, Integers
 from processing.image.neighbourhoods.points_around import rows_to_take
 from processing.recording.columns.counted_classes import class_columns
 
 if TYPE_CHECKING:  # processing.recording.drive makes images, so importing it here would be a circle
     from processing.recording.drive import Drive
 
-_Floats = NDArray[np.float64]
-_Integers = NDArray[np.int64]
 
 _CELL_M = 0.25
 """Cells of the plan by which points are found: half the radius of a section. It changes only the
@@ -66,7 +64,7 @@ class PointsBetween:
         counts = np.bincount(flat, minlength=int(self._shape.prod()))
         self._starts = np.concatenate([[0], np.cumsum(counts)])
 
-    def nearest(self, xyz: _Floats) -> int:
+    def nearest(self, xyz: Floats) -> int:
         """The point of the drive nearest to a place about `origin`."""
         for radius in _LOOKED_AROUND_M:
             near = self.near(xyz, radius)
@@ -75,7 +73,7 @@ class PointsBetween:
                 return int(self.points[near[away.argmin()]])
         return int(self.points[((self.xyz - xyz) ** 2).sum(axis=1).argmin()])
 
-    def near(self, xyz: _Floats, radius_m: float) -> _Integers:
+    def near(self, xyz: Floats, radius_m: float) -> Integers:
         """Places in `points` of those within a distance.
 
         Parameters
@@ -102,7 +100,7 @@ class PointsBetween:
         return np.asarray(candidates[squares <= radius_m**2])
 
 
-def _gathered(drive: Drive, start: int, end: int, positions: _Floats) -> tuple[_Integers, _Floats]:
+def _gathered(drive: Drive, start: int, end: int, positions: Floats) -> tuple[Integers, Floats]:
     pulses = drive.columns["pulse"]
     revolutions = drive.revolutions
     period = (

@@ -15,9 +15,8 @@ from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
-_Floats = NDArray[np.float64]
+from processing.core.arrays import Floats
 
 STEP_M = 0.25
 """Places are looked for at this distance from each other: half a section, so that neighbours share
@@ -67,14 +66,14 @@ class TracePoint:
         What the line looks like across that direction; the follower's own.
     """
 
-    xyz: _Floats
+    xyz: Floats
     heading_rad: float
     grade: float
     curvature: float
     look: tuple[float, ...]
 
     @property
-    def direction(self) -> _Floats:
+    def direction(self) -> Floats:
         """(3,) unit vector."""
         along = np.array([math.cos(self.heading_rad), math.sin(self.heading_rad), self.grade])
         return np.asarray(along / np.linalg.norm(along))
@@ -92,7 +91,7 @@ class TracePoint:
 class Follower(Protocol):
     """Finds one kind of line in the points."""
 
-    def positions_at(self, xyz: _Floats) -> Sequence[TracePoint]:
+    def positions_at(self, xyz: Floats) -> Sequence[TracePoint]:
         """Lines that pass near a place, in either direction."""
 
     def positions_near(
@@ -112,7 +111,7 @@ class TracePath:
     is_complete: bool
 
 
-def find_trace(follower: Follower, starts: Sequence[TracePoint], end: _Floats) -> TracePath:
+def find_trace(follower: Follower, starts: Sequence[TracePoint], end: Floats) -> TracePath:
     """The cheapest way from one of some places to the end, or the way that comes nearest to it.
 
     Parameters
@@ -144,7 +143,7 @@ class _Waiting:
 class _Search:
     """Places reached, and places that wait."""
 
-    def __init__(self, follower: Follower, end: _Floats) -> None:
+    def __init__(self, follower: Follower, end: Floats) -> None:
         self._follower, self._end = follower, end
         self._waiting: list[tuple[float, int, _Waiting]] = []
         self._numbers = itertools.count()
@@ -195,7 +194,7 @@ class _Search:
             self.wait(replace(waiting, look_m=farther), left_m + _hole_price(farther))
 
 
-def find_again(follower: Follower, position: TracePoint, end: _Floats) -> TracePoint | None:
+def find_again(follower: Follower, position: TracePoint, end: Floats) -> TracePoint | None:
     """Where a line goes on beyond a hole: the first place ahead from which it can be followed."""
     left = _distance(position.xyz, end)
     distance = HOLE_M + STEP_M
@@ -230,19 +229,19 @@ def _hole_price(distance_m: float) -> float:
     return _HOLE_PRICE * (distance_m - STEP_M)
 
 
-def _passes(position: TracePoint, end: _Floats) -> bool:
+def _passes(position: TracePoint, end: Floats) -> bool:
     """Whether the end lies beside a place."""
     along = float((end - position.xyz) @ position.direction)
     return off_line(end, position) <= _SLACK_M + _SLACK_RATIO and abs(along) <= STEP_M
 
 
-def off_line(xyz: _Floats, position: TracePoint) -> float:
+def off_line(xyz: Floats, position: TracePoint) -> float:
     """Distance of a place from the straight line through another in its direction, m."""
     away = xyz - position.xyz
     return float(np.linalg.norm(away - (away @ position.direction) * position.direction))
 
 
-def _leads_to(position: TracePoint, end: _Floats) -> bool:
+def _leads_to(position: TracePoint, end: Floats) -> bool:
     """Whether the end lies ahead, no farther than a hole is wide."""
     ahead = float((end - position.xyz) @ position.direction)
     slack = _SLACK_M + _SLACK_RATIO * HOLE_M
@@ -265,5 +264,5 @@ def _angle(turned: float) -> float:
     return (turned + math.pi) % (2 * math.pi) - math.pi
 
 
-def _distance(one: _Floats, other: _Floats) -> float:
+def _distance(one: Floats, other: Floats) -> float:
     return float(np.linalg.norm(one - other))

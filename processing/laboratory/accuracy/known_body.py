@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.core.monitor import SilentMonitor
 from processing.methods.earthwork.geometry.volume_scope import VolumeScope
 from processing.methods.earthwork.surfaces.sides import EpochGround, GroundBlock, Level
@@ -19,8 +19,6 @@ from processing.methods.earthwork.volumes.volume_parameters import (
     TIN,
     VolumeParameters,
 )
-
-Floats = NDArray[np.float64]
 
 BODY_HEADING = "## Methods on a body of known volume"
 BODY_ABOUT = (

@@ -6,11 +6,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.recording.camera_images.camera import Camera
-
-Floats = NDArray[np.float64]
 
 SEARCH_PX = 4.0
 """So far from its projection a thing is looked for."""

@@ -20,6 +20,7 @@ import laspy
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.core.monitor import SilentMonitor
 from processing.core.output_streams import write_every_character
 from processing.formats.trajectories.trajectory_csv import read_trajectory_csv
@@ -68,7 +69,6 @@ _BESIDE_M = 0.25
 _BREAST_M = (1.1, 1.3)
 _FULL_ARC_DEG = 130.0
 
-_Floats = NDArray[np.float64]
 _Members = list[dict[str, Any]]  # whatever JSON can hold
 
 
@@ -83,7 +83,7 @@ class RecordedCloud:
     label, instance : (n,)
     """
 
-    xyz: _Floats
+    xyz: Floats
     label: NDArray[np.uint8]
     instance: NDArray[np.int32]
 
@@ -319,15 +319,15 @@ def _facts(member: dict[str, Any]) -> dict[str, Any]:
     return facts
 
 
-def _line(member: dict[str, Any]) -> _Floats:
+def _line(member: dict[str, Any]) -> Floats:
     return np.array(member["geometry"]["coordinates"], np.float64)
 
 
-def _at(line: _Floats, along: _Floats, middle: float) -> _Floats:
+def _at(line: Floats, along: Floats, middle: float) -> Floats:
     return np.array([np.interp(middle, along, axis) for axis in line.T])
 
 
-def _step_error(xyz: _Floats, high: _Floats, low: _Floats, position: _Floats) -> float | None:
+def _step_error(xyz: Floats, high: Floats, low: Floats, position: Floats) -> float | None:
     """Measured less true height of the step within 25 cm of a place of the upper edge."""
     nearest = low[np.argmin(np.hypot(*(low[:, :2] - position[:2]).T))]
     behind = int(np.argmin(np.hypot(*(high[:, :2] - position[:2]).T)))
@@ -349,12 +349,12 @@ def _step_error(xyz: _Floats, high: _Floats, low: _Floats, position: _Floats) ->
     return float(_level(top, 0.0) - _level(road, foot) - (position[2] - nearest[2]))
 
 
-def _level(profile: _Floats, across: float) -> float:
+def _level(profile: Floats, across: float) -> float:
     """Height of a surface at an edge, from the slope of its points beside it."""
     return float(np.polyval(np.polyfit(profile[:, 0], profile[:, 1], 1), across))
 
 
-def _circle_diameter(ring: _Floats) -> float:
+def _circle_diameter(ring: Floats) -> float:
     """The circle nearest to points in the plane (Kåsa's fit), then without the farthest."""
     for _ in range(3):
         matrix = np.column_stack([2 * ring, np.ones(len(ring))])

@@ -21,8 +21,8 @@ from pathlib import Path
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.core.monitor import SilentMonitor
 from processing.core.output_streams import write_every_character
 from processing.laboratory.accuracy.filters.filter_tables import markdown_table
@@ -40,8 +40,6 @@ from processing.project.importing.importing import ImportRequest, import_drives
 from processing.recording.drive import Drive
 from processing.tools.ground import GROUND_TOOL
 from processing.tools.run_shares import mark_all
-
-Floats = NDArray[np.float64]
 
 HEADING = "## Earthwork volumes"
 SEEDS = range(1114, 1138)

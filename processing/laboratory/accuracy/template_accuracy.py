@@ -19,9 +19,9 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from processing.core.arrays import Floats
 from processing.core.errors import Unsuitable
 from processing.core.monitor import SilentMonitor
 from processing.core.output_streams import write_every_character
@@ -41,8 +41,6 @@ from processing.methods.templates.slab import SectionFrame
 from processing.project.importing.importing import ImportRequest, import_drives
 from processing.recording.drive import Drive
 from processing.recording.vehicle_path.trajectory import Trajectory
-
-_Floats = NDArray[np.float64]
 
 _EDGES = ("upper", "lower")
 _LONGER_THAN_M = 10.0
@@ -187,7 +185,7 @@ class CurbStreet:
             walked_m=walked_m,
         )
 
-    def _distances(self, drawn: tuple[FittedLine, ...], side: float) -> tuple[_Floats, _Floats]:
+    def _distances(self, drawn: tuple[FittedLine, ...], side: float) -> tuple[Floats, Floats]:
         """Of true places from the drawn lines, and of drawn places from the true edges, m."""
         missed, off = [], [np.empty(0)]
         for edge, true in self._seen_edges(side).items():
@@ -197,7 +195,7 @@ class CurbStreet:
             off += [np.asarray(self._trees[edge].query(densely(line)[0])[0]) for line in lines]
         return np.concatenate(missed), np.concatenate(off)
 
-    def _seen_edges(self, side: float) -> dict[str, _Floats]:
+    def _seen_edges(self, side: float) -> dict[str, Floats]:
         """The places of the seen true edges of one side, upper and lower."""
         curbs = list(zip(self._curbs, self._seen, self._sides, strict=True))
         return {
@@ -212,16 +210,16 @@ class CurbStreet:
             for edge in _EDGES
         }
 
-    def _nearest_record(self, position: _Floats) -> int:
+    def _nearest_record(self, position: Floats) -> int:
         away = self._way.xyz[:, :2] - position[:2]
         return int((away**2).sum(axis=1).argmin())
 
-    def _heading_at(self, position: _Floats) -> float:
+    def _heading_at(self, position: Floats) -> float:
         """Where the vehicle looked beside a place, counter-clockwise from the easting, rad."""
         azimuth = float(self._way.roll_pitch_heading_deg[self._nearest_record(position), 2])
         return math.radians(90.0 - azimuth)
 
-    def _side_of(self, position: _Floats) -> float:
+    def _side_of(self, position: Floats) -> float:
         """How far a place is to the right of the vehicle's path, m."""
         beside = SectionFrame(
             self._way.xyz[self._nearest_record(position)], self._heading_at(position)

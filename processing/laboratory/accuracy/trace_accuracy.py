@@ -21,14 +21,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from processing.core.arrays import Floats
 from processing.core.monitor import SilentMonitor
 from processing.core.output_streams import write_every_character
 from processing.image.edges.edges import edge_beside
 from processing.image.tracing.trace import trace
 from processing.project.importing.importing import ImportRequest, import_drives
 from processing.recording.drive import Drive
-
-_Floats = NDArray[np.float64]
 
 _CLICKS, _ASIDE_PX = 400, 8
 _SNAPPED_M, _FOLLOWED_M = 0.02, 0.03
@@ -56,7 +55,7 @@ class TrueLine:
 
     edge: str
     kind: str
-    xyz: _Floats
+    xyz: Floats
     is_covered: NDArray[np.bool_]
 
 
@@ -154,7 +153,7 @@ def follow_lines(drive: Drive, lines: list[TrueLine], what: str) -> TraceScore:
     xyz = drive.xyz(slice(0, drive.count))
     tree = cKDTree(xyz)
     length, good, number, whole, seconds = 0.0, 0.0, 0, 0, 0.0
-    off: list[_Floats] = []
+    off: list[Floats] = []
     for line in lines:
         for stretch in _seen_stretches(has_points_on(tree, line.xyz)):
             wanted = line.xyz[stretch]
@@ -208,7 +207,7 @@ def _joined(lines: list[TrueLine]) -> list[TrueLine]:
     return [line for line in joined if line.kind == "joined"]
 
 
-def densely(corners: _Floats) -> tuple[_Floats, _Floats]:
+def densely(corners: Floats) -> tuple[Floats, Floats]:
     """Places every 5 mm on a polyline, (n, 3) float64, and how far along it each is, m."""
     lengths = np.linalg.norm(np.diff(corners, axis=0), axis=1)
     ends = np.concatenate([[0.0], np.cumsum(lengths)])
@@ -216,7 +215,7 @@ def densely(corners: _Floats) -> tuple[_Floats, _Floats]:
     return np.column_stack([np.interp(along, ends, corners[:, k]) for k in range(3)]), along
 
 
-def has_points_on(tree: cKDTree, positions: _Floats) -> NDArray[np.bool_]:
+def has_points_on(tree: cKDTree, positions: Floats) -> NDArray[np.bool_]:
     """Where this drive, not only the other scanner, has points on the edge."""
     counts = tree.query_ball_point(positions, _SEEN_M, return_length=True)
     return np.asarray(counts >= _SEEN_POINTS)
@@ -230,7 +229,7 @@ def _seen_stretches(is_seen: NDArray[np.bool_]) -> list[slice]:
     return [span for span in spans if (span.stop - span.start) * STEP_M >= _LEAST_LENGTH_M]
 
 
-def off_polyline(positions: _Floats, corners: _Floats) -> _Floats:
+def off_polyline(positions: Floats, corners: Floats) -> Floats:
     """(n,) distance of (n, 3) places from a polyline, m; inf where it has no length."""
     if corners.shape[0] < 2:
         return np.full(positions.shape[0], np.inf)

@@ -7,13 +7,11 @@ from pathlib import Path
 import laspy
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.core.monitor import SilentMonitor
 from processing.project.importing.importing import ImportRequest, import_drives
 from processing.recording.drive import Drive
-
-Floats = NDArray[np.float64]
 
 SIDE_M = 100.0
 CORNER = np.array([-12_400.0, -36_700.0, 20.0])

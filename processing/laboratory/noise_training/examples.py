@@ -9,6 +9,7 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
+from processing.core.arrays import Flags
 from processing.core.monitor import SilentMonitor
 from processing.image.images_of_drives import image_of
 from processing.laboratory.noise_training.scenes import TrainingScene
@@ -26,7 +27,6 @@ from processing.methods.noise.trees import Trees, log_odds
 from processing.recording.drive import Drive
 
 FeatureVectors = NDArray[np.float32]
-_Bools = NDArray[np.bool_]
 
 _POINTS_PER_SCENE = 8_000
 _MOST_POINTS = 200_000
@@ -54,10 +54,10 @@ class Examples:
     """
 
     rows: FeatureVectors
-    is_noise: _Bools
+    is_noise: Flags
     weights: NDArray[np.float64]
 
-    def chosen(self, rows: _Bools) -> Examples:
+    def chosen(self, rows: Flags) -> Examples:
         """Some of them."""
         return Examples(self.rows[rows], self.is_noise[rows], self.weights[rows])
 
@@ -126,7 +126,7 @@ class LabelledCloud:
         cheap = self._search().cheap_features(SilentMonitor())
         return self._with_beams(cheap, log_odds(first, cheap, SilentMonitor()) > 0)
 
-    def _with_beams(self, cheap: FeatureVectors, is_doubtful: _Bools) -> Candidates:
+    def _with_beams(self, cheap: FeatureVectors, is_doubtful: Flags) -> Candidates:
         if self.intensity is None:
             raise ValueError("beams come with intensities")
         search, monitor = self._search(), SilentMonitor()

@@ -8,12 +8,10 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
+from processing.core.arrays import Flags, Floats
 from processing.laboratory.noise_training.rays import CROWN, RangeHits, thing, trace_rays
 from processing.laboratory.noise_training.scanners import Shots
 from processing.laboratory.noise_training.streets import BRIGHT, GROUND_STRIPS, ROAD, TrainingStreet
-
-_Floats = NDArray[np.float64]
-_Bools = NDArray[np.bool_]
 
 NOISE_KINDS = (
     "none",
@@ -60,7 +58,7 @@ class NoiseMaker:
     street: TrainingStreet
     most_m: float
     noise: NDArray[np.int64]
-    ranges: _Floats
+    ranges: Floats
 
     def on_the_ground(self, footprint: float, ambiguity_m: float) -> None:
         """All kinds that scanners on the ground have."""
@@ -100,11 +98,11 @@ class NoiseMaker:
     def _count(self) -> int:
         return self.noise.size
 
-    def _some(self, share: float | _Floats) -> _Bools:
-        chosen: _Bools = self.random.random(self._count) < share
+    def _some(self, share: float | Floats) -> Flags:
+        chosen: Flags = self.random.random(self._count) < share
         return chosen
 
-    def _put(self, chosen: _Bools, ranges: _Floats, kind: int) -> None:
+    def _put(self, chosen: Flags, ranges: Floats, kind: int) -> None:
         placed = chosen & (self.noise == 0) & (ranges > _LEAST_M) & (ranges < self.most_m)
         self.noise[placed] = kind
         self.ranges[placed] = ranges[placed]

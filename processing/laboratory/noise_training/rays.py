@@ -6,12 +6,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from processing.core.arrays import Floats, Integers
 from processing.core.kernels import kernel
-
-_Floats = NDArray[np.float64]
-_Integers = NDArray[np.int64]
 
 NUMBERS = 13  # of a thing: shape, kind, albedo, then ten that describe the shape
 STRIP, BOX, CAPSULE, CROWN, PANE = range(5)
@@ -22,8 +19,8 @@ _NEAREST_M = 0.05
 class RangeHits(NamedTuple):
     """``ranges`` (n,) m, `NOWHERE` where nothing was met; ``things`` (n,) their rows, or −1."""
 
-    ranges: _Floats
-    things: _Integers
+    ranges: Floats
+    things: Integers
 
 
 def thing(shape: int, kind: int, albedo: float, *numbers: float) -> list[float]:
@@ -40,11 +37,11 @@ def thing(shape: int, kind: int, albedo: float, *numbers: float) -> list[float]:
 
 
 def trace_rays(
-    origins: _Floats,
-    directions: _Floats,
-    things: _Floats,
+    origins: Floats,
+    directions: Floats,
+    things: Floats,
     footprint: float,
-    chances: _Floats,
+    chances: Floats,
 ) -> RangeHits:
     """What rays meet first.
 
@@ -65,13 +62,13 @@ def trace_rays(
 
 @kernel
 def rays_kernel(
-    origins: _Floats,
-    directions: _Floats,
-    things: _Floats,
+    origins: Floats,
+    directions: Floats,
+    things: Floats,
     footprint: float,
-    chances: _Floats,
-    ranges: _Floats,
-    found: _Integers,
+    chances: Floats,
+    ranges: Floats,
+    found: Integers,
 ) -> None:
     """See :func:`trace_rays`."""
     for ray in range(origins.shape[0]):
@@ -95,7 +92,7 @@ def rays_kernel(
 
 
 @kernel
-def _strip(origin: _Floats, way: _Floats, row: _Floats) -> float:
+def _strip(origin: Floats, way: Floats, row: Floats) -> float:
     y0, z0, y1, z1 = row[3], row[4], row[5], row[6]
     ny, nz = z0 - z1, y1 - y0
     steep = ny * way[1] + nz * way[2]
@@ -110,7 +107,7 @@ def _strip(origin: _Floats, way: _Floats, row: _Floats) -> float:
 
 
 @kernel
-def _box(origin: _Floats, way: _Floats, row: _Floats) -> float:
+def _box(origin: Floats, way: Floats, row: Floats) -> float:
     c, s = math.cos(row[9]), math.sin(row[9])
     x, y = origin[0] - row[3], origin[1] - row[4]
     near, far = -1e18, 1e18
@@ -130,7 +127,7 @@ def _box(origin: _Floats, way: _Floats, row: _Floats) -> float:
 
 
 @kernel
-def _capsule(origin: _Floats, way: _Floats, row: _Floats, footprint: float, chance: float) -> float:
+def _capsule(origin: Floats, way: Floats, row: Floats, footprint: float, chance: float) -> float:
     ax, ay, az = row[6] - row[3], row[7] - row[4], row[8] - row[5]
     length = math.sqrt(ax * ax + ay * ay + az * az)
     ax, ay, az = ax / length, ay / length, az / length
@@ -157,7 +154,7 @@ def _capsule(origin: _Floats, way: _Floats, row: _Floats, footprint: float, chan
 
 
 @kernel
-def _crown(origin: _Floats, way: _Floats, row: _Floats, chance: float) -> float:
+def _crown(origin: Floats, way: Floats, row: Floats, chance: float) -> float:
     a, b, c = 0.0, 0.0, -1.0
     for axis in range(3):
         start = (origin[axis] - row[3 + axis]) / row[6 + axis]
@@ -174,7 +171,7 @@ def _crown(origin: _Floats, way: _Floats, row: _Floats, chance: float) -> float:
 
 
 @kernel
-def _pane(origin: _Floats, way: _Floats, row: _Floats) -> float:
+def _pane(origin: Floats, way: Floats, row: Floats) -> float:
     nx, ny = math.cos(row[6]), math.sin(row[6])
     steep: float = nx * way[0] + ny * way[1]
     if abs(steep) < 1e-9:

@@ -10,11 +10,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.random import Generator
-from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.laboratory.noise_training.scenes import TrainingScene
-
-_Floats = NDArray[np.float64]
 
 _STREAM = 5
 _MOST_BANKS, _BANK_HEIGHTS_M, _BANK_SLOPES = 5, (0.5, 6.0), (0.3, 1.2)
@@ -38,10 +36,10 @@ class Relief:
         Radians per m along x and y, phase, height, m.
     """
 
-    banks: _Floats
-    waves: _Floats
+    banks: Floats
+    waves: Floats
 
-    def heights(self, xy: _Floats) -> _Floats:
+    def heights(self, xy: Floats) -> Floats:
         """(n,) m at places (n, 2) m."""
         found = np.zeros(xy.shape[0])
         for x, y, start, width, high in self.banks:
@@ -90,5 +88,5 @@ def on_relief(scene: TrainingScene, seed: int) -> TrainingScene:
     return replace(scene, xyz=xyz, origins=origins, ranges=ranges).chosen(~is_hidden)
 
 
-def _lifted(xyz: _Floats, relief: Relief) -> _Floats:
+def _lifted(xyz: Floats, relief: Relief) -> Floats:
     return np.column_stack([xyz[:, :2], xyz[:, 2] + relief.heights(xyz[:, :2])])

@@ -6,10 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.random import Generator
-from numpy.typing import NDArray
 
-_Floats = NDArray[np.float64]
-_Integers = NDArray[np.int64]
+from processing.core.arrays import Floats, Integers
 
 MOBILE, STANDING, AIRBORNE = "mobile", "standing", "airborne"
 _PULSES = (900, 1500, 2000, 2900, 3400, 5000)
@@ -35,11 +33,11 @@ class Shots:
         Radians from beam to beam.
     """
 
-    origins: _Floats
-    directions: _Floats
-    rows: _Integers
-    columns: _Integers
-    scans: _Integers
+    origins: Floats
+    directions: Floats
+    rows: Integers
+    columns: Integers
+    scans: Integers
     width: int
     turn: float
 

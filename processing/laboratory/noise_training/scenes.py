@@ -8,6 +8,7 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats, Integers
 from processing.laboratory.noise_training.noise_kinds import NoiseMaker, ambiguity_of
 from processing.laboratory.noise_training.rays import NOWHERE, trace_rays
 from processing.laboratory.noise_training.scanners import (
@@ -21,9 +22,6 @@ from processing.laboratory.noise_training.scanners import (
 )
 from processing.laboratory.noise_training.streets import GRASS, ROAD, TrainingStreet, street_of
 from processing.methods.noise.beams.beam_kernels import PointBeams
-
-_Floats = NDArray[np.float64]
-_Integers = NDArray[np.int64]
 
 _STREAMS = {MOBILE: 1, STANDING: 2, AIRBORNE: 3}
 _LIKE_TRUE_M = 0.05  # noise nearer to the true surface is left out
@@ -51,17 +49,17 @@ class TrainingScene:
         As `NOISE_KINDS`.
     """
 
-    xyz: _Floats
-    origins: _Floats
-    ranges: _Floats
-    rows: _Integers
-    columns: _Integers
-    scans: _Integers
+    xyz: Floats
+    origins: Floats
+    ranges: Floats
+    rows: Integers
+    columns: Integers
+    scans: Integers
     intensity: NDArray[np.uint16]
-    kinds: _Integers
-    noise: _Integers
+    kinds: Integers
+    noise: Integers
 
-    def chosen(self, points: NDArray[np.bool_] | _Integers) -> TrainingScene:
+    def chosen(self, points: NDArray[np.bool_] | Integers) -> TrainingScene:
         """Some of the points."""
         return TrainingScene(*(getattr(self, one.name)[points] for one in fields(self)))
 
@@ -182,9 +180,9 @@ def _grown(
     random: Generator,
     street: TrainingStreet,
     shots: Shots,
-    ranges: _Floats,
-    seen: tuple[_Integers, _Floats],
-) -> _Integers:
+    ranges: Floats,
+    seen: tuple[Integers, Floats],
+) -> Integers:
     """Let grass grow beside the pavement: shorter ``ranges``, in place, and the kinds."""
     kinds, chances = seen
     aside = np.abs(shots.origins[:, 1] + ranges * shots.directions[:, 1])
@@ -198,7 +196,7 @@ def _grown(
 
 
 def _intensities(
-    random: Generator, ranges: _Floats, albedos: _Floats, is_noise: NDArray[np.bool_]
+    random: Generator, ranges: Floats, albedos: Floats, is_noise: NDArray[np.bool_]
 ) -> NDArray[np.uint16]:
     near = np.minimum(1.0, 8 / np.maximum(ranges, 1.0))
     count = ranges.size

@@ -10,9 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.optimize import minimize
 
+from processing.core.arrays import Floats
 from processing.laboratory.accuracy.filters.filter_tables import markdown_table
-
-_Floats = NDArray[np.float64]
 
 _BOUNDS = (0.0, 0.1, 0.3, 0.5, 0.7, 0.9, 1.0)
 
@@ -32,9 +31,9 @@ class LabelledThings:
         Which street each is from.
     """
 
-    terms: _Floats
+    terms: Floats
     is_right: NDArray[np.bool_]
-    worth: _Floats
+    worth: Floats
     street: NDArray[np.int64]
 
     @staticmethod
@@ -68,7 +67,7 @@ class WeightPrior:
     off: Sequence[float]
 
 
-def fit_weights(known: LabelledThings, expected: WeightPrior) -> _Floats:
+def fit_weights(known: LabelledThings, expected: WeightPrior) -> Floats:
     """(f + 1,) constant and weights: the likeliest after what was expected and what was seen.
 
     References
@@ -78,7 +77,7 @@ def fit_weights(known: LabelledThings, expected: WeightPrior) -> _Floats:
     middle, off = np.array(expected.weights), np.array(expected.off)
     terms = np.column_stack([np.ones(known.is_right.size), known.terms])
 
-    def doubt(weights: _Floats) -> tuple[float, _Floats]:
+    def doubt(weights: Floats) -> tuple[float, Floats]:
         logits, away = terms @ weights, (weights - middle) / off
         loss = known.worth * (np.logaddexp(0.0, logits) - known.is_right * logits)
         slope = terms.T @ (known.worth * (_chance(logits) - known.is_right))
@@ -89,12 +88,12 @@ def fit_weights(known: LabelledThings, expected: WeightPrior) -> _Floats:
     return np.asarray(found.x, np.float64)
 
 
-def chances(known: LabelledThings, weights: _Floats) -> _Floats:
+def chances(known: LabelledThings, weights: Floats) -> Floats:
     """(n,) by some weights."""
     return _chance(weights[0] + known.terms @ weights[1:])
 
 
-def cross_validate(known: LabelledThings, expected: WeightPrior) -> _Floats:
+def cross_validate(known: LabelledThings, expected: WeightPrior) -> Floats:
     """(n,) each street's by weights that were fitted without it."""
     result = np.zeros(known.is_right.size)
     for street in np.unique(known.street):
@@ -105,7 +104,7 @@ def cross_validate(known: LabelledThings, expected: WeightPrior) -> _Floats:
     return result
 
 
-def reliability(known: LabelledThings, chance: _Floats) -> str:
+def reliability(known: LabelledThings, chance: Floats) -> str:
     """A table: things and right ones by confidence."""
     rows = []
     for low, high in itertools.pairwise(_BOUNDS):
@@ -127,6 +126,6 @@ def learn_weights(
     return f"{told}\n{reliability(known, own)}\n\n{reliability(check, others)}\n"
 
 
-def _chance(logits: _Floats) -> _Floats:
-    result: _Floats = 1.0 / (1.0 + np.exp(-np.clip(logits, -50.0, 50.0)))
+def _chance(logits: Floats) -> Floats:
+    result: Floats = 1.0 / (1.0 + np.exp(-np.clip(logits, -50.0, 50.0)))
     return result

@@ -14,13 +14,12 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats, Integers
 from processing.core.errors import Unsuitable
 from processing.core.text import Text
 from processing.recording.columns.ordering import read_chunk
 from processing.recording.columns.quantisation import Quantisation
 
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 PointSelection = NDArray[np.int64] | slice
 
 _INT32 = np.iinfo(np.int32)

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from processing.core.arrays import Floats
+
 Triple = tuple[float, float, float]
 
 

@@ -16,11 +16,10 @@ from typing import Any, BinaryIO, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Integers
 from processing.core.errors import UNCHANGED, BadFile, report_as_user_error
 from processing.core.text import Text
 from processing.recording.columns.mapped_pages import MappedPages
-
-_Integers = NDArray[np.int64]
 
 VARYING_TYPES: Mapping[str, str] = {"waveform": "<u2"}
 """Column name to dtype of its values."""
@@ -74,7 +73,7 @@ class VaryingValues:
     """
 
     values: NDArray[Any]  # the type of a column's values is the column's own
-    starts: _Integers
+    starts: Integers
 
     @staticmethod
     def of(rows: Sequence[NDArray[Any]], dtype: str) -> VaryingValues:
@@ -236,7 +235,7 @@ class VaryingColumn:
         first = int(starts[0])
         return VaryingValues(self._values[first : int(starts[-1])], starts - first)
 
-    def of(self, points: _Integers) -> VaryingValues:
+    def of(self, points: Integers) -> VaryingValues:
         """Values of points in any order: a copy.
 
         Raises
@@ -246,7 +245,7 @@ class VaryingColumn:
         self._pages.look()
         return self._taken(*self._ends_of(points))
 
-    def pieces(self, points: _Integers | slice) -> Iterator[VaryingValues]:
+    def pieces(self, points: Integers | slice) -> Iterator[VaryingValues]:
         """Values of points, so many points at a time that not too much is held in memory.
 
         Of no points one piece without any.
@@ -277,12 +276,12 @@ class VaryingColumn:
                 self._pages.look()
                 yield self._taken(begins[low:high], ends[low:high])
 
-    def _ends_of(self, points: _Integers) -> tuple[_Integers, _Integers]:
+    def _ends_of(self, points: Integers) -> tuple[Integers, Integers]:
         begins, ends = np.asarray(self._starts[points]), np.asarray(self._starts[points + 1])
         self._check(begins, ends, points)
         return begins, ends
 
-    def _taken(self, begins: _Integers, ends: _Integers) -> VaryingValues:
+    def _taken(self, begins: Integers, ends: Integers) -> VaryingValues:
         lengths = ends - begins
         starts = np.concatenate([[0], np.cumsum(lengths)]).astype(np.int64)
         if begins.size and (begins[1:] == ends[:-1]).all():
@@ -290,7 +289,7 @@ class VaryingColumn:
         at = np.repeat(begins - starts[:-1], lengths) + np.arange(int(starts[-1]))
         return VaryingValues(self._values[at], starts)
 
-    def _check(self, begins: _Integers, ends: _Integers, points: _Integers | int) -> None:
+    def _check(self, begins: Integers, ends: Integers, points: Integers | int) -> None:
         wrong = np.flatnonzero((begins < 0) | (ends < begins) | (ends > self._values.size))
         if wrong.size:
             first = int(wrong[0])
@@ -310,7 +309,7 @@ class VaryingColumn:
             return np.frombuffer(mapped, dtype)
 
 
-def _bounded(lengths: _Integers) -> Iterator[tuple[int, int]]:
+def _bounded(lengths: Integers) -> Iterator[tuple[int, int]]:
     """First and end of stretches with so many values that they may be held in memory."""
     totals, low = np.cumsum(lengths), 0
     while True:

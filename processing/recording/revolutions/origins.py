@@ -5,16 +5,14 @@ from __future__ import annotations
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.core.errors import MissingInput
 from processing.core.text import Text
 from processing.recording.columns.columns import Columns
 from processing.recording.columns.ordering import chunk_ranges
 from processing.recording.columns.point_source import PointColumns, PointSource
 from processing.recording.vehicle_path.trajectory import Trajectory
-
-Floats = NDArray[np.float64]
 
 _WINDOW_S = 0.1
 """Length of a piece of trajectory in which the scanner moves evenly but for its rotation. By trial;

@@ -7,16 +7,14 @@ and the only centre in that plane about which their angle keeps step with the cl
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.core.monitor import Monitor
 from processing.recording.columns.ordering import chunk_ranges
 from processing.recording.columns.point_source import PointColumns, PointSource
 from processing.recording.revolutions.rotation_fit import PlanePoints, RotationFit, fit_rotation
 from processing.recording.revolutions.scan_plane import ScanPlane, find_plane
 from processing.recording.vehicle_path.trajectory import Trajectory
-
-Floats = NDArray[np.float64]
 
 _WINDOW_S = 0.06
 """Length of a piece that is looked at: two revolutions of the slowest scanner, within which a

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.recording.columns.point_source import PointColumns
 from processing.recording.revolutions.pulse_clock_kernels import (
     TimeLimits,
@@ -20,8 +21,6 @@ from processing.recording.revolutions.pulse_clock_kernels import (
     number_exact,
     number_rounded,
 )
-
-Floats = NDArray[np.float64]
 
 LONGEST_MISSING_S = 1.0
 """Longer times without a point are a stop; shorter ones are pulses without return."""

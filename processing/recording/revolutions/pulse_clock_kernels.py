@@ -7,9 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.core.kernels import kernel
-
-Floats = NDArray[np.float64]
 
 _GAIN = 4e-4
 """On the phase per point once locked, its quarter square on the interval (critical damping): a

@@ -5,11 +5,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.core.kernels import kernel
 from processing.recording.columns.point_source import PointColumns
 from processing.recording.revolutions.vehicle_frame import Poses
-
-Floats = NDArray[np.float64]
 
 SEARCHED_SHARE = 0.2
 """Share of a revolution before and after the prediction in which the crossing is looked for."""

@@ -6,9 +6,8 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from processing.core.arrays import Floats
 
 _REVOLUTIONS_PER_WINDOW = 8.0
 """Length of a window in which the rotation is even and the vehicle straight. By trial; no

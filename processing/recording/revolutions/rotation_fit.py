@@ -12,9 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.core.kernels import kernel
-
-Floats = NDArray[np.float64]
 
 SLOWEST_HZ, FASTEST_HZ = 38.0, 310.0
 """Rates of rotation that are looked for: scanners on vehicles make 50 to 250 lines a second."""

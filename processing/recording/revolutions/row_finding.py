@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.core.monitor import Monitor
 from processing.recording.columns.ordering import chunk_ranges
 from processing.recording.columns.point_source import PointSource
@@ -23,8 +24,6 @@ from processing.recording.revolutions.reference_times import (
 )
 from processing.recording.revolutions.revolution_tracking import RevolutionPhase, RevolutionTracker
 from processing.recording.revolutions.scan_angle import MirrorRotation, SeenAngle
-
-Floats = NDArray[np.float64]
 
 READ_POINTS = 500_000
 """Points read at a time."""

@@ -8,12 +8,11 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.recording.columns.point_source import PointColumns, PointSource, samples_of
 from processing.recording.revolutions.rotation_fit import PlanePoints, fit_rotation
 from processing.recording.revolutions.scan_plane import ScanPlane, find_plane
 from processing.recording.revolutions.vehicle_frame import Poses
-
-Floats = NDArray[np.float64]
 
 _WINDOWS = 5
 """Pieces of a recording that are looked at; their median counts."""

@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
+from processing.core.arrays import Floats
 
 _ROUNDS = 8
 """Of the robust fit. By trial; no measurement is recorded."""

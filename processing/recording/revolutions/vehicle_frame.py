@@ -5,13 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.core.kernels import kernel
 from processing.recording.columns.point_source import PointColumns
 from processing.recording.vehicle_path.trajectory import Trajectory
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

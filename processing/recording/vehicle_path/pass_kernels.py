@@ -7,9 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.core.kernels import kernel
-
-Floats = NDArray[np.float64]
 
 _MOST_STEPS = 20
 """Of Newton's method; it ends within three but in sharp bends."""

@@ -12,10 +12,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats, Integers
 from processing.core.kernels import kernel
-
-Floats = NDArray[np.float64]
-Integers = NDArray[np.int64]
 
 APART_M = 0.5
 """Records nearer than this in plan count together as one place: those of a waiting vehicle."""

@@ -10,10 +10,10 @@ import numpy as np
 import pypdfium2
 import pytest
 import rasterio
-from numpy.typing import NDArray
 from pyproj import CRS
 
 from app.cli.terminal import CANCELLED
+from processing.core.arrays import Floats
 from processing.core.errors import Cancelled
 from tests.app.volume_command import (
     CORNER,
@@ -24,8 +24,6 @@ from tests.app.volume_command import (
     write_design,
     write_polygon,
 )
-
-Floats = NDArray[np.float64]
 
 PIT_LOW, PIT_HIGH = np.array([6.0, 6.0]), np.array([14.0, 12.0])
 PIT_M3 = 8.0 * 6.0 * 0.5

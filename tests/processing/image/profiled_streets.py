@@ -8,13 +8,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.recording.columns.columns import ColumnWriter
 from processing.recording.drive import Drive
 from processing.recording.drive_info import DriveInfo, write_drive_info
 from processing.recording.revolutions.revolutions_file import write_revolutions
 from tests.processing.image.recordings import revolutions_of
-
-Floats = NDArray[np.float64]
 
 START = np.array([-11_030.0, -35_020.0, 125.0])
 SCALE = 0.0001

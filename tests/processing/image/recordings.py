@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Integers
 from processing.core.text import Text
 from processing.recording.columns.columns import ColumnWriter
 from processing.recording.drive import Drive
@@ -17,8 +18,6 @@ from processing.recording.drive_info import DriveInfo, read_drive_info, write_dr
 from processing.recording.revolutions.revolutions import Revolutions
 from processing.recording.revolutions.revolutions_file import write_revolutions
 from tests.builders import SimulatedDrive, simulated_drive
-
-Integers = NDArray[np.int64]
 
 
 @dataclass(frozen=True)

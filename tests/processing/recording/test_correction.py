@@ -10,6 +10,7 @@ import laspy
 import numpy as np
 import pytest
 
+from processing.core.arrays import Floats
 from processing.core.errors import Unsuitable
 from processing.core.monitor import SilentMonitor
 from processing.image.images_of_drives import image_of
@@ -22,7 +23,6 @@ from processing.map.drafting.heights import set_on_ground
 from processing.methods.ground.drive_points import DrivePoints
 from processing.project.results.point_results import write_point_results
 from processing.recording.columns.columns import ColumnWriter, column_path
-from processing.recording.columns.quantisation import Floats
 from processing.recording.drive import Drive
 from processing.recording.drive_part import write_part
 from processing.section.points_in_cut import points_in_cut, section_points

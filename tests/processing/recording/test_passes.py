@@ -4,12 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.recording.passes import Pass, passes_of_trajectory
 from processing.recording.vehicle_path.trajectory import Trajectory
 
-Floats = NDArray[np.float64]
 FAR = np.array([-11_000.0, -35_000.0, 40.0])
 
 

@@ -6,8 +6,8 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.map.catalogue import Geometry
 from processing.map.feature import Vertex
 from processing.recording.drive import Drive
@@ -18,8 +18,6 @@ from widgets.mouse_tools.drawing.legs import LegMode
 from widgets.mouse_tools.mouse_tool import Hit
 from widgets.mouse_tools.tracing import STRAIGHT_ON, TracedLine, tracing_work
 from widgets.shared.cursor import PickedPosition
-
-Floats = NDArray[np.float64]
 
 STREET = ProfiledStreet(length_m=12.0)
 

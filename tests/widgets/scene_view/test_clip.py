@@ -8,11 +8,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.image.search.clip import Clip, planes_kernel
 from processing.image.search.corridor import Corridor, CorridorExtent, corridor_kernel
 from processing.recording.drive import Drive
-
-Floats = NDArray[np.float64]
 
 BOX = Clip.box(np.array([10.0, 20.0, 0.0]), np.array([14.0, 30.0, 5.0]))
 TILTED = np.array([[0.0, 0.0], [3.0, 4.0], [-1.0, 7.0], [-4.0, 3.0]])

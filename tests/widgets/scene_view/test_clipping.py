@@ -6,11 +6,11 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 from PySide6.QtCore import QPoint, QPointF, QRectF, Qt
 from PySide6.QtGui import QPolygonF
 from PySide6.QtWidgets import QDoubleSpinBox, QMenu
 
+from processing.core.arrays import Floats
 from processing.image.attributes.attributes import colours
 from processing.image.search.clip import Clip
 from processing.image.search.corridor import Corridor, CorridorExtent
@@ -23,8 +23,6 @@ from widgets.mouse_tools.menu_request import MenuRequest
 from widgets.mouse_tools.mouse_tool import DragShape, EnclosedHits, Hit, MouseTool
 from widgets.scene_view.clipping import MARGIN_M, ClipChoice
 from widgets.scene_view.slab_form import SlabForm
-
-Floats = NDArray[np.float64]
 
 
 def drawn_xyz(user: SceneViewUser) -> Floats:

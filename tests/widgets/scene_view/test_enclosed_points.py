@@ -5,15 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 import shapely
-from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.image.images_of_drives import image_of
 from processing.image.search.enclosed_points import Sight, enclosed_kernel, points_enclosed
 from processing.recording.drive import Drive
 from widgets.scene_view.rendering.camera import SceneCamera
 from widgets.scene_view.rendering.projection import NEAR_M, SceneProjection
-
-Floats = NDArray[np.float64]
 
 LASSO = np.array([[300.0, 200.0], [520.0, 180.0], [400.0, 330.0], [560.0, 460.0], [280.0, 420.0]])
 BOW = np.array([[250.0, 200.0], [550.0, 420.0], [550.0, 200.0], [250.0, 420.0]])

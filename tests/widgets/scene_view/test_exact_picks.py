@@ -6,7 +6,6 @@ import numpy as np
 import pytest
 from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
 from processing.image.attributes.tile_cache import TileRequest
 from processing.image.images_of_drives import image_of
@@ -22,7 +21,6 @@ from widgets.scene_view.rendering.projection import NEAR_M, SceneProjection
 from widgets.scene_view.rendering.scene_tile import DrawnTile, SceneTile
 from widgets.shared.view_settings import ViewSettings
 
-Floats = NDArray[np.float64]
 DriveImage = tuple[Drive, ImageKind]
 
 

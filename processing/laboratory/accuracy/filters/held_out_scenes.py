@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
+from processing.core.arrays import Flags
 from processing.laboratory.accuracy.filters.filter_scenes import THIN_KINDS
 from processing.laboratory.noise_training.scanners import AIRBORNE, MOBILE, STANDING
 from processing.laboratory.noise_training.scenes import TrainingScene, scene_of, thin_scene
@@ -25,8 +25,6 @@ _PULSES = 250_000
 _FEWEST = 50
 _SCANNERS_WITH_BEAMS = (MOBILE, MOBILE, STANDING)
 _SCANNERS_IN_SPACE = (STANDING, MOBILE, AIRBORNE)
-
-_Bools = NDArray[np.bool_]
 
 
 def unseen_rows(seeds: Sequence[int] = SEEDS, pulses: int = _PULSES) -> Iterator[list[str]]:
@@ -48,7 +46,7 @@ def unseen_rows(seeds: Sequence[int] = SEEDS, pulses: int = _PULSES) -> Iterator
         yield [name, "**middle**", "", *map(_cell, middles)]
 
 
-def _judged(seed: int, pulses: int, *, knows_beams: bool) -> tuple[str, TrainingScene, _Bools]:
+def _judged(seed: int, pulses: int, *, knows_beams: bool) -> tuple[str, TrainingScene, Flags]:
     scanners = _SCANNERS_WITH_BEAMS if knows_beams else _SCANNERS_IN_SPACE
     scanner = scanners[seed % len(scanners)]
     scene, turn = scene_of(seed, scanner, pulses)
@@ -59,7 +57,7 @@ def _judged(seed: int, pulses: int, *, knows_beams: bool) -> tuple[str, Training
     return scanner, scene, noise_codes_with_beams(scene.beams(turn), scene.intensity) > 0
 
 
-def _figures(scene: TrainingScene, said: _Bools) -> list[float]:
+def _figures(scene: TrainingScene, said: Flags) -> list[float]:
     is_noise = scene.noise > 0
     found = int((said & is_noise).sum())
     kept = [scene.kinds == kind for kind in THIN_KINDS]

@@ -17,8 +17,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-Floats = NDArray[np.float64]
-Flags = NDArray[np.bool_]
+from processing.core.arrays import Flags, Floats
 
 _LONGEST_S = 600
 _OUTLIERS, _MORPHOLOGY = "pcl_outlier_removal", "pcl_progressive_morphological_filter"

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 from contourpy import contour_generator
-from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.core.monitor import SilentMonitor
 from processing.core.text import Text
 from processing.laboratory.bench import volume_site
@@ -30,8 +30,6 @@ from processing.methods.ground.drive_points import DrivePoints
 from processing.methods.ground.filters.cells import CellGrid
 from processing.methods.ground.ground_columns import GROUND
 from processing.recording.drive import Drive
-
-Floats = NDArray[np.float64]
 
 _POINTS = 5_000_000
 _GRID_M, _MOST_S = 0.1, 3.0

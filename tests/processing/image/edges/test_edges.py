@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.image.edges.edge_kernels import (
     BEND,
     CORNER_COLUMNS,
@@ -27,8 +27,6 @@ from tests.processing.image.profiled_streets import (
     off_line,
     recorded,
 )
-
-Floats = NDArray[np.float64]
 
 DROPPED = ((-2.5, 0.05), (0.0, 0.0), (0.01, 0.02), (1.5, 0.08))
 

@@ -6,13 +6,12 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.image.scan_lines.scanline_arrays import MeshLimits
 from processing.image.scan_lines.scanline_mesh import SectionMesh, SectionVertices
 from processing.image.scan_lines.scanline_rows import RowPoints
 
-Floats = NDArray[np.float64]
 Corners = tuple[tuple[int, int], ...]
 
 ROWS, COLUMNS = 24, 30

@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.core.monitor import SilentMonitor
 from processing.image.scan_lines.scanlines import (
     Scanlines,
@@ -24,7 +24,6 @@ from tests.builders import START, SimulatedDrive, simulated_drive
 from tests.processing.image.recordings import drive_of, true_revolutions
 from tests.street_scene import CROSSFALL, CURB_AT_M, CURB_HEIGHT_M, StreetScene
 
-Floats = NDArray[np.float64]
 SETTINGS = ScanlineSettings()
 LENGTH_M = 16.0
 FIELDS = ("across_m", "height_m", "is_break", "time_s", "intensity", "point")

@@ -7,13 +7,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.image.tracing.trace import TOLERANCE_M, TraceResult, trace
 from processing.recording.drive import Drive
 from tests.processing.image.profiled_streets import LOWER, UPPER, ProfiledStreet, off_line, recorded
-
-Floats = NDArray[np.float64]
 
 DROPPED = ((-2.5, 0.05), (0.0, 0.0), (0.012, 0.022), (1.5, 0.07))
 
