@@ -18,8 +18,8 @@ from processing.project.importing.import_request import ImportRequest
 from processing.recording.drive import Drive
 
 _ROWS = Text(
-    "{rows} rows, {turn} turns/s, {pulse} pulses/s, {each} pulses a turn ({by})",
-    "{rows} 行, 毎秒 {turn} 回転, 毎秒 {pulse} パルス, 1回転あたり {each} パルス ({by})",
+    "{rows} rows, {rate} revolutions/s, {pulse} pulses/s, {each} pulses per revolution ({by})",
+    "{rows} 行, 毎秒 {rate} 回転, 毎秒 {pulse} パルス, 1回転あたり {each} パルス ({by})",
 )
 
 
@@ -65,7 +65,7 @@ def describe_drive(drive: Drive) -> str:
     rows = revolutions.segments.size
     reported = _ROWS.filled(
         rows=f"{rows:,}",
-        turn=f"{revolutions.revolution_rate_hz:.3f}",
+        rate=f"{revolutions.revolution_rate_hz:.3f}",
         pulse=f"{revolutions.pulse_rate_hz:,.0f}",
         each=f"{revolutions.pulses_per_revolution:.2f}",
         by=revolutions.method,

@@ -56,7 +56,7 @@ class JobStatus:
     fraction : float
         0 to 1.
     seconds_left : float or None
-        None while it can't be told.
+        None while it isn't known.
     error : UserError or None
         Why it failed.
     """

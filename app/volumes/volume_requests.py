@@ -61,7 +61,7 @@ def boundary_of_features(features: Iterable[Feature]) -> BaseGeometry:
     if not areas:
         raise MissingInput(
             Text(
-                "No area is selected that the volume could be told within.",
+                "No area is selected that the volume could be computed within.",
                 "土量を計算する範囲となる面の地物が選択されていません。",
             ),
             Text("Selection", "選択"),

@@ -136,7 +136,7 @@ def _solved(
 
 
 _PARALLEL = Text(
-    "The two lines of sight are nearly parallel, so the distance can't be told.",
+    "The two lines of sight are nearly parallel, so the distance can't be measured.",
     "2本の視線がほぼ平行なため、距離を求められません。",
 )
 _DIVERGING = Text(

@@ -49,7 +49,7 @@ class PointCloudImage:
     pulses : (n,) int64
         The column ``pulse``: not decreasing; for a top view or a scan the cell of every point.
     folding : Revolutions or int
-        The recording's turns; for a top view or a scan the number of cells per row.
+        The recording's revolutions; for a top view or a scan the number of cells per row.
     coordinates : Coordinates, optional
         Where the points are; without them there is no pyramid.
 

@@ -16,27 +16,28 @@ if TYPE_CHECKING:
     from pyproj import CRS, Transformer
 
 MOST_ERROR_M = 0.05
-"""The worst accuracy of a way between two systems that places may take."""
+"""The worst accuracy of a transformation between two systems that positions may take."""
 
 _DECIMALS_OF_ACCURACY = 2
 
 
 @dataclass(frozen=True)
 class ReferenceTransform:
-    """The best way from one reference system to another, in plan; heights stay what they are.
+    """The best transformation of one reference system to another, in plan; heights are kept.
 
     Attributes
     ----------
     source, target : str
         As they were asked for.
     note : Text
-        What became of places: the way's accuracy as PROJ states it, and the heights.
+        What became of positions: the accuracy of the transformation as PROJ states it, and the
+        heights.
     """
 
     source: str
     target: str
     note: Text
-    _way: Transformer
+    _transformer: Transformer
 
     def apply(self, xyz: NDArray[np.float64]) -> NDArray[np.float64]:
         """Places in the target system; a copy.
@@ -58,7 +59,7 @@ class ReferenceTransform:
             A place has no coordinates in the target system.
         """
         moved = xyz.copy()
-        moved[:, 0], moved[:, 1] = self._way.transform(xyz[:, 0], xyz[:, 1])
+        moved[:, 0], moved[:, 1] = self._transformer.transform(xyz[:, 0], xyz[:, 1])
         is_lost = ~np.isfinite(moved).all(axis=1)
         if is_lost.any():
             easting, northing, _ = xyz[int(np.argmax(is_lost))]
@@ -77,7 +78,7 @@ class ReferenceTransform:
 
 
 def reference_transform(source: str, target: str) -> ReferenceTransform:
-    """The best way from one reference system to another.
+    """The best transformation from one reference system to another.
 
     Parameters
     ----------
@@ -89,8 +90,8 @@ def reference_transform(source: str, target: str) -> ReferenceTransform:
     OutOfRange
         There is no such reference system.
     Unsuitable
-        No way is known to :data:`MOST_ERROR_M`: between datums without the official grid of
-        shifts; names the accuracy of the best one.
+        No transformation is known to :data:`MOST_ERROR_M`: between datums without the official grid
+        of shifts; names the accuracy of the best one.
     """
     from pyproj.transformer import TransformerGroup
 
@@ -101,14 +102,14 @@ def reference_transform(source: str, target: str) -> ReferenceTransform:
         group = TransformerGroup(
             _plan(systems[0]), _plan(systems[1]), always_xy=True, allow_ballpark=False
         )
-    ways = [way for way in group.transformers if way.accuracy >= 0]
-    best = min(ways, key=lambda way: way.accuracy, default=None)
+    known = [one for one in group.transformers if one.accuracy >= 0]
+    best = min(known, key=lambda one: one.accuracy, default=None)
     if best is None or best.accuracy > MOST_ERROR_M:
-        grids = {grid.short_name for way in group.unavailable_operations for grid in way.grids}
+        grids = {grid.short_name for one in group.unavailable_operations for grid in one.grids}
         raise _too_inexact(systems, None if best is None else best.accuracy, sorted(grids))
     note = Text(
-        "Places were transformed from {source} to {target} (accuracy {accuracy} m as PROJ states "
-        "it); heights were kept.",
+        "Coordinates were transformed from {source} to {target} (accuracy {accuracy} m as PROJ "
+        "states it); heights were kept.",
         "座標を {source} から {target} に変換しました（PROJによる精度 {accuracy} m）。"
         "標高は変換していません。",
     ).filled(
@@ -147,13 +148,13 @@ def _named(code: str, system: CRS) -> str:
 def _too_inexact(systems: tuple[CRS, CRS], accuracy: float | None, grids: list[str]) -> Unsuitable:
     if accuracy is None:
         what = Text(
-            "No way between the two reference systems has a known accuracy.",
+            "No transformation between the two reference systems has a known accuracy.",
             "2つの座標参照系の間には、精度のわかる変換方法がありません。",
         )
     else:
         what = Text(
-            "The best way between the two reference systems is only exact to {accuracy} m; a map "
-            "needs {needed} m.",
+            "The best transformation between the two reference systems is only exact to "
+            "{accuracy} m; a map needs {needed} m.",
             "2つの座標参照系の間の変換精度は最良でも {accuracy} m で、"
             "地図に必要な {needed} m に足りません。",
         ).filled(accuracy=f"{accuracy:.{_DECIMALS_OF_ACCURACY}f}", needed=MOST_ERROR_M)

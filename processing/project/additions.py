@@ -183,19 +183,20 @@ class _Asked:
 
     def completed(self, monitor: Monitor) -> tuple[CompletedDrive, ...]:
         """The drives built anew with the trajectories."""
-        ways = read_trajectories(self.request.trajectories, self.request.crs or self.home.crs)
-        drives = self._to_complete(ways) if ways else []
+        crs = self.request.crs or self.home.crs
+        trajectories = read_trajectories(self.request.trajectories, crs)
+        drives = self._to_complete(trajectories) if trajectories else []
         completed: list[CompletedDrive] = []
         try:
             for number, (drive, into) in enumerate(zip(drives, self.home.temporary, strict=False)):
                 part = PartMonitor(monitor, number / len(drives), (number + 1) / len(drives))
-                completed.append(complete_drive(drive, ways, into, part))
+                completed.append(complete_drive(drive, trajectories, into, part))
         except BaseException:
             _remove(completed)
             raise
         return tuple(completed)
 
-    def _to_complete(self, ways: tuple[NamedTrajectory, ...]) -> list[Drive]:
+    def _to_complete(self, trajectories: tuple[NamedTrajectory, ...]) -> list[Drive]:
         """A drive that has the same trajectory already is left as it is."""
         asked = self.named or [drive for drive in self.home.drives if lacks_trajectory(drive)]
         covered: list[Drive] = []
@@ -203,7 +204,7 @@ class _Asked:
         for drive in asked:
             times, name = _times_of(drive), drive.info.name
             try:
-                matched = match_trajectory(times, ways, name, is_adjusted_standard=None)
+                matched = match_trajectory(times, trajectories, name, is_adjusted_standard=None)
             except OutOfRange as error:
                 refusal = error
                 continue

@@ -1,8 +1,8 @@
-"""Passes: stretches of a drive in which the vehicle goes on, measured along its smoothed way.
+"""Passes: stretches of a drive in which the vehicle goes on, measured along its smoothed path.
 
 A pass ends where the vehicle turns back and where its trajectory has a gap. A stop is part of a
-pass: time goes on there and the station stays. What lies beside the vehicle's path is told by the
-way that was driven about the time of its measurement, so a street that is passed twice is told
+pass: time goes on there and the station stays. What lies beside the vehicle's path has the
+station of the path driven about the time of its measurement, so two passes of one street stay
 apart.
 """
 
@@ -51,14 +51,14 @@ _MARGIN_M = 0.01
 
 @dataclass(frozen=True)
 class PathSurroundings:
-    """Which places beside a way are asked for; of others nothing need be told.
+    """Which positions beside a path are asked for; of others nothing need be known.
 
     Attributes
     ----------
     far_m : float
-        No place is farther from the vehicle in plan.
+        No position is farther from the vehicle in plan.
     heights : (m, 2) float64
-        Lowest and highest at each step of the way, m about the origin.
+        Lowest and highest at each step of the path, m about the origin.
     """
 
     far_m: float
@@ -125,7 +125,7 @@ class Pass:
         return units
 
     def rights_at(self, stations_m: ArrayLike) -> Floats:
-        """Unit vectors in plan to the right of the way: (n, 2) float64."""
+        """Unit vectors in plan to the right of the path: (n, 2) float64."""
         along = self.directions_at(stations_m)
         return np.column_stack([along[:, 1], -along[:, 0]])
 
@@ -170,9 +170,9 @@ class Pass:
     def stations_of_local(
         self, local: Floats, time: Floats, asked: PathSurroundings | None = None
     ) -> Floats:
-        """The same for places about the origin, with the height above the path: (n, 3) float64.
+        """The same for positions about the origin, with the height above the path: (n, 3) float64.
 
-        Where only some places are ``asked`` for, the others may be NaN too.
+        Where only some positions are ``asked`` for, the others may be NaN too.
         """
         found = np.empty((len(local), 3))
         if asked is None:
@@ -190,7 +190,7 @@ class Pass:
         return found
 
     def beside(self, half_width_m: float, lowest_m: float, highest_m: float) -> PathSurroundings:
-        """What holds all places so near to the path and between two heights above it."""
+        """What holds all positions so near to the path and between two heights above it."""
         step_m, z = self.vehicle_path.step_m, self.vehicle_path.positions[:, 2]
         size = 2 * (int(REACH_M / step_m) + 2) + 1
         low, high = minimum_filter1d(z, size), maximum_filter1d(z, size)

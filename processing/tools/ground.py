@@ -43,7 +43,7 @@ _CELLS = Text("cells of {size:.2f} m", "格子{size:.2f}m")
 
 @dataclass(frozen=True)
 class GroundParameters:
-    """How ground is told from what stands on it; no value needs to be set."""
+    """How ground is separated from what stands on it; no value needs to be set."""
 
     method: str = choice(
         ADAPTIVE,

@@ -41,8 +41,8 @@ _NO_PASS = Text(
     "どの走行データでも車両が道路に沿って走行していないため、側溝を探索できません。",
 )
 _NO_NOTCHES = Text(
-    "No drain holes were found beside the vehicle's way: the road has no covered gutter, the holes "
-    "are filled, or the points are too sparse to fall into them.",
+    "No drain holes were found beside the vehicle's path: the road has no covered gutter, the "
+    "holes are filled, or the points are too sparse to fall into them.",
     "走行軌跡の周辺に水抜き穴が見つかりません（蓋付き側溝がない、穴が土砂等で塞がっている、"
     "または点密度が不足しています）。",
 )
@@ -64,7 +64,7 @@ class GutterParameters:
         high=20.0,
         name=Text("Reach beside the vehicle", "探索範囲（車両からの離れ）"),
         explanation=Text(
-            "Gutters farther from the vehicle's way are not looked for: few points fall there.",
+            "Gutters farther from the vehicle's path are not looked for: few points fall there.",
             "走行軌跡からこの距離より離れた側溝は探索しません（穴に入る点が少ないため）。",
         ),
         picture="vehicle/reach",

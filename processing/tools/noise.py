@@ -31,7 +31,7 @@ COMBINED, RADIUS, STATISTICAL = "combined", "radius", "statistical"
 
 @dataclass(frozen=True)
 class NoiseParameters:
-    """How noise is told from what was measured; no value needs to be set."""
+    """How noise is separated from what was measured; no value needs to be set."""
 
     method: str = choice(
         COMBINED,

@@ -199,7 +199,7 @@ def _start(drive: Drive, parameters: TemplateParameters) -> SectionFrame:
     if heading is None:
         raise Unsuitable(
             Text(
-                "Without a trajectory nothing tells the direction of the line.",
+                "Without a trajectory the direction of the line is not known.",
                 "走行軌跡がないため、線の方向が分かりません。",
             ),
             Text.same(drive.info.name),

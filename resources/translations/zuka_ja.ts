@@ -2324,7 +2324,7 @@ kept</source>
         <translation>範囲</translation>
     </message>
     <message>
-        <source>The ground has not been told from what stands on it yet.</source>
+        <source>The ground has not been separated from what stands on it yet.</source>
         <translation>地面がまだ抽出されていません。</translation>
     </message>
     <message>

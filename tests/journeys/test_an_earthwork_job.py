@@ -206,7 +206,7 @@ def test_only_what_a_selected_area_or_the_area_of_a_layer_holds_counts(
     builder.find_ground()
     builder.pick(builder.box_with("Selected areas"), "Selected areas")
     error = builder.refused("Compute the volume")
-    assert error.what.en == "No area is selected that the volume could be told within."
+    assert error.what.en == "No area is selected that the volume could be computed within."
     builder.area((3.0, 3.0), (13.0, 15.0))
     builder.compute()
     assert builder.number("area") == pytest.approx(120.0, rel=0.01)

@@ -36,7 +36,7 @@ def project(tmp_path_factory):
         "--trajectory", STREET / "trajectory.csv", "--images", STREET / "images.csv",
     )  # fmt: skip
     assert done.returncode == 0, done.stderr
-    assert "turns/s" in done.stdout
+    assert "revolutions/s" in done.stdout
     return folder
 
 

@@ -16,7 +16,7 @@ class JobView:
     text : str
         What it is doing.
     seconds_left : float or None
-        None while it can't be told.
+        None while it isn't known.
     state : {"waiting", "running", "finished", "failed", "cancelled"}
     error : str
         What, where, what to do, divided by bars; empty unless it failed.
@@ -37,7 +37,7 @@ class JobView:
 
 
 def time_left(seconds: float | None) -> str:
-    """``0:04``, ``1:02:03``; empty while it can't be told."""
+    """``0:04``, ``1:02:03``; empty while it isn't known."""
     if seconds is None:
         return ""
     whole = max(0, round(seconds))

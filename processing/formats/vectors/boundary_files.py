@@ -1,4 +1,4 @@
-"""Boundaries that a volume is told within, from what offices draw them with."""
+"""Boundaries that a volume is computed within, from what offices draw them with."""
 
 from __future__ import annotations
 

@@ -126,7 +126,7 @@ def features_of_clip(
     MissingInput
         Only one of the two reference systems is known.
     Unsuitable
-        No way between them is exact enough; no kind is given for a shape.
+        No transformation between them is exact enough; no kind is given for a shape.
     OutOfRange
         There is no such reference system, or it can't express a place.
     """

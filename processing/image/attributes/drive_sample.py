@@ -35,7 +35,7 @@ def value_at_percent(
 
 @lru_cache(maxsize=64)
 def _sorted_sample(folder: Path, name: str, count: int, axis: int | None) -> NDArray[np.float64]:
-    """Pieces of a turn's length from all over the drive: few places on the disk are touched."""
+    """Pieces as long as a revolution from all over the drive: the disk is read at few positions."""
     last = max(0, count - _PIECE_POINTS)
     starts = np.unique(np.linspace(0, last, _PIECES).astype(np.int64))
     if count <= _PIECES * _PIECE_POINTS:

@@ -38,8 +38,9 @@ _FARTHEST_M = 100.0
 def ground_along(drive: Drive) -> Floats:
     """Places of the road below the vehicle.
 
-    With turns they are the points with which rows begin: the laser looked straight down there.
-    Without, the height of the trajectory above the points below it is taken from some samples.
+    With revolutions they are the points with which rows begin: the laser looked straight down
+    there. Without, the height of the trajectory above the points below it is taken from some
+    samples.
 
     Returns
     -------

@@ -114,7 +114,7 @@ def oriented_surface_shapes(
 
     A scanner that turns one way while it moves one way sees every surface with the same sense of
     (along the row) × (across rows). Which sense that is, is decided by the lower points of the
-    rows around: they are road and ground, seen from above. Where the sense can't be told,
+    rows around: they are road and ground, seen from above. Where the sense isn't known,
     normals point upwards. Where a standing scanner was is known, nothing need be decided.
 
     Parameters

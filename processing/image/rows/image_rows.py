@@ -80,7 +80,7 @@ def image_rows(
     pulses : (n,) int64
         Pulse of every point, not decreasing.
     folding : Revolutions or int
-        The recording's turns; of a recording without, the number of cells per row.
+        The recording's revolutions; of a recording without, the number of cells per row.
     folder : Path, optional
         The recording's; rows that were found are kept there and taken from there.
 
@@ -162,7 +162,7 @@ def _stretches_of(pulses: Integers, folder: Path | None) -> Iterator[tuple[int, 
 
 
 def _made_of(pulses: Integers, folding: RevolutionSource | int, folder: Path) -> Integers:
-    """A few numbers that are others for other pulses or turns, or for pulses written since."""
+    """A few numbers that differ for other pulses or revolutions, or for pulses written since."""
     path = column_path(folder, "pulse")
     written_ns = path.stat().st_mtime_ns if path.is_file() else 0
     ends = [pulses.size, int(pulses[0]), int(pulses[-1]), written_ns]

@@ -81,7 +81,7 @@ class Corridor:
         self._drive = drive
 
     def holds(self, xyz: Floats) -> NDArray[np.bool_]:
-        """(n,) which of (n, 3) float64 places, m, project CRS, lie in it."""
+        """(n,) which of (n, 3) float64 positions, m, project CRS, lie in it."""
         index, slab = self._index, self.slab
         inside = np.empty(len(xyz), np.bool_)
         corridor_kernel(
@@ -114,7 +114,7 @@ class Corridor:
 
 @dataclass(frozen=True, eq=False)
 class _Index:
-    """The way in steps, and for every cell near it the step that is nearest.
+    """The vehicle's path in steps, and for every cell near it the step that is nearest.
 
     Attributes
     ----------
@@ -127,9 +127,9 @@ class _Index:
     keys : (c,) int64
         ``cell easting × columns + cell northing``, rising.
     nearest : (c,) int64
-        Indices into the way.
+        Indices into the path.
     tree : cKDTree
-        Of the way in plan.
+        Of the path in plan.
     """
 
     vehicle_path: Floats
@@ -167,7 +167,7 @@ def _reach_m(slab: CorridorExtent) -> float:
 def _road_below(drive: Drive) -> Floats:
     """(m, 3): where the vehicle was while this drive's points were measured, on the road.
 
-    A vehicle's reference point keeps its height above the road, so a few places tell it.
+    A vehicle's reference point keeps its height above the road, so a few positions show it.
     """
     trajectory = drive.trajectory
     if trajectory is None:
@@ -184,7 +184,7 @@ def _road_below(drive: Drive) -> Floats:
 
 
 def _in_steps(vehicle_path: Floats, step_m: float) -> Floats:
-    """The way with a place about every step, however slow the vehicle was; at least two places."""
+    """The path with a position about every step, however slow the vehicle was; at least two."""
     gone = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(vehicle_path[:, :2], axis=0).T))])
     count = max(2, int(np.ceil(gone[-1] / step_m)) + 1)
     positions = np.linspace(0.0, max(float(gone[-1]), 1e-6), count)
@@ -201,10 +201,10 @@ def corridor_kernel(
     limits: NDArray[np.float64],
     inside: NDArray[np.bool_],
 ) -> None:
-    """Whether places lie along a way.
+    """Whether positions lie along a path.
 
     ``cells``: lowest easting and northing, size, cells per easting. ``limits``: left, right,
-    lowest, highest. The foot of a place is looked for on the segments about the step that is
+    lowest, highest. The foot of a position is looked for on the segments about the step that is
     nearest to its cell.
     """
     columns = int(cells[3])

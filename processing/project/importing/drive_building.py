@@ -61,7 +61,7 @@ from processing.recording.without_revolutions.top_view import TopView, top_view_
 
 _SAMPLE_POINTS = 200_000
 SOURCES, _SORTED, _ROWS, _SORTED_BY_CELL = "sources", "sorted", "rows", "sorted by cell"
-_FINDING = Text("Finding turns and pulses of {name}", "{name} の回転とパルスを推定中")
+_FINDING = Text("Finding revolutions and pulses of {name}", "{name} の回転とパルスを推定中")
 _SORTING = Text("Restoring the time order of {name}", "{name} の時刻順を復元中")
 _LEAST_FILLED = 0.02
 _NEARLY_EMPTY = Text(
@@ -296,8 +296,8 @@ def _trajectory_of(
         )
         if matched is None:
             return None, 0.0
-        ways = [named.trajectory for named in plan.trajectories]
-        at = next(at for at, way in enumerate(ways) if way is matched.trajectory)
+        known = [named.trajectory for named in plan.trajectories]
+        at = next(at for at, one in enumerate(known) if one is matched.trajectory)
         clock = {"trajectory": at, "offset_s": matched.clock_offset_s}
         steps.note(CLOCK, clock)
     offset = float(clock["offset_s"])

@@ -166,10 +166,10 @@ class _Import:
             raise _no_points(self._files)
         images = _images_of(self._request.images)
         with ThreadPoolExecutor(max_workers=1) as pool:
-            ways = pool.submit(read_trajectories, self._request.trajectories, self._delivery.crs)
+            reading = pool.submit(read_trajectories, self._request.trajectories, self._delivery.crs)
             beside = pool.submit(_checksums, (*self._request.trajectories, *self._request.images))
-            self._read_all(ways)
-            trajectories, checksums = ways.result(), beside.result()
+            self._read_all(reading)
+            trajectories, checksums = reading.result(), beside.result()
         dated = [
             (date, recording)
             for group, date in enumerate(self._delivery.dates)
@@ -208,15 +208,15 @@ class _Import:
         mixed = [group for group in groups if self._journal.known(f"mixed {group}") is not None]
         return layout_of(self._delivery, self._marks, self._options, self._into, mixed)
 
-    def _read_all(self, ways: Future[tuple[NamedTrajectory, ...]]) -> None:
+    def _read_all(self, reading: Future[tuple[NamedTrajectory, ...]]) -> None:
         total = sum(info.count for info in self._files)
         monitor = PartMonitor(self._monitor, 0.0, _READING)
 
         def check() -> None:
             self._monitor.check()
             # A trajectory that can't be read stops the reading of points.
-            if ways.done():
-                ways.result()
+            if reading.done():
+                reading.result()
 
         done: dict[int, int] = {}
         read = 0

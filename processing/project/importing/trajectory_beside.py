@@ -104,6 +104,6 @@ def _is_trajectory(path: Path) -> bool:
 def _covers(path: Path, times: NDArray[np.float64], crs: str) -> bool:
     # What can't be read, or lacks its reference system, is not offered.
     with suppress(UserError):
-        ways = read_trajectories((path,), crs)
-        return match_trajectory(times, ways, path.name, is_adjusted_standard=None) is not None
+        read = read_trajectories((path,), crs)
+        return match_trajectory(times, read, path.name, is_adjusted_standard=None) is not None
     return False

@@ -51,8 +51,8 @@ def trajectory_from_origins(columns: Columns | PointColumns | PointSource) -> Tr
     Notes
     -----
     The origin of a scanner with a turning mirror goes round with it. Each tenth of a second is
-    fitted by a steady motion and a circular one of the turn rate; the steady one is kept, so parts
-    of turns without returns don't pull the mean.
+    fitted by a steady motion and a circular one of the revolution rate; the steady one is kept, so
+    parts of revolutions without returns don't pull the mean.
     """
     times: list[float] = []
     positions: list[Floats] = []

@@ -1,4 +1,4 @@
-"""The scanner's way found from the points alone, where no trajectory was delivered.
+"""The scanner's path found from the points alone, where no trajectory was delivered.
 
 In a few hundredths of a second a line scanner stays nearly in place: its points lie in one plane,
 and the only centre in that plane about which their angle keeps step with the clock is the scanner.

@@ -59,7 +59,7 @@ def find_crossings(
     predicted : (k,) float64
         Rough times of the crossings, s.
     period_s : float
-        Of a turn.
+        Of a revolution.
     below_m : float
         Points lower than this, from the trajectory upwards, are below the scanner.
 
@@ -115,9 +115,9 @@ def repair_reference_times(
     Notes
     -----
     Crossings are compared with the prediction shifted by the running median of their differences.
-    One that differs by much more than they usually do, by 1 % of a turn across a long chord or by
-    4 % at most, does not count; then the prediction does, as it does where no crossing was found:
-    the road is hidden, wet, or not in the recording.
+    One that differs by much more than they usually do, by 1 % of a revolution across a long chord
+    or by 4 % at most, does not count; then the prediction does, as it does where no crossing was
+    found: the road is hidden, wet, or not in the recording.
     """
     shift = (crossed - predicted) / period_s
     found = np.flatnonzero(np.isfinite(shift))

@@ -94,9 +94,9 @@ class RevolutionTracker:
 
     Notes
     -----
-    In windows of some turns, the angles that miss the prediction turn its phase and rate. Windows
-    of few or incoherent points leave the prediction as it is. Only the points of the last window
-    are kept.
+    In windows of some revolutions, the angles that miss the prediction correct its phase and rate.
+    Windows of few or incoherent points leave the prediction as it is. Only the points of the last
+    window are kept.
     """
 
     def __init__(self, rate_hz: float) -> None:
@@ -124,7 +124,7 @@ class RevolutionTracker:
         Parameters
         ----------
         time : (n,) float64
-            s, not decreasing; some dozens a turn.
+            s, not decreasing; some dozens a revolution.
         angle : (n,) float64
             rad.
         """
@@ -161,7 +161,7 @@ class RevolutionTracker:
         self._time, self._angle = self._time[bounds[-1] :], self._angle[bounds[-1] :]
 
     def _turn(self, time: Floats, angle: Floats) -> None:
-        """Let a window turn phase and rate."""
+        """Let a window correct phase and rate."""
         waves = np.exp(1j * (angle - self._phase - self._rate * (time - self._at)))
         mean = waves.mean()
         if abs(mean) < _LEAST_COHERENCE and self._is_locked:

@@ -84,7 +84,7 @@ class Revolutions:
     segments : (R,) int32
         Number of the stretch between stops of more than 1.0 s.
     row_ends : (R,) int64
-        First pulse after each row: ``fold_pulses[k + 1]``, at a stop the end of its own turn.
+        First pulse after each row: ``fold_pulses[k + 1]``, at a stop the end of its own revolution.
     coherence : float
         0..1: how well the angle follows the clock.
     """
@@ -140,7 +140,7 @@ def find_revolutions(
     -----
     1. The pulse interval is the common step of the times.
     2. The mirror's angle comes from scanner origins if points have them, else from the trajectory,
-       else from delivered scan angles, else from a way of the scanner found in the points.
+       else from delivered scan angles, else from a path of the scanner found in the points.
     3. Its phase is followed through the drive, pulses are numbered by the clock.
     4. Rows begin where the scan line crosses the trajectory below the vehicle; what is missing or
        doubtful is taken from the phase.

@@ -1,6 +1,6 @@
-"""The turn of a line scanner found from its points: rate, direction and centre of rotation.
+"""The rotation of a line scanner found from its points: rate, direction and centre of rotation.
 
-Every point lies on the ray of its phase, so phase and centre are found by turns: a rough centre
+Every point lies on the ray of its phase, so phase and centre are found alternately: a rough centre
 gives angles, angles give the rate at which they agree with the clock, and the rate gives a better
 centre.
 """
@@ -178,11 +178,11 @@ def _sum_phasors_kernel(
     # does instead of one exponential.
     for point in range(angle.size):
         phasor = np.exp(1j * (angle[point] - 2 * np.pi * first_hz * time[point]))
-        turn = np.exp(-2j * np.pi * step_hz * time[point])
+        rotation = np.exp(-2j * np.pi * step_hz * time[point])
         own = sums[window[point]]
         for rate in range(own.size):
             own[rate] += phasor
-            phasor *= turn
+            phasor *= rotation
 
 
 def warm_up() -> None:
@@ -199,14 +199,14 @@ def _refined(
     centre, velocity, rate = start.astype(np.float64), np.zeros(2), 2 * np.pi * rate_hz
     phases = np.zeros(windows)
     member = (points.window[:, None] == np.arange(windows)).astype(np.float64)
-    for turn in range(rounds + 1):
+    for done in range(rounds + 1):
         rays = points.position - centre - points.time[:, None] * velocity
         distance = np.maximum(np.hypot(rays[:, 0], rays[:, 1]), 0.3)
         waves = np.exp(1j * (_angles(rays) - rate * points.time))
         phases = np.angle(_sums_by_window(waves, points))
         clock = phases[points.window] + rate * points.time
         miss = np.angle(waves * np.exp(-1j * phases[points.window]))
-        if turn == rounds:
+        if done == rounds:
             break
         across = np.column_stack([-np.sin(clock), np.cos(clock)]) / distance[:, None]
         parts = [member, points.time[:, None], across]

@@ -99,7 +99,7 @@ def _first_pass(
     monitor: Monitor,
 ) -> tuple[list[_Segment], float]:
     first_time = float(points.chunk(0, 1).time[0])
-    # Room for the turn that has begun before the first point, and one more.
+    # Room for the revolution that has begun before the first point, and one more.
     per_revolution = 1.0 / (clock.interval_s * abs(mirror_rotation.rate_hz))
     numbering = PulseNumbering(clock, first_time, int(2.0 * per_revolution) + 1)
     every = max(1, int(_points_per_revolution(points, mirror_rotation) / _TRACKED_PER_REVOLUTION))
@@ -218,7 +218,7 @@ def _second_pass(
 
 
 def _overlapping(points: PointSource, period_s: float) -> list[tuple[int, int]]:
-    """Stretches that share two turns with the one before, so that each turn lies in one of them."""
+    """Stretches that share two revolutions, so that each revolution lies whole in one of them."""
     found = []
     for start, stop in chunk_ranges(points.count, READ_POINTS):
         lead = max(0, start - READ_POINTS // 4)

@@ -34,7 +34,7 @@ _LEAST_COHERENCE = 0.75
 
 
 class MirrorAngle(Protocol):
-    """Gives angles that rise or fall by a full circle a turn."""
+    """Gives angles that rise or fall by a full circle a revolution."""
 
     def angles(self, points: PointColumns, every: int) -> tuple[Floats, Floats]:
         """Every n-th point's time and angle, rad; points of which nothing is known left out."""
@@ -86,7 +86,7 @@ class MirrorRotation:
     rate_hz : float
         Signed by the sense in which the angle runs.
     fold_angle : float
-        Angle, rad, at which a turn is below the vehicle, as far as known without crossings.
+        Angle, rad, at which a revolution is below the vehicle, as far as known without crossings.
     """
 
     mirror: MirrorAngle
@@ -123,7 +123,7 @@ def find_seen_spin(points: PointSource, poses: Poses) -> MirrorRotation | None:
 
 
 def find_delivered_spin(points: PointSource) -> MirrorRotation | None:
-    """The turning mirror from delivered scan angles; None when they don't make full turns."""
+    """The turning mirror from delivered scan angles; None when they don't make full revolutions."""
     mirror = DeliveredAngle()
     times, angles, windows, heights = [], [], [], []
     for number, sample in enumerate(samples_of(points, _WINDOWS, _SAMPLE_POINTS)):

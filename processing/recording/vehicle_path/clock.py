@@ -258,9 +258,9 @@ def _not_covered(
         )
     return OutOfRange(
         Text(
-            "The times of the points, {points}, lie outside those of the trajectory, {way}.",
-            "点の時刻 {points} が走行軌跡の時刻 {way} の範囲外です。",
-        ).filled(points=points, way=vehicle_path),
+            "The times of the points, {points}, lie outside those of the trajectory, {trajectory}.",
+            "点の時刻 {points} が走行軌跡の時刻 {trajectory} の範囲外です。",
+        ).filled(points=points, trajectory=vehicle_path),
         Text.same(what),
         remedy.filled(unchanged=UNCHANGED),
     )

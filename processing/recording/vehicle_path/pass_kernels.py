@@ -30,7 +30,7 @@ centre of a bend the sections come together, and beyond it they cross."""
 
 
 class PathPlaces(NamedTuple):
-    """A vehicle path: its step, m, places (m, 3) and directions (m, 2)."""
+    """A vehicle path: its step, m, positions (m, 3) and directions (m, 2)."""
 
     step_m: float
     positions: Floats
@@ -132,7 +132,7 @@ def stations_kernel(
     reach: PathReach,
     found: Floats,
 ) -> None:
-    """Station, across and height above the path of places, (n, 3) into ``found``; NaN where none.
+    """Station, across and height above the path of points, (n, 3) into ``found``; NaN where none.
 
     ``local`` (n, 3) is about the vehicle path's origin; heights are at each step of the path.
     """

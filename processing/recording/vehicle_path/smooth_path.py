@@ -1,7 +1,7 @@
-"""The way of a vehicle without the trembling of its records: places at even steps, and directions.
+"""The path of a vehicle without the trembling of its records: positions at even steps, directions.
 
 Records are as dense as their rate and as quiet as their filter: at 200 Hz they jitter by
-centimetres and crowd where the vehicle stands, at 1 Hz they are corners of a rounded way.
+centimetres and crowd where the vehicle stands, at 1 Hz they are corners of a rounded path.
 """
 
 from __future__ import annotations
@@ -16,19 +16,19 @@ from processing.core.arrays import Floats, Integers
 from processing.core.kernels import kernel
 
 APART_M = 0.5
-"""Records nearer than this in plan count together as one place: those of a waiting vehicle."""
+"""Records nearer than this in plan count together as one position: those of a waiting vehicle."""
 
 STEP_M = 0.25
-"""Between places of the smooth path: under a bend of 5 m radius its chord leaves the arc by 1.6
+"""Between positions of the smooth path: under a bend of 5 m radius its chord leaves the arc by 1.6
 mm."""
 
 SMOOTHED_M = 1.0
-"""Standard deviation of the bell over which places are averaged along the vehicle's path:
+"""Standard deviation of the bell over which positions are averaged along the vehicle's path:
 an axle's distance is some three of it, so no vehicle turns faster than this follows."""
 
 
 class SmoothPath(NamedTuple):
-    """A way in plan with its heights, sampled at even steps.
+    """A path in plan with its heights, sampled at even steps.
 
     Attributes
     ----------
@@ -64,7 +64,7 @@ def monotone_runs(xyz: Floats) -> list[tuple[int, int]]:
 
     Notes
     -----
-    It turns back where the way from one of the places half a metre apart to the next leads back
+    It turns back where the path from one of the positions half a metre apart to the next leads back
     by more than a right angle.
     """
     marks = apart(xyz)
@@ -82,7 +82,7 @@ def monotone_runs(xyz: Floats) -> list[tuple[int, int]]:
 
 
 def smooth_way(xyz: Floats) -> SmoothPath | None:
-    """The way through records in which the vehicle doesn't turn back.
+    """The path through records in which the vehicle doesn't turn back.
 
     Parameters
     ----------

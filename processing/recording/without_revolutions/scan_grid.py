@@ -43,7 +43,7 @@ _FARTHEST_STEP = 0.5
 measurement is recorded."""
 
 SHOWN_AS_SCAN = Text(
-    "The scanner stood still, so there are no revolutions along a way; the scan's own image "
+    "The scanner stood still, so there are no revolutions along a path; the scan's own image "
     "of {sweeps} sweeps with {length} places is shown.",
     "据置型スキャナの点群のため、走行に沿った回転はありません。"
     "スキャン画像（{sweeps} 列 × {length} 点）で表示します。",

@@ -218,7 +218,7 @@ class VolumeForm(QWidget):
         self._run.setEnabled(reason is None and not lacks_ground)
         said = "" if reason is None else reason.in_language(self._language)
         if lacks_ground:
-            said = self.tr("The ground has not been told from what stands on it yet.")
+            said = self.tr("The ground has not been separated from what stands on it yet.")
         self._why_not.setText(said)
         self._why_not.setVisible(bool(said))
         self._ground.setVisible(lacks_ground)

@@ -107,7 +107,7 @@ def read_header(line: str, width: int) -> HeaderReading:
     -------
     HeaderReading
         Certain: as many names as columns, each coordinate named once. Unclear: it may be a header,
-        but which column is which can't be told. A line without a comment sign is never no header.
+        but which column is which can't be known. A line without a comment sign is never no header.
     """
     line = unicodedata.normalize("NFKC", line)
     body = _COMMENT.sub("", line)

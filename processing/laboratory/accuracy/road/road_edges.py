@@ -76,7 +76,7 @@ class RoadScores:
     judged : dict
         By tool, the confidence of each candidate and whether it is right.
     reached : list of Reached
-        What was asked for on each street, by how far from the way it lies.
+        What was asked for on each street, by how far from the vehicle's path it lies.
     failures : list of Failure
     pictures : list
         Of the failures, where they were wanted.
@@ -243,7 +243,7 @@ counts them; lids and gratings one by one count from half of what both cover tog
 _ABOUT_HEADS = f"""{_COMMAND}: streets recorded by two heads, each alone and both in one run.
 """
 _ABOUT_REACH = f"""{_COMMAND}: all that is asked for, 2 m sections of edges with dropped curbs and \
-slots of 0.6 m, by how far from the vehicle's way it lies: on other lanes and in side streets few \
+slots of 0.6 m, by how far from the vehicle's path it lies: on other lanes and in side streets few \
 points fall, at flat angles.
 """
 _ABOUT_FAILURES = f"""{_COMMAND} `--pictures FOLDER`: every failure of the tables above, sorted by \

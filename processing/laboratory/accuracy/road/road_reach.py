@@ -38,7 +38,7 @@ def count_by_reach(
 
 def reach_table(streets: Sequence[Reached]) -> str:
     """All streets together."""
-    rows = [["from the way", "curbs: found, missed", "R", "gutters: found, missed", "R"]]
+    rows = [["from the path", "curbs: found, missed", "R", "gutters: found, missed", "R"]]
     for band, (low, high) in enumerate(pairwise(BANDS_M)):
         name = f"beyond {low:g} m" if np.isinf(high) else f"{low:g} to {high:g} m"
         rows.append([name, *_cells(streets, band)])
