@@ -24,7 +24,7 @@ _POINTS_AT_ONCE = 4_000_000
 _FIRST_ROOM = 1 << 14
 
 
-class Stroke(NamedTuple):
+class StrokePath(NamedTuple):
     """Both ends of a brush's straight path, (2, 3) in the integers' own units; its radius, m."""
 
     ends: Floats
@@ -59,7 +59,7 @@ def points_under_brush(drive: Drive, start: Floats, end: Floats, radius_m: float
     scale = np.array(quantisation.scale)
     # In the integers' own units, so that no coordinate is computed for a point far off.
     ends = quantisation.in_units(np.stack([start, end]))
-    stroke = Stroke(ends, radius_m)
+    stroke = StrokePath(ends, radius_m)
     room = np.empty(_FIRST_ROOM, np.int64)
     count = _near_stroke_kernel(part.integers, scale, part.stretches, stroke, room)
     if count > room.size:
@@ -170,7 +170,7 @@ def _near_stroke_kernel(
     integers: NDArray[np.int32],
     scale: Floats,
     stretches: Integers,
-    stroke: Stroke,
+    stroke: StrokePath,
     found: Integers,
 ) -> int:
     """Points of stretches that lie near a stroke; gives how many, also of those without room."""
@@ -204,5 +204,5 @@ def stroke_is_short(start: Floats, end: Floats, radius_m: float) -> bool:
 
 def warm_up() -> None:
     """Compile the kernel."""
-    stroke, room = Stroke(np.zeros((2, 3)), 1.0), np.empty(1, np.int64)
+    stroke, room = StrokePath(np.zeros((2, 3)), 1.0), np.empty(1, np.int64)
     _near_stroke_kernel(np.zeros((1, 3), np.int32), np.ones(3), np.array([[0, 1]]), stroke, room)

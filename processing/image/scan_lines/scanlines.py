@@ -37,16 +37,19 @@ class ScanlineSettings:
     ----------
     spacing_m : float
         Between sections along the vehicle's path; they lie at its multiples. The thesis doesn't say
-        its own.
+        its own; by trial, no measurement is recorded.
     half_width_m : float
         How far to either side of the path: two lanes and a walk beyond.
     longest_edge_m : float
         Triangles with a longer edge are left out; where the vehicle advances more than two thirds
-        of it between two rows, those with an edge longer than one and a half advances.
+        of it between two rows, those with an edge longer than one and a half advances. By trial;
+        no measurement is recorded.
     lowest_m, highest_m : float
-        What lies outside of these heights about the road is left out.
+        What lies outside of these heights about the road is left out: ditches below and walls
+        beside it are kept, wires and crowns are not. By trial; no measurement is recorded.
     least_advance_m : float
-        Rows are left out until the vehicle has gone so far since the last one.
+        Rows are left out until the vehicle has gone so far since the last one, a fifth of the
+        spacing: rows of a waiting vehicle show the same place again.
     """
 
     spacing_m: float = 0.10

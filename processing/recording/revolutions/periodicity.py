@@ -45,6 +45,31 @@ _STARTS_M = ((-1.5, 0.0), (0.0, 3.0), (0.0, -3.0))
 """Where centres are looked for beside the one before, m along and aside. By trial; no measurement
 is recorded."""
 
+_TRIED_IN_VAIN = 8
+"""Pieces in which no rotation was found, after which no more are tried. By trial; no measurement is
+recorded."""
+
+_LEAST_FOUND = 0.3
+"""Share of the pieces in which a rotation must be found: a line scanner shows it in nearly all. By
+trial; no measurement is recorded."""
+
+_GAP_S = 3 * _EVERY_S
+"""Between pieces: where two and more are missing the vehicle may have stood or turned."""
+
+_MARGIN_S = 1e-3
+"""Before the first and behind the last point of a recording: times are known better."""
+
+_NEIGHBOURS = 5
+"""Pieces over whose velocities a median is taken: two of them may be wrong."""
+
+_LEAST_LEVEL = 0.2
+"""Level part of the spin axis, a unit vector: nearer than 12° to the vertical its azimuth is that
+of noise. By trial; no measurement is recorded."""
+
+_STANDS_M_S = 0.5
+"""A slower motion is that of the centres' own noise, a few centimetres from piece to piece. By
+trial; no measurement is recorded."""
+
 _READ_POINTS = 2_000_000
 """Points read at a time."""
 
@@ -75,9 +100,9 @@ def trajectory_from_points(points: PointSource, monitor: Monitor) -> Trajectory 
             if last - first >= _LEAST_POINTS:
                 finder.add(part.chunk(first, last))
                 tried += 1
-            if tried >= 8 and not finder.times:
+            if tried >= _TRIED_IN_VAIN and not finder.times:
                 return None
-    if not finder.times or len(finder.times) < 0.3 * tried:
+    if not finder.times or len(finder.times) < _LEAST_FOUND * tried:
         return None
     ends = (float(points.chunk(0, 1).time[0]), float(part.time[-1]))
     return finder.trajectory(ends)
@@ -125,11 +150,11 @@ class _CentreFinder:
         normals = np.array(self._normals)
         velocities = np.array(self._velocities)
         # Each run of windows is led on to its ends: over a gap the vehicle may have stood.
-        gaps = np.flatnonzero(np.diff(times) > 3 * _EVERY_S)
+        gaps = np.flatnonzero(np.diff(times) > _GAP_S)
         first = np.concatenate([[0], gaps + 1])
         last = np.concatenate([gaps, [times.size - 1]])
-        begins = np.concatenate([[ends[0] - 1e-3], times[first[1:]] - _EVERY_S])
-        stops = np.concatenate([times[last[:-1]] + _EVERY_S, [ends[1] + 1e-3]])
+        begins = np.concatenate([[ends[0] - _MARGIN_S], times[first[1:]] - _EVERY_S])
+        stops = np.concatenate([times[last[:-1]] + _EVERY_S, [ends[1] + _MARGIN_S]])
         led_times = np.concatenate([begins, times, stops])
         order = np.argsort(led_times)
         led = np.concatenate([first, np.arange(times.size), last])[order]
@@ -154,7 +179,7 @@ class _CentreFinder:
             rates = [self._rate_hz if same_side else -self._rate_hz]
             since = middle - self.times[-1]
             guess = self._centres[-1] + since * self._velocities[-1] - base
-            if since < 3 * _EVERY_S:
+            if since < _GAP_S:
                 near = fit_rotation(flat, [plane.project(guess)], moves=True, rates_hz=rates)
                 if near.coherence > np.median(self._coherences) - _LESS_COHERENT:
                     return near
@@ -162,9 +187,9 @@ class _CentreFinder:
 
 
 def _smoothed(velocities: Floats) -> Floats:
-    """Medians of five neighbours: one short window tells a velocity badly."""
-    padded = np.pad(velocities, ((2, 2), (0, 0)), mode="edge")
-    windows = np.lib.stride_tricks.sliding_window_view(padded, 5, axis=0)
+    """Medians of neighbours: one short window gives a velocity badly."""
+    padded = np.pad(velocities, ((_NEIGHBOURS // 2,) * 2, (0, 0)), mode="edge")
+    windows = np.lib.stride_tricks.sliding_window_view(padded, _NEIGHBOURS, axis=0)
     median: Floats = np.median(windows, axis=2)
     return median
 
@@ -172,10 +197,10 @@ def _smoothed(velocities: Floats) -> Floats:
 def _headings_deg(times: Floats, centres: Floats, normals: Floats, velocity: Floats) -> Floats:
     """Clockwise from north: the plane's azimuth, set to the motion on the whole."""
     azimuth = np.unwrap(np.arctan2(normals[:, 0], normals[:, 1]))
-    if np.median(np.hypot(normals[:, 0], normals[:, 1])) < 0.2:
+    if np.median(np.hypot(normals[:, 0], normals[:, 1])) < _LEAST_LEVEL:
         azimuth = np.zeros(times.size)
     speed = np.hypot(velocity[0], velocity[1])
-    if speed < 0.5 or times.size < 2:
+    if speed < _STANDS_M_S or times.size < 2:
         level: Floats = np.degrees(azimuth - azimuth[0]) % 360.0
         return level
     motion = np.diff(centres, axis=0)[:, :2]

@@ -37,6 +37,51 @@ _STAGES = (16, 64, 256, 1024, 4096, 16384)
 """Lengths of pieces, in pulses, over which the interval is made better: each is known well enough
 by the one before that no pulse is miscounted."""
 
+_LEAST_PULSES, _LEAST_STEPS = 64, 32
+"""Pulses of a stretch, and steps of all stretches, for a median that holds. By trial; no
+measurement is recorded."""
+
+_LONGEST_STEP = 4.5
+"""Median steps: a step of four missing pulses still shows the lattice, longer ones blur with the
+grid's own spacing."""
+
+_MOST_STEPS = 800
+"""Steps by which lattices are compared, for the time."""
+
+_PARTS = (1, 2, 3, 4)
+"""Of the median step: where most pulses don't come back it is a multiple of the interval."""
+
+_GRID_LOW, _GRID_HIGH, _GRID_STEPS = 0.75, 1.25, 161
+"""Steps tried about each part, by 0.3 %: over four steps that shifts the phase by 4.5°."""
+
+_NEAR_PART, _LEAST_ALONE = 0.4, 0.05
+"""A common step occurs by itself, to 40 % of it, in a twentieth of the steps at least. By trial; no
+measurement is recorded."""
+
+_AS_STRONG = 0.9
+"""Of the strongest: the longest step as good as that is the interval, its parts fit as well. By
+trial; no measurement is recorded."""
+
+_PIECES = 60
+"""Pieces of a stretch by which the interval is made better, for the time."""
+
+_PIECE_PULSES, _PIECES_EVERY = 256, 2048
+"""Pulses of a piece whose coherence is measured, and from one piece to the next: the clock's drift
+over a piece is nothing beside the interval."""
+
+_FULL_PERCENTILE = 95
+"""Of the pulses of a quantum: what one holds without a loss; a few hold others' pulses too."""
+
+_SPECTRUM_SIZE = 1 << 17
+"""Quanta whose counts are transformed: a beat is known to a hundred-thousandth."""
+
+_LOWEST_BEAT = 100
+"""Part of the spectrum that is left out: the counts' slow drift."""
+
+_CLEAR_PEAK = 50.0
+"""Times the spectrum's median from which a beat is a line: noise exceeds 50 medians of power (35
+means) once in 10¹⁵ times."""
+
 
 @dataclass(frozen=True)
 class PulseClock:
@@ -73,12 +118,12 @@ def estimate_clock(samples: Iterable[PointColumns]) -> PulseClock | None:
        from how many pulses share a quantum in stretches without losses.
     """
     chunks = [_pulse_times(sample) for sample in samples]
-    chunks = [times for times in chunks if times.size >= 64]
+    chunks = [times for times in chunks if times.size >= _LEAST_PULSES]
     if not chunks:
         return None
     steps = np.concatenate([np.diff(times) for times in chunks])
     apart = steps[(steps > 0) & (steps < LONGEST_MISSING_S)]
-    if apart.size < 32:
+    if apart.size < _LEAST_STEPS:
         return None
     distinct = [np.unique(times) for times in chunks]
     step = _common_step(apart)
@@ -151,7 +196,7 @@ def _is_same_pulse(points: PointColumns) -> NDArray[np.bool_]:
 
 
 def _pulse_times(sample: PointColumns) -> Floats:
-    """Times from the first on, one per pulse; files without return numbers tell nothing of ties."""
+    """Times from the first on, one per pulse; files without return numbers say nothing of ties."""
     times = sample.time[~_is_same_pulse(sample)]
     if sample.count and sample.number_of_returns.max() == 0:
         times = np.unique(times)
@@ -161,13 +206,14 @@ def _pulse_times(sample: PointColumns) -> Floats:
 def _common_step(steps: Floats) -> float | None:
     """The step of which most others are multiples, to a few per cent; None where there is none."""
     median = float(np.median(steps))
-    short = steps[steps < 4.5 * median]
-    short = short[:: max(1, short.size // 800)]
+    short = steps[steps < _LONGEST_STEP * median]
+    short = short[:: max(1, short.size // _MOST_STEPS)]
     best: list[tuple[float, float]] = []
-    for part in (1, 2, 3, 4):
-        grid = median / part * np.linspace(0.75, 1.25, 161)
+    for part in _PARTS:
+        grid = median / part * np.linspace(_GRID_LOW, _GRID_HIGH, _GRID_STEPS)
         # Times rounded to decimals have a finer common step that never occurs alone.
-        if np.mean(np.abs(short - median / part) < 0.4 * median / part) < 0.05:
+        is_alone = np.abs(short - median / part) < _NEAR_PART * median / part
+        if np.mean(is_alone) < _LEAST_ALONE:
             continue
         waves = np.exp((2j * np.pi) * np.outer(1.0 / grid, short))
         strength = waves.mean(axis=1).real
@@ -176,7 +222,7 @@ def _common_step(steps: Floats) -> float | None:
     most = max((strength for strength, _ in best), default=0.0)
     if most <= 0:
         return None  # the steps avoid the multiples of each
-    return next(step for strength, step in best if strength >= 0.9 * most)
+    return next(step for strength, step in best if strength >= _AS_STRONG * most)
 
 
 def _refined(chunks: list[Floats], step: float) -> float:
@@ -184,7 +230,9 @@ def _refined(chunks: list[Floats], step: float) -> float:
         slopes = [
             _slopes(times, starts, size, step)
             for times in chunks
-            if (starts := np.arange(0, times.size - size + 1, max(size, times.size // 60))).size
+            if (
+                starts := np.arange(0, times.size - size + 1, max(size, times.size // _PIECES))
+            ).size
         ]
         if slopes:
             step = float(np.median(np.concatenate(slopes)))
@@ -210,9 +258,9 @@ def _slopes(times: Floats, starts: NDArray[np.int64], size: int, step: float) ->
 def _coherence(chunks: list[Floats], step: float) -> float:
     """How well stretches of some hundred pulses lie on the lattice, 0..1."""
     parts = [
-        np.abs(np.mean(np.exp(2j * np.pi * (times[at : at + 256] / step))))
+        np.abs(np.mean(np.exp(2j * np.pi * (times[at : at + _PIECE_PULSES] / step))))
         for times in chunks
-        for at in range(0, max(1, times.size - 255), 2048)
+        for at in range(0, max(1, times.size - _PIECE_PULSES + 1), _PIECES_EVERY)
     ]
     return float(np.median(parts))
 
@@ -226,17 +274,17 @@ def _interval_of_shared_times(chunks: list[Floats], quantum: float) -> float:
     counts = [np.bincount(np.rint(times / quantum).astype(np.int64)) for times in chunks]
     often = np.concatenate(counts)
     often = often[often > 0]
-    most = int(np.percentile(often, 95))
+    most = int(np.percentile(often, _FULL_PERCENTILE))
     dense = float(np.mean(often[often >= most - 1]))
-    size = 1 << 17
+    size = _SPECTRUM_SIZE
     power = np.zeros(size // 2 + 1)
     for count in counts:
         full = count >= most - 1
         wave = np.where(full, count - dense, 0.0)[:size] * full[:size]
         power += np.abs(np.fft.rfft(wave, size)) ** 2
-    low = size // 100
+    low = size // _LOWEST_BEAT
     peak = low + int(np.argmax(power[low:]))
-    if power[peak] < 50 * np.median(power[low:]):
+    if power[peak] < _CLEAR_PEAK * np.median(power[low:]):
         return quantum / max(1, round(dense))
     beat = peak / size
     shared = min((most - 1 + beat, most - beat), key=lambda number: abs(number - dense))

@@ -14,7 +14,7 @@ _REVOLUTIONS_PER_WINDOW = 8.0
 measurement is recorded."""
 
 _LEAST_POINTS = 24
-"""Points of a window from which its phase is told. By trial; no measurement is recorded."""
+"""Points of a window from which its phase is computed. By trial; no measurement is recorded."""
 
 _LEAST_COHERENCE = 0.3
 """How well directions of a window follow the rotation, 0 to 1, for its phase to count. By trial; no
@@ -25,6 +25,18 @@ _MOST_CHANGE = 0.01
 
 _CLEAR_ANGLE_RAD = 0.6
 """Directions farther off the rotation are of other things: 34°, as in `rotation_fit`."""
+
+_TAKEN_OVER = 0.5
+"""Share of a window's change of rate that is taken over once locked, so that noise is halved. By
+trial; no measurement is recorded."""
+
+_LEAST_ADVANCE = 0.5
+"""Share of the expected revolutions that must lie between two windows; less is noise. By trial; no
+measurement is recorded."""
+
+_KNOTS_AT_ENDS = 4
+"""Windows at both ends by whose rate the phase is led on beyond them. By trial; no measurement is
+recorded."""
 
 
 @dataclass(frozen=True)
@@ -58,10 +70,10 @@ class RevolutionPhase:
         times = np.interp(revolutions, self.revolutions, self.time)
         early, late = revolutions < self.revolutions[0], revolutions > self.revolutions[-1]
         times[early] = self.time[0] + (revolutions[early] - self.revolutions[0]) / self._rate_at(
-            slice(0, 4)
+            slice(0, _KNOTS_AT_ENDS)
         )
         times[late] = self.time[-1] + (revolutions[late] - self.revolutions[-1]) / self._rate_at(
-            slice(-4, None)
+            slice(-_KNOTS_AT_ENDS, None)
         )
         return times
 
@@ -70,10 +82,10 @@ class RevolutionPhase:
         revolutions = np.interp(times, self.time, self.revolutions)
         early, late = times < self.time[0], times > self.time[-1]
         revolutions[early] = self.revolutions[0] + (times[early] - self.time[0]) * self._rate_at(
-            slice(0, 4)
+            slice(0, _KNOTS_AT_ENDS)
         )
         revolutions[late] = self.revolutions[-1] + (times[late] - self.time[-1]) * self._rate_at(
-            slice(-4, None)
+            slice(-_KNOTS_AT_ENDS, None)
         )
         return revolutions
 
@@ -182,7 +194,9 @@ class RevolutionTracker:
         if spread > 0:
             change = float(centred @ miss[near]) / spread
             most = _MOST_CHANGE * self._rate
-            self._rate += (0.5 if self._is_locked else 1.0) * float(np.clip(change, -most, most))
+            self._rate += (_TAKEN_OVER if self._is_locked else 1.0) * float(
+                np.clip(change, -most, most)
+            )
         self._is_locked = True
 
 
@@ -198,7 +212,9 @@ def _phase_of(
         return RevolutionPhase(np.array([middle]), np.zeros(1), rate_hz, 0.0)
     revolutions = phases / (2 * np.pi)
     # Window means whose phase would run backwards are noise of a stretch hardly seen.
-    rising = np.concatenate([[True], np.diff(revolutions) > 0.5 * rate_hz * np.diff(knots)])
+    rising = np.concatenate(
+        [[True], np.diff(revolutions) > _LEAST_ADVANCE * rate_hz * np.diff(knots)]
+    )
     knots, revolutions, coherences = knots[rising], revolutions[rising], coherences[rising]
     if knots.size > 1:
         rate_hz = float((revolutions[-1] - revolutions[0]) / (knots[-1] - knots[0]))

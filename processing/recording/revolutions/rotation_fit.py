@@ -22,7 +22,7 @@ _ROUNDS = 12
 """Of the robust fit. By trial; no measurement is recorded."""
 
 _ROUNDS_TO_CHOOSE = 6
-"""Enough to tell the right candidate from the others."""
+"""Enough to separate the right candidate from the others."""
 
 _CLEAR_ANGLE_RAD = 0.6
 """Directions farther off the rotation are of other things: 34°. By trial; no measurement is
@@ -34,6 +34,43 @@ _MOST_SEARCHED = 1_500
 _MOST_COMPARED = 4_000
 """Points by which candidates are compared, for the time."""
 
+_STEP = 0.25
+"""Between rates that are tried, over the length of a window: from one to the next the phase at
+its ends shifts by 45° either way."""
+
+_APART = 6
+"""Steps between candidates: nearer ones are one peak, 4.8 steps wide at half its height."""
+
+_CANDIDATES = 3
+"""Rates that are refined: the best by a rough centre need not be the right one. By trial; no
+measurement is recorded."""
+
+_FINER = 10
+"""Parts of a step in which a candidate is made better."""
+
+_NEAREST_M = 0.3
+"""Rays count as at least so long, m: the direction of a nearer point is that of its noise. By
+trial; no measurement is recorded."""
+
+_USUAL_MISSES = 2.0
+"""Times the median miss up to which a point counts in full. By trial; no measurement is
+recorded."""
+
+_LEAST_SCALE_RAD = 1e-3
+"""Limit of that where the median is less: 1 mm at 1 m, as coordinates are delivered."""
+
+_CLEAR_SCALES = 3.0
+"""Times that scale beyond which a point counts no more, where it is more than `_CLEAR_ANGLE_RAD`.
+By trial; no measurement is recorded."""
+
+_MOST_SHIFT_M = 1.5
+"""Of the centre in one round, so that it doesn't leave the vehicle. By trial; no measurement is
+recorded."""
+
+_RIDGE_OF_PHASES, _RIDGE_OF_CENTRE = 1e-9, 1e-6
+"""Per point, on phases and rate, and on centre and velocity: so little that it keeps only what the
+points don't determine."""
+
 
 @dataclass(frozen=True)
 class RotationFit:
@@ -42,7 +79,7 @@ class RotationFit:
     Attributes
     ----------
     rate_hz : float
-        Turns a second; negative when the angle falls.
+        Revolutions a second; negative when the angle falls.
     centre : (2,) float64
         Centre of rotation in the plane, m, at time 0 of its window.
     velocity : (2,) float64
@@ -107,7 +144,7 @@ def fit_rotation(
     RotationFit
         The most coherent one; whether that is good enough is for the caller to say.
     """
-    # Some of the points tell the right candidate; all of them are for it alone.
+    # Some of the points show the right candidate; all of them are for it alone.
     some = points.thinned(max(1, points.time.size // _MOST_COMPARED))
     fits: list[RotationFit] = []
     for start in starts:
@@ -130,7 +167,7 @@ def _candidate_rates(angle: Floats, points: PlanePoints) -> list[float]:
     every = max(1, angle.size // _MOST_SEARCHED)
     angle, time, window = angle[::every], points.time[::every], points.window[::every]
     span = float(time.max() - time.min())
-    step = 0.25 / span
+    step = _STEP / span
     count = int((FASTEST_HZ - SLOWEST_HZ) / step) + 1
     rates = np.concatenate(
         [
@@ -143,14 +180,14 @@ def _candidate_rates(angle: Floats, points: PlanePoints) -> list[float]:
     )
     found: list[float] = []
     for at in np.argsort(strength)[::-1]:
-        if all(abs(rates[at] - rate) > 6 * step for rate in found):
+        if all(abs(rates[at] - rate) > _APART * step for rate in found):
             found.append(float(rates[at]))
-        if len(found) == 3:
+        if len(found) == _CANDIDATES:
             break
     refined = []
     for rate in found:
-        near = _strengths(rate - step, step / 10, 21, (angle, time, window))
-        refined.append(rate - step + step / 10 * int(np.argmax(near)))
+        near = _strengths(rate - step, step / _FINER, 2 * _FINER + 1, (angle, time, window))
+        refined.append(rate - step + step / _FINER * int(np.argmax(near)))
     return refined
 
 
@@ -201,7 +238,7 @@ def _refined(
     member = (points.window[:, None] == np.arange(windows)).astype(np.float64)
     for done in range(rounds + 1):
         rays = points.position - centre - points.time[:, None] * velocity
-        distance = np.maximum(np.hypot(rays[:, 0], rays[:, 1]), 0.3)
+        distance = np.maximum(np.hypot(rays[:, 0], rays[:, 1]), _NEAREST_M)
         waves = np.exp(1j * (_angles(rays) - rate * points.time))
         phases = np.angle(_sums_by_window(waves, points))
         clock = phases[points.window] + rate * points.time
@@ -213,12 +250,12 @@ def _refined(
         if moves:
             parts.append(across * points.time[:, None])
         design = np.hstack(parts)
-        scale = max(float(np.median(np.abs(miss))) * 2.0, 1e-3)
+        scale = max(float(np.median(np.abs(miss))) * _USUAL_MISSES, _LEAST_SCALE_RAD)
         weight = np.minimum(1.0, scale / np.maximum(np.abs(miss), 1e-12))
-        weight[np.abs(miss) > max(_CLEAR_ANGLE_RAD, 3 * scale)] = 0.0
+        weight[np.abs(miss) > max(_CLEAR_ANGLE_RAD, _CLEAR_SCALES * scale)] = 0.0
         # A trace of ridge keeps what the points don't determine where it is.
-        ridge = np.full(design.shape[1], 1e-9 * points.time.size)
-        ridge[windows + 1 :] = 1e-6 * points.time.size
+        ridge = np.full(design.shape[1], _RIDGE_OF_PHASES * points.time.size)
+        ridge[windows + 1 :] = _RIDGE_OF_CENTRE * points.time.size
         weighted = design * weight[:, None]
         # Libraries of linear algebra let other cores wait for such small products, which are
         # reading points meanwhile.
@@ -226,7 +263,7 @@ def _refined(
         change = np.linalg.solve(normal, np.einsum("ni,n->i", weighted, miss))
         rate += change[windows]
         shift = change[windows + 1 : windows + 3]
-        centre = centre + shift * min(1.0, 1.5 / max(float(np.hypot(*shift)), 1e-9))
+        centre = centre + shift * min(1.0, _MOST_SHIFT_M / max(float(np.hypot(*shift)), 1e-9))
         if moves:
             velocity = velocity + change[windows + 3 :]
     coherence = float(np.mean(np.cos(miss)))

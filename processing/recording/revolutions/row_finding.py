@@ -35,10 +35,28 @@ _BELOW_CENTRE_M = 0.3
 """Points lower than this below the centre are ground and what stands on it: rows are cut where
 nothing of the vehicle's roof is."""
 
+_DENSITY_POINTS = 20_000
+"""Points in the middle of a recording by whose times its points per revolution are estimated:
+several revolutions of all but the densest scanners."""
+
+_LEAST_S = 1e-9
+"""Guard of divisions and of ties: far shorter than any interval between pulses."""
+
+_SPARE_REVOLUTIONS = 3
+"""So many before its first point a segment's rows may begin: two that `_expected` has to spare and
+the fold's share of one."""
+
+_SHARED_REVOLUTIONS = 2
+"""That chunks have in common: one that begins in the chunk before, and what is searched about
+it."""
+
+_LATTICE_SLACK = 1e-3
+"""Of an interval: a row that begins on a pulse but for rounding begins with that pulse."""
+
 
 @dataclass(frozen=True)
 class FoundRows:
-    """Rows as `Revolutions` has them, and the rates found on the way."""
+    """Rows as `Revolutions` has them, and the rates found with them."""
 
     reference_times: Floats
     fold_pulses: NDArray[np.int64]
@@ -127,10 +145,10 @@ def _first_pass(
 
 
 def _points_per_revolution(points: PointSource, mirror_rotation: MirrorRotation) -> float:
-    size = min(points.count, 20_000)
+    size = min(points.count, _DENSITY_POINTS)
     start = (points.count - size) // 2
     time = points.chunk(start, start + size).time
-    return size / (max(float(time[-1] - time[0]), 1e-9) * abs(mirror_rotation.rate_hz))
+    return size / (max(float(time[-1] - time[0]), _LEAST_S) * abs(mirror_rotation.rate_hz))
 
 
 class _Segments:
@@ -145,7 +163,7 @@ class _Segments:
     def add(self, time: Floats, angle: Floats, stops: list[tuple[float, float]]) -> None:
         """Take sampled points and the stops among them: when points end and go on again."""
         for end, start in stops:
-            last, first = np.searchsorted(time, [end + 1e-9, start])
+            last, first = np.searchsorted(time, [end + _LEAST_S, start])
             self._tracker.add(time[:last], angle[:last])
             self._end(end)
             self._start, self._tracker = start, RevolutionTracker(self._mirror_rotation.rate_hz)
@@ -197,7 +215,11 @@ def _second_pass(
         for segment, mine in revolutions:
             period = 1.0 / segment.phase.rate_hz
             low = -np.inf if start == 0 else part.time[0] + SEARCHED_SHARE * period
-            first = int(np.searchsorted(mine.predicted, max(low, segment.first_time - 3 * period)))
+            first = int(
+                np.searchsorted(
+                    mine.predicted, max(low, segment.first_time - _SPARE_REVOLUTIONS * period)
+                )
+            )
             last = int(np.searchsorted(mine.predicted, part.time[-1]))
             if stop == points.count:
                 last = mine.predicted.size
@@ -224,7 +246,7 @@ def _overlapping(points: PointSource, period_s: float) -> list[tuple[int, int]]:
         lead = max(0, start - READ_POINTS // 4)
         if start:
             time = points.chunk(lead, start).time
-            lead += int(np.searchsorted(time, time[-1] - 2 * period_s))
+            lead += int(np.searchsorted(time, time[-1] - _SHARED_REVOLUTIONS * period_s))
         found.append((lead, stop))
     return found
 
@@ -259,14 +281,14 @@ def _assembled(revolutions: list[tuple[_Segment, _SegmentRows]], interval_s: flo
         first = max(0, int(np.searchsorted(begins, segment.first_time, side="right")) - 1)
         last = int(np.searchsorted(begins, segment.last_time, side="right"))
         kept = slice(first, last + 1)
-        steps = np.ceil((begins[kept] - mine.anchor_time[kept]) / interval_s - 1e-3)
+        steps = np.ceil((begins[kept] - mine.anchor_time[kept]) / interval_s - _LATTICE_SLACK)
         fold = np.maximum.accumulate(mine.anchor_pulse[kept] + steps.astype(np.int64))
         times.append(begins[kept][:-1])
         folds.append(fold[:-1])
         ends.append(fold[1:])
         numbers.append(np.full(fold.size - 1, number, dtype=np.int32))
         last_time, last_fold = float(begins[kept][-1]), int(fold[-1])
-    weights = [segment.last_time - segment.first_time + 1e-9 for segment in segments]
+    weights = [segment.last_time - segment.first_time + _LEAST_S for segment in segments]
     return FoundRows(
         reference_times=np.append(np.concatenate(times), last_time),
         fold_pulses=np.append(np.concatenate(folds), last_fold),

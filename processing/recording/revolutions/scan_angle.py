@@ -32,6 +32,28 @@ _FLATTEST = 0.1
 _LEAST_COHERENCE = 0.75
 """How well directions follow one rotation, 0 to 1. By trial; no measurement is recorded."""
 
+_LEAST_POINTS = 200
+"""Points of all pieces together. By trial; no measurement is recorded."""
+
+_STARTS_M = ((0.0, 0.0), (-2.0, 0.0))
+"""Where the centre is looked for, m down and aside in the scan plane: at the trajectory's reference
+point, and as high above it as a roof is above an axle. By trial; no measurement is recorded."""
+
+_BINS_PER_RADIAN, _LEAST_BINS = 4, 14
+"""Delivered angles are counted by quarters of a radian, 26 of which make a circle: a mirror that
+only swings fills half of them at most."""
+
+_LEAST_DELIVERED_COHERENCE = 0.95
+"""As `_LEAST_COHERENCE` where the file has the angles: they are those of the mirror itself. By
+trial; no measurement is recorded."""
+
+_LOW_SHARE = 0.4
+"""Share of a piece's points, the lowest ones, whose middle direction is down. By trial; no
+measurement is recorded."""
+
+_TRIED_STARTS = 32
+"""Where in a sample a piece may begin: the densest is taken, so that a gap isn't."""
+
 
 class MirrorAngle(Protocol):
     """Gives angles that rise or fall by a full circle a revolution."""
@@ -105,13 +127,13 @@ def find_seen_spin(points: PointSource, poses: Poses) -> MirrorRotation | None:
     3. In it, rate and centre are fitted together (:func:`fit_rotation`).
     """
     beams, window, time = _windows(points, poses)
-    if time.size < 200:
+    if time.size < _LEAST_POINTS:
         return None
     plane = find_plane(beams, np.ones((time.size, 1)), reference=np.zeros(3))
     if plane.flatness > _FLATTEST:
         return None
     flat = PlanePoints(plane.project(beams), time, window)
-    fit = fit_rotation(flat, [np.zeros(2), np.array([-2.0, 0.0])], moves=False)
+    fit = fit_rotation(flat, [np.array(start) for start in _STARTS_M], moves=False)
     if fit.coherence < _LEAST_COHERENCE:
         return None
     level = float(np.median(beams @ plane.normal)) * plane.normal[2]
@@ -136,16 +158,17 @@ def find_delivered_spin(points: PointSource) -> MirrorRotation | None:
         heights.append(part.xyz[::every, 2] - float(np.mean(part.xyz[:, 2])))
     time, angle = np.concatenate(times), np.concatenate(angles)
     turned = np.mod(angle, 2 * np.pi)
-    if time.size < 200 or np.count_nonzero(np.bincount((turned * 4).astype(int))) < 14:
+    bins = np.bincount((turned * _BINS_PER_RADIAN).astype(int))
+    if time.size < _LEAST_POINTS or np.count_nonzero(bins) < _LEAST_BINS:
         return None
     circle = PlanePoints(
         np.column_stack([np.cos(angle), np.sin(angle)]), time, np.concatenate(windows)
     )
     fit = fit_rotation(circle, [np.zeros(2)], moves=False)
-    if fit.coherence < 0.95:
+    if fit.coherence < _LEAST_DELIVERED_COHERENCE:
         return None
     height = np.concatenate(heights)
-    low = height < np.quantile(height, 0.4)
+    low = height < np.quantile(height, _LOW_SHARE)
     fold = float(np.angle(np.mean(np.exp(1j * angle[low]))))
     return MirrorRotation(mirror, fit.rate_hz, fold, fit.coherence)
 
@@ -169,14 +192,14 @@ def _windows(points: PointSource, poses: Poses) -> tuple[Floats, NDArray[np.int6
 def _window_of(sample: PointColumns) -> PointColumns:
     """The densest tenth of a second of a sample."""
     time = sample.time
-    starts = np.linspace(0, max(0, time.size - 2), 32).astype(np.int64)
+    starts = np.linspace(0, max(0, time.size - 2), _TRIED_STARTS).astype(np.int64)
     stops = np.searchsorted(time, time[starts] + _WINDOW_S)
     best = int(np.argmax(stops - starts))
     return sample.chunk(int(starts[best]), int(stops[best]))
 
 
 def _opposite_of_gap(angle: Floats) -> float:
-    """Half a turn from the middle of the widest arc without returns: the sky."""
+    """Opposite of the middle of the widest arc without returns: the sky."""
     ordered = np.sort(np.mod(angle, 2 * np.pi))
     gaps = np.diff(ordered, append=ordered[0] + 2 * np.pi)
     at = int(np.argmax(gaps))

@@ -19,6 +19,30 @@ _CLEAR_MISS = 0.1
 """As a share of the distance: a point farther off counts no more. By trial; no measurement is
 recorded."""
 
+_NEAREST_M = 0.5
+"""Nearer points weigh no more than one at this distance, m: weights go with 1 / distance². By
+trial; no measurement is recorded."""
+
+_MISSES = 3.0
+"""Points off the plane by more than so many times the median (two standard deviations of normal
+noise) weigh less."""
+
+_LEAST_MISS_M = 1e-3
+"""Limit of what weighs less, where the median is less: coordinates are delivered in millimetres."""
+
+_REFERENCE_WEIGHT = 1e-6
+"""Of the reference beside all points: it decides only what they leave open."""
+
+_SAMPLE_POINTS = 500
+"""Points by which the planes through three are compared, for the time."""
+
+_LEAST_AREA_M2 = 1e-6
+"""Twice the area of a triangle: below it the three points lie on a line."""
+
+_LEAST_SINE = 0.3
+"""Of the angle between the plane and the level, from which a direction in it is down: 17°. By
+trial; no measurement is recorded."""
+
 _UP = np.array([0.0, 0.0, 1.0])
 
 
@@ -59,7 +83,7 @@ def find_plane(positions: Floats, along: Floats, *, reference: Floats | None = N
     along : (n, k) float64
         What the plane may shift with, one column each: the constant, and time if it moves.
     reference : (3,) float64, optional
-        A place near the plane, which decides where points on a line leave the plane open.
+        A position near the plane, which decides where points on a line leave the plane open.
 
     Notes
     -----
@@ -68,13 +92,15 @@ def find_plane(positions: Floats, along: Floats, *, reference: Floats | None = N
     2. Least squares with points weighted by 1 / distance², so that far ones don't rule, trimmed and
        repeated.
     """
-    distance = np.maximum(np.linalg.norm(positions - np.median(positions, axis=0), axis=1), 0.5)
+    distance = np.maximum(
+        np.linalg.norm(positions - np.median(positions, axis=0), axis=1), _NEAREST_M
+    )
     centred = positions - along @ np.linalg.lstsq(along, positions)[0]
     normal = _normal_of_most(centred, distance)
     offset = centred @ normal
     miss = np.abs(offset - np.median(offset))
     for _ in range(_ROUNDS):
-        limit = max(3.0 * float(np.median(miss)), 1e-3)
+        limit = max(_MISSES * float(np.median(miss)), _LEAST_MISS_M)
         weight = np.where(miss < limit, 1.0, (limit / np.maximum(miss, 1e-12)) ** 2) / distance**2
         trend = np.linalg.lstsq(
             (along * weight[:, None]).T @ along, (along * weight[:, None]).T @ positions
@@ -83,7 +109,7 @@ def find_plane(positions: Floats, along: Floats, *, reference: Floats | None = N
         moments = (centred * weight[:, None]).T @ centred
         if reference is not None:
             aside = reference - trend[0]
-            moments += 1e-6 * float(weight.sum()) * np.outer(aside, aside)
+            moments += _REFERENCE_WEIGHT * float(weight.sum()) * np.outer(aside, aside)
         normal = np.linalg.eigh(moments)[1][:, 0]
         miss = np.abs(centred @ normal)
     normal = normal if normal[np.argmax(np.abs(normal))] > 0 else -normal
@@ -92,12 +118,13 @@ def find_plane(positions: Floats, along: Floats, *, reference: Floats | None = N
 
 def _normal_of_most(centred: Floats, distance: Floats) -> Floats:
     random = np.random.default_rng(0)
-    every = max(1, centred.shape[0] // 500)
+    every = max(1, centred.shape[0] // _SAMPLE_POINTS)
     some, reach = centred[::every], distance[::every]
     corners = some[random.integers(0, some.shape[0], (_TRIED_PLANES, 3))]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     length = np.linalg.norm(normals, axis=1)
-    normals = normals[length > 1e-6] / length[length > 1e-6, None]
+    is_wide = length > _LEAST_AREA_M2
+    normals = normals[is_wide] / length[is_wide, None]
     if normals.shape[0] == 0:
         return _UP
     offsets = some @ normals.T
@@ -109,7 +136,7 @@ def _normal_of_most(centred: Floats, distance: Floats) -> Floats:
 def _with_axes(normal: Floats, flatness: float) -> ScanPlane:
     down = -_UP + normal * normal[2]
     steep = float(np.linalg.norm(down))
-    knows_down = steep > 0.3
+    knows_down = steep > _LEAST_SINE
     if not knows_down:
         down = np.cross(normal, [0.0, 1.0, 0.0])
         steep = float(np.linalg.norm(down))

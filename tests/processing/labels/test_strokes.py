@@ -9,7 +9,7 @@ from processing.core.errors import Unsuitable
 from processing.labels import strokes
 from processing.labels.rules import PaintOver, PaintRule
 from processing.labels.strokes import (
-    Stroke,
+    StrokePath,
     points_of_segment,
     points_under_brush,
     segments_of,
@@ -56,7 +56,7 @@ def test_a_brush_far_from_everything_takes_nothing(drive):
 def test_the_compiled_loop_does_what_the_plain_one_does(drive):
     integers = np.asarray(drive.columns["xyz"][:300])
     scale, stretches = np.array(drive.info.scale), np.array([[0, 200], [250, 300]])
-    stroke = Stroke(np.stack([integers[10], integers[260]]).astype(float), 0.5)
+    stroke = StrokePath(np.stack([integers[10], integers[260]]).astype(float), 0.5)
     plain, compiled = np.empty(300, np.int64), np.empty(300, np.int64)
     kernel = strokes._near_stroke_kernel
     count = kernel.py_func(integers, scale, stretches, stroke, plain)
