@@ -22,11 +22,11 @@ import numpy as np
 
 from processing.cameras.depth import DepthPicture
 from processing.cameras.stereo import stereo_position
+from processing.core.arrays import Floats
 from processing.core.errors import Unsuitable
 from processing.core.monitor import SilentMonitor
 from processing.core.output_streams import write_every_character
 from processing.laboratory.accuracy.plate_visibility import (
-    Floats,
     TruePlate,
     line_in_picture,
     plate_in_picture,
@@ -213,7 +213,7 @@ def _is_alone(ends: Floats, others: Floats) -> bool:
 
 
 def _clicks_off(photographs: list[Photograph], signs: list[TruePlate]) -> Iterator[float]:
-    for photograph, plate, pixel in _marked(photographs, signs):
+    for photograph, plate, pixel in _mark_plates(photographs, signs):
         is_near = float(photograph.camera.distances_to(plate.xyz[None])[0]) <= _CLICK_TO_M
         if plate.points >= _LEAST_POINTS and is_near:
             found = photograph.depth.point_at((float(pixel[0]), float(pixel[1])))
@@ -221,7 +221,7 @@ def _clicks_off(photographs: list[Photograph], signs: list[TruePlate]) -> Iterat
             yield float(away)
 
 
-def _marked(
+def _mark_plates(
     photographs: list[Photograph], signs: list[TruePlate]
 ) -> Iterator[tuple[Photograph, TruePlate, Floats]]:
     """Plates that are found in pictures, and where their centres are seen."""
@@ -234,7 +234,7 @@ def _marked(
 
 def _stereo_found(photographs: list[Photograph], signs: list[TruePlate]) -> Iterator[float]:
     """Signs marked in two pictures, by the pair that foretells the smallest error."""
-    marked = list(_marked(photographs, signs))
+    marked = list(_mark_plates(photographs, signs))
     for plate in signs:
         own = [(photograph.camera, pixel) for photograph, again, pixel in marked if again is plate]
         yield from _best_pair_off(own, plate)

@@ -12,11 +12,11 @@ from uuid import uuid4
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Flags
 from processing.core.monitor import SilentMonitor
 from processing.formats.points.point_codes import read_result
 from processing.laboratory.accuracy.filters.filter_scenes import FilterScene
 from processing.laboratory.accuracy.filters.peer_filters import (
-    Flags,
     ground_by_cloth,
     ground_by_pcl,
     ground_by_smrf,
