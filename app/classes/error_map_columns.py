@@ -95,7 +95,7 @@ class ErrorMapColumns(QObject):
             if id_ in shown.evaluation.drives
             and has_truth(drive := self._document.drive(id_), shown.truth)
         }
-        some = {id_: _joined(waiting[id_]) for id_ in drives if all(map(len, waiting[id_]))}
+        some = {id_: _join_points(waiting[id_]) for id_ in drives if all(map(len, waiting[id_]))}
         whole = [drive for id_, drive in drives.items() if id_ not in some]
         into = project.temporary_folder()
 
@@ -147,7 +147,7 @@ class ErrorMapColumns(QObject):
         self._waiting.clear()
 
 
-def _joined(points: list[NDArray[np.int64]]) -> NDArray[np.int64]:
+def _join_points(points: list[NDArray[np.int64]]) -> NDArray[np.int64]:
     return np.unique(np.concatenate(points))
 
 

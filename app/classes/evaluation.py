@@ -75,13 +75,15 @@ class Evaluation:
                 asked.append((run.id, scorer, result, truth))
 
         def work() -> dict[str, FileScore]:
-            return {one[0]: score for one in asked if (score := _scored(*one[1:])) is not None}
+            return {
+                one[0]: score for one in asked if (score := _score_features(*one[1:])) is not None
+            }
 
         if asked:
             self._document.run_in_background(work, lambda scores: take(_as_scores(scores)))
 
 
-def _scored(scorer: FeatureScorer, found: MappedFile, true: MappedFile) -> FileScore | None:
+def _score_features(scorer: FeatureScorer, found: MappedFile, true: MappedFile) -> FileScore | None:
     """None where the map holds what can't be compared: areas drawn as lines."""
     try:
         return scorer.score(found, true)

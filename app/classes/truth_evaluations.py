@@ -91,7 +91,7 @@ class TruthEvaluations(QObject):
         clip : Clip or None
             What the 3D view shows, for ``CheckedPoints.CLIP``.
         """
-        project, drives = self._open(), self._shown()
+        project, drives = self._open(), self._shown_drives()
         if project is None or not drives:
             return ""
         clip = clip if checked is CheckedPoints.CLIP else None
@@ -152,7 +152,7 @@ class TruthEvaluations(QObject):
 
     def study(self, request: StudyOptions) -> str:
         """Go through values of parameters where a truth is about what is shown; the job's id."""
-        project, shown = self._open(), self._shown()
+        project, shown = self._open(), self._shown_drives()
         truth = None if project is None else TruthStore(project.settings).get(request.truth)
         if project is None or not shown or truth is None:
             return ""
@@ -209,7 +209,7 @@ class TruthEvaluations(QObject):
     def _open(self) -> Project | None:
         return self._document.project
 
-    def _shown(self) -> tuple[Drive, ...]:
+    def _shown_drives(self) -> tuple[Drive, ...]:
         """The drive shown, and those recorded together with it."""
         id_ = self._document.shared.view_settings.drive_id
         if not id_:

@@ -94,11 +94,11 @@ def command(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print_json([describe_row(measurement) for measurement in found])
     if arguments.markdown is not None:
-        write_table(arguments.markdown, Circumstances.of(_typed(arguments), load), found)
+        write_table(arguments.markdown, Circumstances.of(_write_command(arguments), load), found)
     return 0
 
 
-def _typed(arguments: argparse.Namespace) -> str:
+def _write_command(arguments: argparse.Namespace) -> str:
     """The command, without where its results go and without folders of this machine."""
     words = ["zuka bench", *arguments.names]
     if arguments.points is not None:

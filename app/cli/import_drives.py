@@ -43,13 +43,13 @@ def _report(drives: tuple[Drive, ...], brought: Additions, request: ImportReques
         print_lines(known_words(brought.known).in_language(language))
     elif brought.are_none and request.files:
         print_lines(has_already().in_language(language))
-    shown = [_shown(path) for path in brought.beside]
+    shown = [_write_path(path) for path in brought.beside]
     lacking = lacking_words(drives, brought, shown).in_language(language)
     if lacking:
         say(lacking)
 
 
-def _shown(path: Path) -> str:
+def _write_path(path: Path) -> str:
     """A path as one types it in this folder."""
     here = Path.cwd()
     return str(path.relative_to(here) if path.is_relative_to(here) else path)

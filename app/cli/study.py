@@ -50,7 +50,7 @@ def command(arguments: argparse.Namespace) -> int:
         opened_input(arguments, monitor) as opened,
         scratch_folder(arguments.output.parent) as scratch,
     ):
-        never = [*arguments.truth, *_delivered(opened)]
+        never = [*arguments.truth, *_delivered_files(opened)]
         refuse_inputs(arguments.output, never)
         for drive in opened.drives:
             check_needs(tool, drive)
@@ -97,5 +97,5 @@ def _lines(found: ParameterStudy, language: Language) -> list[str]:
     return align_lines(rows)
 
 
-def _delivered(opened: OpenedInputs) -> list[Path]:
+def _delivered_files(opened: OpenedInputs) -> list[Path]:
     return [path for drive in opened.drives for path in drive.delivered_files]

@@ -17,7 +17,7 @@ def command(arguments: argparse.Namespace) -> int:
     """List all tools, or one."""
     chosen = [any_tool(arguments.name)] if arguments.name else list(every_tool().values())
     if arguments.json:
-        described = [_described(tool) for tool in chosen]
+        described = [_describe_tool(tool) for tool in chosen]
         print_json(described[0] if arguments.name else described)
     else:
         for tool in chosen:
@@ -25,7 +25,7 @@ def command(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _described(tool: Tool) -> dict[str, object]:
+def _describe_tool(tool: Tool) -> dict[str, object]:
     return {
         "id": tool.id,
         "version": tool.version,

@@ -87,7 +87,9 @@ class Document(QObject):
         self._bundled_catalogue = read_catalogue(path_of("catalogue/level500.toml"))
         self._job_results = JobResultApplier(jobs, self)
         self._job_results.refused.connect(self.refused)
-        self._label_steps = LabelSteps(self._job_results, self.undo_stack, self._changed, self)
+        self._label_steps = LabelSteps(
+            self._job_results, self.undo_stack, self._change_history, self
+        )
         self._runs = RunResultApplier(self._job_results, self._label_steps, self._store_finished)
         self._label_steps.reported.connect(self.reported)
         self._label_steps.refused.connect(self.refused)
@@ -200,7 +202,7 @@ class Document(QObject):
             self.undo_stack.push(label, change)
             return change
 
-        return self._changed(push)
+        return self._change_history(push)
 
     def undo(self) -> bool:
         """Take the last step back; says whether there was one."""
@@ -213,7 +215,7 @@ class Document(QObject):
     def set_reference_system(self, crs: str) -> bool:
         """Say what reference system the coordinates are in; says whether it could."""
         try:
-            self._needed().set_crs(crs)
+            self._need_project().set_crs(crs)
         except UserError as error:
             self.refused.emit(error)
             return False
@@ -223,7 +225,7 @@ class Document(QObject):
     def adopt_catalogue(self, path: Path, *, keep_used: bool) -> bool:
         """Use an office's catalogue in the project; says whether it could."""
         try:
-            self._needed().adopt_catalogue(path, keep_used=keep_used)
+            self._need_project().adopt_catalogue(path, keep_used=keep_used)
         except UserError as error:
             self.refused.emit(error)
             return False
@@ -238,7 +240,7 @@ class Document(QObject):
     def export_catalogue(self, path: Path) -> None:
         """Write the project's catalogue as a file to start an own one from."""
         try:
-            self._needed().export_catalogue(path)
+            self._need_project().export_catalogue(path)
         except UserError as error:
             self.refused.emit(error)
             return
@@ -258,7 +260,7 @@ class Document(QObject):
         """
         if not self.create(folder, request.crs):
             return ""
-        project = self._needed()
+        project = self._need_project()
         return self.drive_results.start(project, request, lambda: self._drop_if_empty(project), ())
 
     def import_files(self, request: ImportRequest, only: Collection[str] = ()) -> str:
@@ -269,17 +271,17 @@ class Document(QObject):
         only : collection of str
             Ids of drives that trajectories and images without points are for.
         """
-        return self.drive_results.start(self._needed(), request, lambda: None, only)
+        return self.drive_results.start(self._need_project(), request, lambda: None, only)
 
     def remove_drives(self, ids: Iterable[str]) -> bool:
         """Take drives out of the project as one undoable step; says whether it could."""
-        return self.drive_results.remove(self._needed(), ids, self.apply)
+        return self.drive_results.remove(self._need_project(), ids, self.apply)
 
     def start_run(
         self, tool: str, drive_id: str, parameters: object, *, lane: JobLane = JobLane.ASKED
     ) -> str:
         """Run a tool on a drive in the background; gives the job's id."""
-        project = self._needed()
+        project = self._need_project()
         operation = operation_on_drive(tool, parameters, project.folder, drive_id)
         return self._runs.start(project, operation, lane)
 
@@ -291,11 +293,11 @@ class Document(QObject):
         self, work: Callable[[], object], take: Callable[[object | None], None]
     ) -> None:
         """Do a moment's work for the tool in the hand; it gets None where that failed."""
-        self._job_results.start_at_hand(self._needed(), work, take)
+        self._job_results.start_at_hand(self._need_project(), work, take)
 
     def export(self, request: ExportRequest) -> str:
         """Write the map to files in the background; gives the job's id."""
-        project = self._needed()
+        project = self._need_project()
         title, work = Text("Export", "書き出し"), export_of(project, request)
 
         def take(paths: tuple[Path, ...]) -> None:
@@ -303,7 +305,7 @@ class Document(QObject):
 
         return self._job_results.start(project, title, work, take)
 
-    def _needed(self) -> Project:
+    def _need_project(self) -> Project:
         if self._project is None:
             message = "no project is open"
             raise ValueError(message)
@@ -331,11 +333,11 @@ class Document(QObject):
         stored: list[StoredRun] = []
 
         def act() -> Change:
-            stored.append(store_run(self._needed(), done))
+            stored.append(store_run(self._need_project(), done))
             self.undo_stack.note(stored[-1].change)
             return stored[-1].change
 
-        is_changed = self._changed(act)
+        is_changed = self._change_history(act)
         # Told last: the review says what it loses by this step, which is the lesser news.
         for one in stored:
             if one.run is None:
@@ -349,7 +351,7 @@ class Document(QObject):
             self.drive_results.first_look.show_classes()
         return is_changed
 
-    def _changed(self, act: Callable[[], Change | None]) -> bool:
+    def _change_history(self, act: Callable[[], Change | None]) -> bool:
         try:
             change = act()
         except UserError as error:
@@ -366,7 +368,7 @@ class Document(QObject):
         filed = () if change.filed is None else change.filed.counts
         report_labels(labels, filed, self.tiles, self.shared.map_changes)
         self._label_steps.note(change)
-        self.drive_results.follow_step(self._needed(), change)
+        self.drive_results.follow_step(self._need_project(), change)
         return True
 
     def _replace_by(self, make: Callable[[], Project]) -> bool:

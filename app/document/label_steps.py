@@ -176,7 +176,7 @@ class LabelSteps(QObject):
             return replace(change, labels=found.labels, filed=found.filed)
 
         def take(found: Change) -> None:
-            self._changed(lambda: self._pushed(label, found))
+            self._changed(lambda: self._push_change(label, found))
 
         step.job = self._job_results.start(
             project,
@@ -225,7 +225,7 @@ class LabelSteps(QObject):
             request = step.request or Change()
             labels = rebase_labels(request.labels, _labels_in(step.missed), step.project.drive)
             rest = replace(request, labels=labels)
-            self._changed(partial(self._pushed, step.label, rest))
+            self._changed(partial(self._push_change, step.label, rest))
         self._steps.clear()
         self._move = None
 
@@ -268,7 +268,7 @@ class LabelSteps(QObject):
         if step.missed:
             self.reported.emit(_GIVEN_UP.filled(label=step.label))
 
-    def _pushed(self, label: Text, change: Change) -> Change:
+    def _push_change(self, label: Text, change: Change) -> Change:
         self._undo_stack.push(label, change)
         return change
 

@@ -58,15 +58,15 @@ class UndoStack(QObject):
         """
         if self._project is None:
             return None
-        return self._moved(self._project.features.undo(are_columns_made=are_columns_made))
+        return self._move_change(self._project.features.undo(are_columns_made=are_columns_made))
 
     def redo(self, *, are_columns_made: bool = False) -> Change | None:
         """Do again what was undone; gives what was applied; parameters as :meth:`undo`."""
         if self._project is None:
             return None
-        return self._moved(self._project.features.redo(are_columns_made=are_columns_made))
+        return self._move_change(self._project.features.redo(are_columns_made=are_columns_made))
 
-    def _moved(self, change: Change | None) -> Change | None:
+    def _move_change(self, change: Change | None) -> Change | None:
         if change is not None:
             self.changed.emit()
         return change

@@ -146,10 +146,10 @@ def show_kind_palette(parts: WindowParts) -> None:
 
 def named_kinds(parts: WindowParts) -> list[NamedAction]:
     """All kinds as actions that choose them."""
-    return [_named(parts, kind) for kind in parts.document.catalogue()]
+    return [_name_action(parts, kind) for kind in parts.document.catalogue()]
 
 
-def _named(parts: WindowParts, kind: FeatureKind) -> NamedAction:
+def _name_action(parts: WindowParts, kind: FeatureKind) -> NamedAction:
     action = QAction(literal(kind.name.in_language(parts.language)), parts.window.centralWidget())
     action.setIcon(swatch_of(kind.colour))
     action.setShortcut(QKeySequence(kind.key))

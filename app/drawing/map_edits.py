@@ -55,7 +55,7 @@ class MapEdits:
 
     def delete(self) -> None:
         """Remove what is chosen."""
-        chosen = self._needed()
+        chosen = self._need_selection()
         if chosen:
             self._document.apply(*removal_of(chosen))
 
@@ -76,11 +76,11 @@ class MapEdits:
 
     def close(self) -> None:
         """Lead lines back to their first vertex."""
-        self._each(Text("Close {count} lines", "{count}本の線を閉合"), _closed, Geometry.LINE)
+        self._each(Text("Close {count} lines", "{count}本の線を閉合"), _close_line, Geometry.LINE)
 
     def open(self) -> None:
         """Open closed lines at their first vertex."""
-        self._each(Text("Open {count} lines", "{count}本の線を開く"), _opened, Geometry.LINE)
+        self._each(Text("Open {count} lines", "{count}本の線を開く"), _open_line, Geometry.LINE)
 
     def join(self) -> None:
         """Make one line of the chosen ones."""
@@ -113,7 +113,7 @@ class MapEdits:
 
     def copy(self) -> None:
         """Put what is chosen on the clipboard, for this or any other project."""
-        chosen = self._needed()
+        chosen = self._need_selection()
         if chosen:
             text = clip_of(chosen, self._document.crs(), self._document.catalogue())
             QGuiApplication.clipboard().setText(text)
@@ -179,7 +179,7 @@ class MapEdits:
 
     def select_like(self, alike: Callable[[Feature, Feature], bool]) -> None:
         """Choose all shown features that are like one of the chosen."""
-        chosen = self._needed()
+        chosen = self._need_selection()
         hidden = self._document.shared.view_settings.hidden_kinds
         # Few kinds of likeness among many chosen: each one is compared once.
         samples: list[Feature] = []
@@ -215,7 +215,7 @@ class MapEdits:
     def _choose(self, features: Iterable[Feature]) -> None:
         self._selection.choose_features(frozenset(feature.id for feature in features))
 
-    def _needed(self) -> tuple[Feature, ...]:
+    def _need_selection(self) -> tuple[Feature, ...]:
         chosen = self.chosen
         if not chosen:
             self._document.reported.emit(NOTHING_CHOSEN)
@@ -245,7 +245,7 @@ def _nearest_vertices(one: Feature, other: Feature) -> tuple[Vertex, Vertex]:
     return middle, min(other.vertices, key=lambda vertex: math.dist(vertex.xyz, middle.xyz))
 
 
-def _closed(line: Feature) -> Feature:
+def _close_line(line: Feature) -> Feature:
     """The line led back to its first vertex; one of two vertices stays as it is."""
     is_open = line.vertices[-1].xyz != line.vertices[0].xyz
     if not is_open or len(line.vertices) < _FEWEST_OF_RING:
@@ -253,7 +253,7 @@ def _closed(line: Feature) -> Feature:
     return line.with_vertices((*line.vertices, line.vertices[0]))
 
 
-def _opened(line: Feature) -> Feature:
+def _open_line(line: Feature) -> Feature:
     """The line without the piece that leads back."""
     is_closed = line.vertices[-1].xyz == line.vertices[0].xyz
     if not is_closed or len(line.vertices) <= _FEWEST_OF_RING:

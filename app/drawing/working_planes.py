@@ -39,7 +39,7 @@ def plane_of_points(source: MapSource, shared: SharedState) -> WorkingPlane | No
     position = shared.cursor.position
     if not parts and position is not None and position.measured is not None:
         parts = [_points_near(source.drive(position.measured.drive), position.measured)]
-    return _fitted(np.concatenate(parts)) if parts else None
+    return _fit_plane(np.concatenate(parts)) if parts else None
 
 
 def _points_near(drive: Drive, at: PointReference) -> NDArray[np.float64]:
@@ -60,7 +60,7 @@ def _points_near(drive: Drive, at: PointReference) -> NDArray[np.float64]:
     return np.concatenate(found) if found else np.empty((0, 3))
 
 
-def _fitted(xyz: NDArray[np.float64]) -> WorkingPlane | None:
+def _fit_plane(xyz: NDArray[np.float64]) -> WorkingPlane | None:
     if len(xyz) < 3:
         return None
     middle = xyz.mean(axis=0)

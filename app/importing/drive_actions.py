@@ -63,14 +63,14 @@ class DriveActions:
     def choose_trajectory(self, drive: str = "") -> None:
         """Ask for trajectory files, and complete a drive, or all that they cover, with them."""
         title = QCoreApplication.translate("DriveActions", "Add a trajectory")
-        paths = self._chosen(title, Content.TRAJECTORY)
+        paths = self._choose_files(title, Content.TRAJECTORY)
         if paths:
             self._add(ImportRequest((), trajectories=paths), drive)
 
     def choose_images(self, drive: str = "") -> None:
         """Ask for image lists, and add them to a drive, or to all on which they were taken."""
         title = QCoreApplication.translate("DriveActions", "Add camera images")
-        paths = self._chosen(title, Content.IMAGES)
+        paths = self._choose_files(title, Content.IMAGES)
         if paths:
             self._add(ImportRequest((), images=paths), drive)
 
@@ -84,7 +84,7 @@ class DriveActions:
     def _add(self, request: ImportRequest, drive: str) -> None:
         self._parts.document.import_files(request, (drive,) if drive else ())
 
-    def _chosen(self, title: str, content: Content) -> tuple[Path, ...]:
+    def _choose_files(self, title: str, content: Content) -> tuple[Path, ...]:
         document = self._parts.document
         if document.project is None:
             return ()

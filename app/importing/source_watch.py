@@ -103,7 +103,7 @@ class SourceWatch(QObject):
         project = self._document.project
         if project is None or asked != self._asked:
             return
-        if self._taken(project, result):
+        if self._take_result(project, result):
             for drive in project.drives:
                 if drive.noted_images is not None:
                     self._document.tiles.drop(drive.id)
@@ -115,7 +115,7 @@ class SourceWatch(QObject):
             self._soon.start()
 
     @staticmethod
-    def _taken(project: Project, result: SurveyResult) -> bool:
+    def _take_result(project: Project, result: SurveyResult) -> bool:
         before = [drive.delivered_files for drive in project.drives]
         images = [drive.delivered_images for drive in project.drives]
         # On a full disk the next opening looks again; what was found is used all the same.

@@ -42,7 +42,7 @@ def hover(window: BenchWindow) -> StepTimings:
 def draw(window: BenchWindow) -> StepTimings:
     """Lines of fifty vertices, each a click."""
     frames, answers, done = window.image_frames, _Answers(window), []
-    before = _drawn(window)
+    before = _drawn_ids(window)
     lines, vertices = window.some(_LINES), max(_LEAST_VERTICES, window.some(_VERTICES))
     for number in range(lines):
         for vertex in range(vertices):
@@ -51,7 +51,7 @@ def draw(window: BenchWindow) -> StepTimings:
         done.append(
             frames.seconds_to_paint(lambda: window.mouse.key(window.image, Qt.Key.Key_Return))
         )
-    if len(_drawn(window) - before) != lines:
+    if len(_drawn_ids(window) - before) != lines:
         message = "the lines that were clicked are not on the map"
         raise RuntimeError(message)
     return {"vertex": answers.end(), "line done": done}
@@ -90,7 +90,7 @@ class _Answers:
         self._is_other = True
 
 
-def _drawn(window: BenchWindow) -> set[str]:
+def _drawn_ids(window: BenchWindow) -> set[str]:
     return {feature.id for feature in window.parts.document.features()}
 
 

@@ -48,12 +48,12 @@ def measure(count: int) -> dict[str, list[float]]:
         settings = Settings(Path(folder) / "settings.ini")
         parts = build_window(settings, Path(folder))
         try:
-            return _measured(parts, Path(folder) / "street.zuka", count)
+            return _measure_review(parts, Path(folder) / "street.zuka", count)
         finally:
             parts.window.close()
 
 
-def _measured(parts: WindowParts, folder: Path, count: int) -> dict[str, list[float]]:
+def _measure_review(parts: WindowParts, folder: Path, count: int) -> dict[str, list[float]]:
     parts.window.show()
     parts.document.create(folder, "")
     parts.document.import_files(request_of_files((path_of("sample_street"),), ""))

@@ -185,7 +185,7 @@ class Review(QObject):
         if not features:
             return False
         label = label_of_many(len(features), least)
-        if not self._applied(label, change_status(features, Status.ACCEPTED)):
+        if not self._apply_change(label, change_status(features, Status.ACCEPTED)):
             return False
         if self._queue.status(self._state.feature) is Status.CANDIDATE:
             self.changed.emit()
@@ -200,7 +200,7 @@ class Review(QObject):
         if feature.status is not status:
             seconds = self._clock() - self._shown_at
             label = label_of_one(self._document.catalogue(), feature, status)
-            if not self._applied(label, change_status((feature,), status)):
+            if not self._apply_change(label, change_status((feature,), status)):
                 return False
             self._state = self._state.decided(seconds)
         self._go_on()
@@ -217,12 +217,12 @@ class Review(QObject):
         if shown is None or not features:
             return False
         label = label_of_line(self._document.catalogue(), shown, len(features), status)
-        if not self._applied(label, change_status(features, status)):
+        if not self._apply_change(label, change_status(features, status)):
             return False
         self._go_on()
         return True
 
-    def _applied(self, label: Text, change: Change) -> bool:
+    def _apply_change(self, label: Text, change: Change) -> bool:
         self._is_deciding = True
         try:
             return self._document.apply(label, change)

@@ -29,7 +29,7 @@ _EMPTY_MAP = Text("Empty map", "図面を空にする")
 
 def waiting(studio: ScreenshotWindow) -> None:
     """Two runs that wait to be reviewed."""
-    _found(studio)
+    _find_curbs(studio)
     studio.bring("review")
 
 
@@ -68,7 +68,7 @@ def done(studio: ScreenshotWindow) -> None:
 
 def evaluation(studio: ScreenshotWindow) -> None:
     """What became of the candidates, by tool, with the curve of reliability."""
-    _found(studio)
+    _find_curbs(studio)
     studio.parts.of(Review).open(_runs(studio), ReviewOrder.CONFIDENCE)
     _judge(studio, 22)
     studio.act("evaluation")
@@ -81,7 +81,7 @@ def evaluation_empty(studio: ScreenshotWindow) -> None:
 
 def runs(studio: ScreenshotWindow) -> None:
     """The runs in the project's tree, with what can be done to one."""
-    _found(studio)
+    _find_curbs(studio)
     studio.parts.of(Review).open(_runs(studio), ReviewOrder.CONFIDENCE)
     _judge(studio, 4)
     studio.parts.of(Review).close()
@@ -98,7 +98,7 @@ def runs(studio: ScreenshotWindow) -> None:
 
 def _open(studio: ScreenshotWindow) -> None:
     """Candidates in the layout for checking; the queue is begun by its key."""
-    _found(studio)
+    _find_curbs(studio)
     studio.act("layout-checking")
     studio.settle()
     studio.act("review-start")
@@ -117,7 +117,7 @@ def _judge(studio: ScreenshotWindow, count: int) -> None:
         studio.act("review-accept" if is_right else "review-reject")
 
 
-def _found(studio: ScreenshotWindow) -> None:
+def _find_curbs(studio: ScreenshotWindow) -> None:
     """Let a tool have found the curbs of the drawing piece by piece, instead of somebody."""
     document = studio.parts.document
     drawn = tuple(document.features())

@@ -59,14 +59,16 @@ def point(studio: ScreenshotWindow) -> None:
 
 def trace(studio: ScreenshotWindow) -> None:
     """A curb that is followed."""
-    _traced(studio, LEFT, (-11385.871, -35121.449, 125.696), (-11389.463, -35126.003, 125.712), 6)
+    _trace_line(
+        studio, LEFT, (-11385.871, -35121.449, 125.696), (-11389.463, -35126.003, 125.712), 6
+    )
     studio.hover(studio.spot(LEFT, (-11389.85, -35126.5, 125.62)))
 
 
 def trace_stopped(studio: ScreenshotWindow) -> None:
     """A curb that ends before the second click."""
     begin, end = (-11393.104, -35130.616, 125.726), (-11404.609, -35145.199, 125.646)
-    _traced(studio, LEFT, begin, end, 4)
+    _trace_line(studio, LEFT, begin, end, 4)
 
 
 def arc(studio: ScreenshotWindow) -> None:
@@ -149,7 +151,7 @@ def measure_area(studio: ScreenshotWindow) -> None:
     studio.key(Qt.Key.Key_Return)
 
 
-def _traced(
+def _trace_line(
     studio: ScreenshotWindow, drive: str, begin: Position, end: Position, notches: int
 ) -> None:
     studio.look(drive, begin, notches)

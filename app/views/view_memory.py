@@ -61,11 +61,11 @@ class ViewMemory(QObject):
             frozenset(map(str, hidden if isinstance(hidden, list) else [])) & set(kinds)
         )
         settings.change_look(hides_noise=reported.get(_HIDES_NOISE) is True)
-        shown = _shown(reported)
+        shown = _read_shown_image(reported)
         if shown is not None and shown.kind in kinds.get(shown.drive_id, ()):
             settings.show_image(shown.drive_id, shown.kind)
         beside = reported.get("beside")
-        images = [_shown(one) for one in (beside if isinstance(beside, list) else [])]
+        images = [_read_shown_image(one) for one in (beside if isinstance(beside, list) else [])]
         self._images.arrange(
             tuple(one for one in images if one and one.kind in kinds.get(one.drive_id, ()))
         )
@@ -88,10 +88,10 @@ class ViewMemory(QObject):
         )
         hidden: Sequence[JsonValue] = sorted(settings.hidden_drives)
         reported: dict[str, JsonValue] = {
-            **_reported(main),
+            **_report_image(main),
             "hidden": list(hidden),
             _HIDES_NOISE: settings.look.hides_noise,
-            "beside": [_reported(one) for one in self._images.images],
+            "beside": [_report_image(one) for one in self._images.images],
         }
         if reported != project.settings.get(_NAME):
             # What is looked at is no work: a full disk keeps nobody from closing.
@@ -99,7 +99,7 @@ class ViewMemory(QObject):
                 project.settings.put(_NAME, reported)
 
 
-def _reported(shown: ShownImage) -> dict[str, JsonValue]:
+def _report_image(shown: ShownImage) -> dict[str, JsonValue]:
     return {
         "drive": shown.drive_id,
         "kind": shown.kind.value,
@@ -108,7 +108,7 @@ def _reported(shown: ShownImage) -> dict[str, JsonValue]:
     }
 
 
-def _shown(reported: JsonValue) -> ShownImage | None:
+def _read_shown_image(reported: JsonValue) -> ShownImage | None:
     if not isinstance(reported, dict):
         return None
     kinds = {kind.value: kind for kind in ImageKind}

@@ -176,11 +176,11 @@ class _VolumeWiring(QObject):
         boundary: BaseGeometry | None = None
         lines: tuple[BaseGeometry, ...] = ()
         if form.within is AreaChoice.SELECTED:
-            boundary = boundary_of_features(self._selected())
+            boundary = boundary_of_features(self._selected_features())
         elif (area := form.boundary) is not None:
             boundary = boundary_of_file(area.path, area.layer, self._parts.document.crs())
         if form.uses_lines:
-            lines = lines_of_features(self._selected())
+            lines = lines_of_features(self._selected_features())
         values = parameter_values(VOLUME, form.parameters.value())
         return VolumeRequest(
             before,
@@ -191,7 +191,7 @@ class _VolumeWiring(QObject):
             lines,
         )
 
-    def _selected(self) -> Sequence[Feature]:
+    def _selected_features(self) -> Sequence[Feature]:
         document = self._parts.document
         chosen = sorted(document.shared.selection.features)
         return [one for id_ in chosen if (one := document.feature(id_)) is not None]

@@ -86,22 +86,22 @@ def stereo_position(
     rays = np.vstack([camera.rays_of(np.atleast_2d(np.asarray(p))) for camera, p in pairs])
     angle = float(np.degrees(np.arccos(np.clip(rays[0] @ rays[1], -1.0, 1.0))))
     if min(angle, 180.0 - angle) < LEAST_ANGLE_DEG:
-        raise _refused(_PARALLEL, cameras)
+        raise _make_refusal(_PARALLEL, cameras)
     # About the first centre: coordinates of millions of metres squared would cost digits.
     base = centres - centres[0]
     across = np.eye(3) - rays[:, :, None] * rays[:, None, :]
-    first = _solved(across, base, np.ones(2))
+    first = _solve_position(across, base, np.ones(2))
     distances = ((first - base) * rays).sum(axis=1)
     if (distances <= 0).any():
-        raise _refused(_DIVERGING, cameras)
+        raise _make_refusal(_DIVERGING, cameras)
     per_radian = np.array([pixels_per_radian(camera.image) for camera in cameras])
     sigma = pixel_error_px / per_radian * distances
-    position = _solved(across, base, 1 / sigma**2)
+    position = _solve_position(across, base, 1 / sigma**2)
     covariance = np.linalg.inv((across / (sigma**2)[:, None, None]).sum(axis=0))
     normal = np.cross(rays[0], rays[1])
     gap = float(abs((base[1] - base[0]) @ normal) / np.linalg.norm(normal))
     if gap > _MOST_ERRORS_APART * float(np.hypot(*sigma)):
-        raise _refused(_APART.filled(gap=gap), cameras)
+        raise _make_refusal(_APART.filled(gap=gap), cameras)
     error = float(np.sqrt(np.trace(covariance)))
     return StereoPosition(position + centres[0], covariance, error, gap, angle)
 
@@ -127,7 +127,7 @@ def epipolar_line(
     return other.pixels_of(np.array(camera.image.xyz) + distances[:, None] * ray)
 
 
-def _solved(
+def _solve_position(
     across: NDArray[np.float64], base: NDArray[np.float64], weights: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     normal = (across * weights[:, None, None]).sum(axis=0)
@@ -149,7 +149,7 @@ _APART = Text(
 )
 
 
-def _refused(what: Text, cameras: tuple[Camera, Camera]) -> Unsuitable:
+def _make_refusal(what: Text, cameras: tuple[Camera, Camera]) -> Unsuitable:
     return Unsuitable(
         what,
         Text.same(" + ".join(camera.image.path.name for camera in cameras)),

@@ -61,10 +61,10 @@ def _substitute(error: UnicodeError) -> tuple[str, int]:
     if not isinstance(error, UnicodeEncodeError):
         raise error
     lacking = error.object[error.start : error.end]
-    return "".join(map(_written, lacking)), error.end
+    return "".join(map(_write_character, lacking)), error.end
 
 
-def _written(character: str) -> str:
+def _write_character(character: str) -> str:
     if character in _SUBSTITUTES:
         return _SUBSTITUTES[character]
     code = ord(character)

@@ -74,7 +74,7 @@ class Parameter:
 
 # The return type is Any so that a field can be annotated with its value's type, as
 # dataclasses.field itself is typed.
-def _declared(parameter: Parameter) -> Any:
+def _declare_field(parameter: Parameter) -> Any:
     return dataclasses.field(default=parameter.default, metadata={_KEY: parameter})
 
 
@@ -88,7 +88,7 @@ def length(
     picture: str = "",
 ) -> Any:
     """A length in metres."""
-    return _declared(
+    return _declare_field(
         Parameter("", "number", default, name, explanation, "m", low, high, picture=picture)
     )
 
@@ -103,7 +103,7 @@ def angle(
     picture: str = "",
 ) -> Any:
     """An angle in degrees."""
-    return _declared(
+    return _declare_field(
         Parameter("", "number", default, name, explanation, "°", low, high, picture=picture)
     )
 
@@ -118,7 +118,7 @@ def ratio(
     picture: str = "",
 ) -> Any:
     """A number without a unit."""
-    return _declared(
+    return _declare_field(
         Parameter("", "number", default, name, explanation, "", low, high, picture=picture)
     )
 
@@ -133,7 +133,7 @@ def count(
     picture: str = "",
 ) -> Any:
     """A whole number."""
-    return _declared(
+    return _declare_field(
         Parameter("", "count", default, name, explanation, "", low, high, picture=picture)
     )
 
@@ -147,24 +147,24 @@ def choice(
     picture: str = "",
 ) -> Any:
     """One word of a list."""
-    return _declared(
+    return _declare_field(
         Parameter("", "choice", default, name, explanation, choices=choices, picture=picture)
     )
 
 
 def switch(*, default: bool, name: Text, explanation: Text = _NONE, picture: str = "") -> Any:
     """Yes or no."""
-    return _declared(Parameter("", "switch", default, name, explanation, picture=picture))
+    return _declare_field(Parameter("", "switch", default, name, explanation, picture=picture))
 
 
 def file(*, name: Text, explanation: Text = _NONE) -> Any:
     """A path to a file; empty means none."""
-    return _declared(Parameter("", "file", "", name, explanation))
+    return _declare_field(Parameter("", "file", "", name, explanation))
 
 
 def text(*, name: Text, explanation: Text = _NONE) -> Any:
     """A line of words, of at most `MOST_LETTERS` letters; empty means none."""
-    return _declared(Parameter("", "text", "", name, explanation))
+    return _declare_field(Parameter("", "text", "", name, explanation))
 
 
 def parameters_of(parameters: type[object]) -> tuple[Parameter, ...]:
@@ -198,7 +198,7 @@ def fill_parameters(
                 Text.same(name),
                 use_one_of(known),
             )
-        checked[name] = _checked(known[name], value)
+        checked[name] = _check_value(known[name], value)
     return parameters(**checked)
 
 
@@ -206,13 +206,13 @@ _YES = {"yes": True, "true": True, "1": True, "on": True}
 _NO = {"no": False, "false": False, "0": False, "off": False}
 
 
-def _checked(parameter: Parameter, value: ParameterValue) -> ParameterValue:
+def _check_value(parameter: Parameter, value: ParameterValue) -> ParameterValue:
     read = _read(parameter, value)
     if read is None:
         raise OutOfRange(
             Text("The value is not of the right type.", "値の種類が正しくありません。"),
             Text.same(f"{parameter.id}={value}"),
-            _allowed(parameter),
+            _describe_allowed(parameter),
         )
     is_number = parameter.kind in ("number", "count")
     inside = parameter.low <= float(read) <= parameter.high if is_number else True
@@ -224,7 +224,7 @@ def _checked(parameter: Parameter, value: ParameterValue) -> ParameterValue:
         raise OutOfRange(
             Text("The value is outside its limits.", "値が許容範囲の外です。"),
             Text.same(f"{parameter.id}={value}"),
-            _allowed(parameter),
+            _describe_allowed(parameter),
         )
     return read
 
@@ -248,7 +248,7 @@ def _is_a_line(words: str) -> bool:
     return is_plain and len(words) <= MOST_LETTERS
 
 
-def _allowed(parameter: Parameter) -> Text:
+def _describe_allowed(parameter: Parameter) -> Text:
     if parameter.kind == "text":
         return Text(
             "Use one line of up to {count} letters.", "{count}文字以内の1行で指定してください。"

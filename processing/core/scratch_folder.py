@@ -43,7 +43,7 @@ def scratch_folder(beside: Path) -> Iterator[Path]:
         beside.mkdir(parents=True, exist_ok=True)
         for left in beside.glob(f"{_PREFIX}*"):
             _remove_if_left(left)
-        folder, lock = _locked(beside)
+        folder, lock = _lock_folder(beside)
     try:
         yield folder
     finally:
@@ -69,7 +69,7 @@ def whole_folder(folder: Path) -> Iterator[Path]:
         raise
 
 
-def _locked(beside: Path) -> tuple[Path, FileLock]:
+def _lock_folder(beside: Path) -> tuple[Path, FileLock]:
     while True:
         folder = beside / f"{_PREFIX}{uuid4().hex}"
         folder.mkdir()

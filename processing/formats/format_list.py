@@ -86,9 +86,9 @@ class FormatList:
         what = Text("{content} are read from {en}.", "{content}は{ja}から読み込みます。")
         remedy = Text("Give a file ending in {en}.", "{ja} のファイルを指定してください。")
         raise OutOfRange(
-            _filled(what, [one.name for one in self.read(content)], content),
+            _fill_sentence(what, [one.name for one in self.read(content)], content),
             Text.same(str(path)),
-            _filled(remedy, map(Text.same, self.endings_read(content))),
+            _fill_sentence(remedy, map(Text.same, self.endings_read(content))),
         )
 
     def format_to_write(self, path: Path, *contents: Content) -> Format:
@@ -106,9 +106,9 @@ class FormatList:
         what = Text("{content} are written as {en}.", "{content}は{ja}で書き出します。")
         remedy = Text("Give a name ending in {en}.", "{ja} で終わる名前にしてください。")
         raise OutOfRange(
-            _filled(what, written.values(), *contents),
+            _fill_sentence(what, written.values(), *contents),
             Text.same(str(path)),
-            _filled(remedy, map(Text.same, self.endings_written(*contents))),
+            _fill_sentence(remedy, map(Text.same, self.endings_written(*contents))),
         )
 
     def recognised(self, start: bytes, *contents: Content) -> tuple[Format, Content] | None:
@@ -155,7 +155,7 @@ class FormatList:
         return tuple(reversed(found.values()))
 
 
-def _filled(sentence: Text, choices: Iterable[Text], *contents: Content) -> Text:
+def _fill_sentence(sentence: Text, choices: Iterable[Text], *contents: Content) -> Text:
     """A sentence about a content with what can be chosen in its place."""
     *first, last = choices
     english = ", ".join(one.en for one in first)

@@ -59,7 +59,7 @@ def unpack_points(packed: bytes) -> NDArray[np.int64]:
         message = f"runs of {packed[0]} bytes"
         raise ValueError(message)
     dtype = np.dtype(_DTYPES[packed[0]])
-    table = np.frombuffer(_decompressed(packed[1:]), dtype).reshape(2, -1).astype(np.int64)
+    table = np.frombuffer(_decompress_labels(packed[1:]), dtype).reshape(2, -1).astype(np.int64)
     gaps, lengths = table
     stops = np.cumsum(gaps + lengths)
     # Every point is one behind the one before it, but for the first of a run.
@@ -87,10 +87,10 @@ def unpack_codes(packed: bytes) -> NDArray[np.uint8]:
     ValueError
         The bytes are damaged.
     """
-    return np.frombuffer(_decompressed(packed), np.uint8)
+    return np.frombuffer(_decompress_labels(packed), np.uint8)
 
 
-def _decompressed(packed: bytes) -> bytes:
+def _decompress_labels(packed: bytes) -> bytes:
     try:
         return zlib.decompress(packed)
     except zlib.error as error:

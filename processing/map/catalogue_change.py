@@ -47,15 +47,15 @@ class CatalogueComparison:
         """What is to be said, a line for each thing; empty when nothing changes."""
         lines = (
             (
-                _named(self.added),
+                _name_kinds(self.added),
                 Text("New kinds: {kinds}", "追加される種別: {kinds}"),
             ),
             (
-                _named(self.changed),
+                _name_kinds(self.changed),
                 Text("Changed kinds: {kinds}", "変更される種別: {kinds}"),
             ),
             (
-                _named(kind for kind in self.removed if kind.id not in self.used_missing),
+                _name_kinds(kind for kind in self.removed if kind.id not in self.used_missing),
                 Text("Kinds that go, used by nothing: {kinds}", "なくなる未使用の種別: {kinds}"),
             ),
             (
@@ -66,7 +66,7 @@ class CatalogueComparison:
                 ),
             ),
             (
-                self._reshaped(),
+                self._describe_reshaped(),
                 Text(
                     "Kinds of another geometry than their features: {kinds}",
                     "地物と形状の種類が異なる種別: {kinds}",
@@ -91,7 +91,7 @@ class CatalogueComparison:
             Names the kinds with the number of features of each.
         """
         where = Text.same(str(path))
-        reshaped = self._reshaped()
+        reshaped = self._describe_reshaped()
         if reshaped is not None:
             raise Unsuitable(
                 Text(
@@ -120,11 +120,11 @@ class CatalogueComparison:
             )
 
     def _missing(self) -> Text | None:
-        return _counted(self.used_missing, {kind.id: kind.name for kind in self.removed})
+        return _write_counts(self.used_missing, {kind.id: kind.name for kind in self.removed})
 
-    def _reshaped(self) -> Text | None:
+    def _describe_reshaped(self) -> Text | None:
         names = {kind.id: kind.name for kind in (*self.added, *self.changed)}
-        return _counted(self.used_reshaped, names)
+        return _write_counts(self.used_reshaped, names)
 
 
 def compare(old: Catalogue, new: Catalogue, features: Iterable[Feature]) -> CatalogueComparison:
@@ -168,14 +168,14 @@ def keep_used_kinds(new: Catalogue, comparison: CatalogueComparison) -> Catalogu
     return Catalogue((*new.kinds, *kept)) if kept else new
 
 
-def _named(kinds: Iterable[FeatureKind]) -> Text | None:
-    return _listed([kind.name for kind in kinds])
+def _name_kinds(kinds: Iterable[FeatureKind]) -> Text | None:
+    return _list_names([kind.name for kind in kinds])
 
 
-def _counted(counts: Mapping[str, int], names: Mapping[str, Text]) -> Text | None:
+def _write_counts(counts: Mapping[str, int], names: Mapping[str, Text]) -> Text | None:
     """``Curb (214), Sign (3)``, most first; None for nothing."""
     ordered = sorted(counts, key=lambda id_: (-counts[id_], id_))
-    return _listed(
+    return _list_names(
         [
             Text("{name} ({count})", "{name}（{count}）").filled(
                 name=names.get(id_, Text.same(id_)), count=f"{counts[id_]:,}"
@@ -185,7 +185,7 @@ def _counted(counts: Mapping[str, int], names: Mapping[str, Text]) -> Text | Non
     )
 
 
-def _listed(names: list[Text]) -> Text | None:
+def _list_names(names: list[Text]) -> Text | None:
     if not names:
         return None
     reported, rest = names[:_MOST_KINDS_TOLD], len(names) - _MOST_KINDS_TOLD

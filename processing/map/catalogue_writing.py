@@ -98,7 +98,7 @@ def _kind_table(kind: FeatureKind, names: dict[AttributeField, str]) -> str:
     if kind.symbol:
         lines.append(_setting("symbol", kind.symbol))
     if kind.attributes:
-        chosen = ", ".join(_quoted(names[field]) for field in kind.attributes)
+        chosen = ", ".join(_quote_value(names[field]) for field in kind.attributes)
         lines.append(f"attributes = [{chosen}]")
     if kind.key:
         lines.append(_setting("key", kind.key))
@@ -113,7 +113,7 @@ def _names(name: Text) -> list[str]:
 
 def _choices(field: AttributeField) -> str:
     named = [
-        f"{_quoted(value)} = {{ en = {_quoted(name.en)}, ja = {_quoted(name.ja)} }}"
+        f"{_quote_value(value)} = {{ en = {_quote_value(name.en)}, ja = {_quote_value(name.ja)} }}"
         for value in field.choices
         for name in (field.name_of_choice(value),)
     ]
@@ -121,9 +121,9 @@ def _choices(field: AttributeField) -> str:
 
 
 def _setting(key: str, value: str) -> str:
-    return f"{key} = {_quoted(value)}"
+    return f"{key} = {_quote_value(value)}"
 
 
-def _quoted(value: str) -> str:
+def _quote_value(value: str) -> str:
     # JSON's strings are TOML's, but for the one control character that JSON leaves bare.
     return json.dumps(value, ensure_ascii=False).replace("\x7f", "\\u007f")

@@ -103,7 +103,7 @@ class SearchTexts:
         kept = self._kept.get(feature.id)
         if kept is not None and kept[0] is feature:
             return kept[1]
-        words = self._written(feature)
+        words = self._write_value(feature)
         self._kept[feature.id] = feature, words
         return words
 
@@ -111,7 +111,7 @@ class SearchTexts:
         """Keep nothing of a feature that is no more."""
         self._kept.pop(id_, None)
 
-    def _written(self, feature: Feature) -> str:
+    def _write_value(self, feature: Feature) -> str:
         kind = feature.kind
         words = []
         for id_, value in feature.attributes.items():

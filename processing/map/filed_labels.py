@@ -100,7 +100,7 @@ class FiledLabels:
             packed = file.read(sum(part.sizes) + _CHECK)
         content, check = packed[: sum(part.sizes)], packed[sum(part.sizes) :]
         if check != check_of(content):
-            raise _damaged(path)
+            raise _make_damage_error(path)
         points_end, before_end = part.sizes[0], part.sizes[0] + part.sizes[1]
         change = LabelChange(
             part.drive,
@@ -131,7 +131,7 @@ def check_of(content: bytes) -> bytes:
     return zlib.crc32(content).to_bytes(_CHECK, "little")
 
 
-def _damaged(path: Path) -> BadFile:
+def _make_damage_error(path: Path) -> BadFile:
     return BadFile(
         Text("The labels of this step are damaged.", "この操作のラベルの記録が壊れています。"),
         Text.same(str(path)),

@@ -113,8 +113,8 @@ def reference_transform(source: str, target: str) -> ReferenceTransform:
         "座標を {source} から {target} に変換しました（PROJによる精度 {accuracy} m）。"
         "標高は変換していません。",
     ).filled(
-        source=_named(source, systems[0]),
-        target=_named(target, systems[1]),
+        source=_name_system(source, systems[0]),
+        target=_name_system(target, systems[1]),
         accuracy=f"{best.accuracy:.{_DECIMALS_OF_ACCURACY}f}",
     )
     return ReferenceTransform(source, target, note, best)
@@ -141,7 +141,7 @@ def _plan(system: CRS) -> CRS:
     return system.sub_crs_list[0] if system.is_compound else system
 
 
-def _named(code: str, system: CRS) -> str:
+def _name_system(code: str, system: CRS) -> str:
     return f"{code} {system.name}"
 
 

@@ -71,11 +71,11 @@ class WorkStore:
         BadFile
             What is stored is none.
         """
-        stored = self._stored(_DETAILS)
+        stored = self._read_stored(_DETAILS)
         try:
             return details_of({name: _text(value) for name, value in stored.items()})
         except (UserError, TypeError) as error:
-            raise _damaged(_DETAILS) from error
+            raise _make_damage_error(_DETAILS) from error
 
     def keep_details(self, details: WorkDetails) -> None:
         """Keep these in place of those before."""
@@ -89,15 +89,15 @@ class WorkStore:
         BadFile
             What is stored is none.
         """
-        stored = self._stored(_LIMITS)
+        stored = self._read_stored(_LIMITS)
         try:
             name = _text(stored.get("file_name", ""))
             content = _text(stored.get("content", ""))
             work_type = _text(stored.get("work_type", ""))
             table = limits_of(content.encode(), Path(name)) if name else as_built_limits()
         except (UserError, TypeError) as error:
-            raise _damaged(_LIMITS) from error
-        return ChosenLimits(table, name, _known(table, work_type))
+            raise _make_damage_error(_LIMITS) from error
+        return ChosenLimits(table, name, _key_of(table, work_type))
 
     def adopt_limits(self, path: Path) -> None:
         """Judge by an office's own table from now on; a work type that it has too stays chosen.
@@ -112,7 +112,7 @@ class WorkStore:
         chosen = {
             "file_name": path.name,
             "content": content.decode("utf-8-sig"),
-            "work_type": _known(table, self._work_type),
+            "work_type": _key_of(table, self._work_type),
         }
         self._settings.put(_LIMITS, {**chosen})
 
@@ -131,7 +131,7 @@ class WorkStore:
         NoSpace, MissingInput, BadFile
         """
         bundled = path_of(BUNDLED)
-        stored = self._stored(_LIMITS)
+        stored = self._read_stored(_LIMITS)
         content = bundled.read_bytes()
         if self.limits().file_name:
             content = _text(stored["content"]).encode()
@@ -140,7 +140,7 @@ class WorkStore:
 
     def drop_limits(self) -> None:
         """Judge by the table that comes with the program."""
-        self._settings.put(_LIMITS, {"work_type": _known(as_built_limits(), self._work_type)})
+        self._settings.put(_LIMITS, {"work_type": _key_of(as_built_limits(), self._work_type)})
 
     def choose_work_type(self, work_type: str) -> None:
         """Let the limits of a work type count.
@@ -152,7 +152,7 @@ class WorkStore:
         BadFile
             What is stored is no table.
         """
-        stored = self._stored(_LIMITS)
+        stored = self._read_stored(_LIMITS)
         chosen = self.limits().table[work_type]
         self._settings.put(_LIMITS, {**stored, "work_type": chosen.id})
 
@@ -160,18 +160,18 @@ class WorkStore:
     def _work_type(self) -> str:
         """What was chosen, whatever became of the table."""
         with suppress(BadFile):
-            chosen = self._stored(_LIMITS).get("work_type")
+            chosen = self._read_stored(_LIMITS).get("work_type")
             return chosen if isinstance(chosen, str) else ""
         return ""
 
-    def _stored(self, key: str) -> Mapping[str, JsonValue]:
+    def _read_stored(self, key: str) -> Mapping[str, JsonValue]:
         stored = self._settings.get(key)
         if stored is not None and not isinstance(stored, dict):
-            raise _damaged(key)
+            raise _make_damage_error(key)
         return stored or {}
 
 
-def _known(table: AsBuiltLimits, work_type: str) -> str:
+def _key_of(table: AsBuiltLimits, work_type: str) -> str:
     return work_type if any(one.id == work_type for one in table.work_types) else ""
 
 
@@ -181,7 +181,7 @@ def _text(value: JsonValue) -> str:
     return value
 
 
-def _damaged(key: str) -> BadFile:
+def _make_damage_error(key: str) -> BadFile:
     return BadFile(
         Text(
             "What the project keeps for its papers is damaged.",

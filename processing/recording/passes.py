@@ -118,7 +118,7 @@ class Pass:
 
     def directions_at(self, stations_m: ArrayLike) -> Floats:
         """Unit vectors in plan along the vehicle's path: (n, 2) float64."""
-        along = self._interpolated(
+        along = self._interpolate_values(
             self.vehicle_path.directions, np.asarray(stations_m, dtype=np.float64)
         )
         units: Floats = along / np.hypot(along[:, 0], along[:, 1])[:, None]
@@ -132,7 +132,7 @@ class Pass:
     def positions_at(self, stations_m: ArrayLike) -> Floats:
         """Where the path is, straight on and level beyond its ends: (n, 3) float64, project CRS."""
         stations = np.asarray(stations_m, dtype=np.float64)
-        positions = self._interpolated(self.vehicle_path.positions, stations)
+        positions = self._interpolate_values(self.vehicle_path.positions, stations)
         beyond = stations - np.clip(stations, 0.0, self.length_m)
         positions[:, :2] += beyond[:, None] * self.directions_at(stations)
         return positions + self.origin
@@ -202,7 +202,7 @@ class Pass:
         path = self.vehicle_path
         return PathPlaces(path.step_m, path.positions, path.directions)
 
-    def _interpolated(self, values: NDArray[Any], stations: Floats) -> Floats:
+    def _interpolate_values(self, values: NDArray[Any], stations: Floats) -> Floats:
         known = np.arange(len(values)) * self.vehicle_path.step_m
         return np.column_stack([np.interp(stations, known, axis) for axis in values.T])
 

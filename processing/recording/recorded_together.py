@@ -22,7 +22,7 @@ _SURVEY_DAYS = 31.0
 
 def recorded_together(drive: Drive, beside: Sequence[Drive]) -> tuple[Drive, ...]:
     """A drive, first, and those of the others that were recorded together with it."""
-    return _met(drive, beside, _TOGETHER_DAYS)
+    return _find_met_drives(drive, beside, _TOGETHER_DAYS)
 
 
 def surveyed_together(drive: Drive, beside: Sequence[Drive]) -> tuple[Drive, ...]:
@@ -31,10 +31,10 @@ def surveyed_together(drive: Drive, beside: Sequence[Drive]) -> tuple[Drive, ...
     What stands along a street is mapped once from them. What was recorded later is another epoch,
     since the street may have been rebuilt.
     """
-    return _met(drive, beside, _SURVEY_DAYS)
+    return _find_met_drives(drive, beside, _SURVEY_DAYS)
 
 
-def _met(drive: Drive, beside: Sequence[Drive], days: float) -> tuple[Drive, ...]:
+def _find_met_drives(drive: Drive, beside: Sequence[Drive], days: float) -> tuple[Drive, ...]:
     together, others = [drive], list(beside)
     for one in together:
         met = [other for other in others if _is_together(one, other, days)]

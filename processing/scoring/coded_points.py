@@ -94,7 +94,7 @@ def pairs_by_order(truth: CodedFile, result: CodedFile, monitor: Monitor) -> Ite
         raise _other_count(truth, result)
     off_m = max(truth.step_m, result.step_m) * (0.5 + _ALMOST) + _ALMOST**2
     done = 0
-    for ours, theirs in _aligned(truth.blocks(), result.blocks()):
+    for ours, theirs in _align_blocks(truth.blocks(), result.blocks()):
         monitor.check()
         if ours.xyz is not None and theirs.xyz is not None:
             far = ~(np.abs(ours.xyz - theirs.xyz).max(axis=1) <= off_m)
@@ -105,7 +105,7 @@ def pairs_by_order(truth: CodedFile, result: CodedFile, monitor: Monitor) -> Ite
         yield CodePairs(ours, theirs)
 
 
-def _aligned(
+def _align_blocks(
     ours: Iterator[CodedPoints], theirs: Iterator[CodedPoints]
 ) -> Iterator[tuple[CodedPoints, CodedPoints]]:
     """Blocks of both, cut where either ends."""

@@ -162,7 +162,7 @@ def score_edges(
     """
     found, true = _by_edge(result), _by_edge(truth)
     return {
-        edge: _judged(
+        edge: _judge_edge(
             result,
             [one for one in found[edge] if kind_of(one) != "back"],
             sections_of(truth, true[edge]),
@@ -196,7 +196,7 @@ def _by_edge(file: MappedFile) -> dict[str, list[MappedFeature]]:
     return lines
 
 
-def _judged(
+def _judge_edge(
     result: MappedFile,
     features: Sequence[MappedFeature],
     sections: Sequence[TrueSection],

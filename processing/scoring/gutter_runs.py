@@ -95,7 +95,7 @@ def runs_of(truth: MappedFile, lids: Sequence[MappedFeature]) -> list[GutterSlot
         groups.setdefault(str(name), []).append(number)
     return [
         _run([lids[i] for i in members], areas[members], seen[members])
-        for members in (_ordered(truth, lids, numbers) for numbers in groups.values())
+        for members in (_order_members(truth, lids, numbers) for numbers in groups.values())
     ]
 
 
@@ -110,7 +110,9 @@ def _beside(areas: Areas) -> list[object]:
     return list(connected_components(table, directed=False)[1].tolist())
 
 
-def _ordered(truth: MappedFile, lids: Sequence[MappedFeature], members: list[int]) -> list[int]:
+def _order_members(
+    truth: MappedFile, lids: Sequence[MappedFeature], members: list[int]
+) -> list[int]:
     """Members of a run from one end to the other."""
     positions = [truth.number(lids[number], "order") for number in members]
     if np.isnan(positions).any():

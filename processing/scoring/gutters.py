@@ -186,7 +186,9 @@ def _pieces(result: MappedFile, truth: MappedFile) -> tuple[_Pieces, Areas]:
     found_areas, true_areas = areas_of(found), areas_of(true)
     asked = np.array([is_seen(truth, one) for one in true], np.bool_)
     on_unseen = _mostly_on(found_areas, true_areas[~asked])
-    return _Pieces(found, true, asked, on_unseen, _paired(found_areas, true_areas)), found_areas
+    return _Pieces(
+        found, true, asked, on_unseen, _pair_covers(found_areas, true_areas)
+    ), found_areas
 
 
 def _covers(file: MappedFile) -> list[MappedFeature]:
@@ -196,7 +198,7 @@ def _covers(file: MappedFile) -> list[MappedFeature]:
     return covers
 
 
-def _paired(found: Areas, true: Areas) -> tuple[tuple[int, int], ...]:
+def _pair_covers(found: Areas, true: Areas) -> tuple[tuple[int, int], ...]:
     """Pairs of covers that share enough of their area in plan, one to one."""
     import shapely
 

@@ -96,7 +96,9 @@ def sign_score(result: MappedFile, truth: MappedFile) -> FileScore:
         (
             errors_of("place", ("plate's centre", "板の中心位置"), "m", off),
             differences.of("size_m", ("size", "寸法")),
-            errors_of("facing_deg", ("facing", "板面の向き"), "°", _turned(result, truth, main)),
+            errors_of(
+                "facing_deg", ("facing", "板面の向き"), "°", _measure_turns(result, truth, main)
+            ),
             differences.of("height_m", ("height above ground", "地上高")),
         ),
         left_out=found.left_out,
@@ -179,7 +181,7 @@ def _is_position(value: object) -> bool:
     )
 
 
-def _turned(result: MappedFile, truth: MappedFile, signs: list[ObjectMatch]) -> list[float]:
+def _measure_turns(result: MappedFile, truth: MappedFile, signs: list[ObjectMatch]) -> list[float]:
     """By how many degrees plates face another way, -180 to 180, clockwise."""
     return [
         (result.number(one.result, "facing_deg") - truth.number(one.truth, "facing_deg") + 180)

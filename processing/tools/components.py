@@ -91,7 +91,7 @@ class ComponentColumn:
         self.close()
         if not self._pairs:
             return
-        gone, ranks = _united(np.concatenate(self._pairs, axis=1))
+        gone, ranks = _unite_numbers(np.concatenate(self._pairs, axis=1))
         with report_as_user_error(self._path), self._path.open("r+b") as file:
             start = 0
             while data := file.read(4 * _POINTS_AT_ONCE):
@@ -119,7 +119,7 @@ class ComponentColumn:
         return numbers
 
 
-def _united(pairs: Integers) -> tuple[Integers, Integers]:
+def _unite_numbers(pairs: Integers) -> tuple[Integers, Integers]:
     """Numbers that give way, rising, and the final number of each."""
     numbers, positions = np.unique(pairs, return_inverse=True)
     positions = positions.reshape(pairs.shape)

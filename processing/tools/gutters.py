@@ -144,7 +144,7 @@ def find_gutters(
         return CandidateResult(note=_NO_NOTCHES)
     monitor.report(_FINDING, _LAYING)
     laid, gratings = _evidence(drives, notches, parameters, PartMonitor(monitor, _FINDING, 1.0))
-    candidates = [*_chosen(laid, gratings, parameters.least_confidence)]
+    candidates = [*_choose_candidates(laid, gratings, parameters.least_confidence)]
     if not candidates:
         return CandidateResult(note=_NOT_REGULAR)
     return CandidateResult(tuple(candidates))
@@ -202,7 +202,7 @@ def _evidence(
     return laid, gratings
 
 
-def _chosen(
+def _choose_candidates(
     laid: Sequence[CoveredGutter], gratings: tuple[GratingFound, ...], least: float
 ) -> Iterator[Candidate]:
     """Covers of all gutters that are sure enough, then the gratings beside them."""

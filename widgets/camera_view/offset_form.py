@@ -160,7 +160,7 @@ class OffsetForm(QWidget):
         self._view.pixel_pointed.connect(self._on_view_pixel_pointed)
         cursor.moved.connect(self._on_cursor_moved)
 
-    def _kept(self, taken: TakenImage) -> CameraOffset:
+    def _keep_offset(self, taken: TakenImage) -> CameraOffset:
         return taken.drive.camera_offsets.get(taken.camera, NO_OFFSET)
 
     def _offset(self) -> CameraOffset:
@@ -177,7 +177,7 @@ class OffsetForm(QWidget):
         self._title.setText(
             self.tr("Camera “{name}”: added to what was delivered").format(name=taken.camera)
         )
-        offset = self._tried.get(taken.camera, self._kept(taken))
+        offset = self._tried.get(taken.camera, self._keep_offset(taken))
         for name, field in self._fields.items():
             with QSignalBlocker(field):
                 field.setValue(getattr(offset, name))

@@ -88,7 +88,7 @@ class CameraProjection:
         cut, numbers, _ = clip_pieces(pieces, self._low, self._high)
         owners = numbers // (steps - 1)
         firsts = np.searchsorted(owners, np.arange(count + 1))
-        return [_joined(cut[firsts[i] : firsts[i + 1]]) for i in range(count)]
+        return [_join_pieces(cut[firsts[i] : firsts[i + 1]]) for i in range(count)]
 
     def _ahead(self, seen: Floats) -> Floats:
         """Lines of (m, 2, 3) ends in camera axes, none before the camera or far aside: NaN."""
@@ -115,9 +115,9 @@ class CameraProjection:
             share = np.linspace(0.0, 1.0, _PIECES + 1)[None, :, None]
             flat = flat[:, :1] + share * (flat[:, 1:] - flat[:, :1])
         flat[~is_there] = np.nan
-        return self._projected(flat)
+        return self._project_pieces(flat)
 
-    def _projected(self, flat: Floats) -> Floats:
+    def _project_pieces(self, flat: Floats) -> Floats:
         """Pixels of (m, k, 2) places on the plane one metre before the camera."""
         ahead = np.concatenate([flat, np.full((*flat.shape[:2], 1), -1.0)], axis=2)
         xyz = ahead.reshape(-1, 3) @ self.camera.rotation + np.array(self.image.xyz)
@@ -135,7 +135,7 @@ class CameraProjection:
         return lines
 
 
-def _joined(pieces: Floats) -> Floats:
+def _join_pieces(pieces: Floats) -> Floats:
     """(k, 2, 2) pieces as one line, with NaN where one doesn't begin where the last ended."""
     if not len(pieces):
         return np.empty((0, 2))

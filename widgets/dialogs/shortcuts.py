@@ -233,7 +233,7 @@ class ShortcutsForm(QDialog):
             self._words.setText(self.tr("Press the new key for: {name}").format(name=row.name))
 
     def _on_key_sequence_changed(self) -> None:
-        row, key = self._row(), self._pressed()
+        row, key = self._row(), self._pressed_keys()
         # The field is empty for a moment before each key, and while Ctrl or Shift is held.
         if row is None or not row.id or not key:
             return
@@ -245,7 +245,7 @@ class ShortcutsForm(QDialog):
             self.key_chosen.emit(row.id, key)
 
     def _on_key_editing_finished(self) -> None:
-        if not self._pressed():
+        if not self._pressed_keys():
             self._show_chosen()
 
     def _on_none_clicked(self) -> None:
@@ -256,7 +256,7 @@ class ShortcutsForm(QDialog):
     def _on_take_clicked(self) -> None:
         row = self._row()
         if row is not None and row.id:
-            self.key_chosen.emit(row.id, self._pressed())
+            self.key_chosen.emit(row.id, self._pressed_keys())
 
     def _on_default_clicked(self) -> None:
         row = self._row()
@@ -273,5 +273,5 @@ class ShortcutsForm(QDialog):
         if name:
             self.save_requested.emit(Path(name))
 
-    def _pressed(self) -> str:
+    def _pressed_keys(self) -> str:
         return self._key.keySequence().toString(_PORTABLE)

@@ -140,8 +140,8 @@ class SimulateForm(QDialog):
         reported = self.tr("About {points} points, {size}, from {time} of recording.")
         self._estimate.setText(
             reported.format(
-                points=self._locale.toString(_rounded(forecast.points)),
-                size=self._locale.formattedDataSize(_rounded(forecast.size), 0),
+                points=self._locale.toString(_round_value(forecast.points)),
+                size=self._locale.formattedDataSize(_round_value(forecast.size), 0),
                 time=self._spoken_time(forecast.seconds),
             )
         )
@@ -218,7 +218,7 @@ class SimulateForm(QDialog):
         self._trouble.setText(trouble)
         self._trouble.setVisible(bool(trouble))
 
-    def _proposed(self) -> Path:
+    def _propose_folder(self) -> Path:
         """A folder that does not exist yet, named after what is made."""
         request = self.request
         stem = f"{request.order}-{request.request.style}-{request.request.seed}"
@@ -234,7 +234,7 @@ class SimulateForm(QDialog):
 
     def _on_values_changed(self) -> None:
         if not self._is_folder_own:
-            self._folder.setText(str(self._proposed()))
+            self._folder.setText(str(self._propose_folder()))
         self.forecast_wanted.emit(self.request)
 
     def _on_folder_edited(self) -> None:
@@ -262,7 +262,7 @@ class SimulateForm(QDialog):
             self.close()
 
 
-def _rounded(value: int) -> int:
+def _round_value(value: int) -> int:
     """With two digits that count: more would be a promise."""
     digits = max(0, len(str(value)) - 2)
     return round(value, -digits)

@@ -37,11 +37,11 @@ class SymbolPictures:
         """
         key = symbol, colour, ratio
         if key not in self._made:
-            self._made[key] = _drawn(symbol, colour, ratio)
+            self._made[key] = _draw_symbol(symbol, colour, ratio)
         return self._made[key]
 
 
-def _drawn(symbol: str, colour: str, ratio: float) -> QImage | None:
+def _draw_symbol(symbol: str, colour: str, ratio: float) -> QImage | None:
     if not symbol:
         return None
     try:

@@ -128,7 +128,7 @@ class Mosaic:
             # Coarser tiles that stood in may have been made just now.
             made_for = self._made_for = grid, self._images.version
         if (made_for, viewport.orientation) != self._turned_for:
-            self._turned = _turned(self._whole, viewport.orientation)
+            self._turned = _turn_image(self._whole, viewport.orientation)
             self._turned_for = made_for, viewport.orientation
         self._paint_part(painter, grid.span, viewport)
         return self._images.is_complete
@@ -191,7 +191,7 @@ class Mosaic:
         painter.drawImage(target, self._turned, source)
 
 
-def _turned(image: QImage, orientation: ImageOrientation) -> QImage:
+def _turn_image(image: QImage, orientation: ImageOrientation) -> QImage:
     """A picture that goes to the right and down, as it lies on the screen."""
     if orientation.is_vertical:  # u goes up, v to the right
         image = image.transformed(QTransform().rotate(-90.0))

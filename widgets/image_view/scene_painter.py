@@ -100,7 +100,7 @@ class ScenePainter:
                 painter.setClipRect(viewport.window)
                 is_sharp = self._mosaic.paint(painter, picture, viewport)
                 self._paint_over(painter, picture, viewport, overlays)
-                self._paint_line(painter, self._described(picture, viewport, overlays.look))
+                self._paint_line(painter, self._describe_picture(picture, viewport, overlays.look))
                 refusal = self._images.refusal
             if refusal is not None:
                 self._paint_refusal(painter, refusal)
@@ -132,7 +132,9 @@ class ScenePainter:
         if overlays.outline is not None:
             paint_outline(painter, overlays.outline)
 
-    def _described(self, picture: OrientedImage, viewport: Viewport, look: PointStyle) -> str:
+    def _describe_picture(
+        self, picture: OrientedImage, viewport: Viewport, look: PointStyle
+    ) -> str:
         shown = most_telling_attribute(picture.drive, look.attribute)
         row_m = picture.orientation.length_m / max(picture.size[0], 1)
         scale = QCoreApplication.translate("ScenePainter", "1 px = {metres:.3f} m").format(

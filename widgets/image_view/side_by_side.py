@@ -154,7 +154,7 @@ class ImageViews(QWidget):
         """
         if not self.can_add:
             return None
-        one = self._made()
+        one = self._make_image()
         one.show_image(self._next() if shown is None else shown)
         self._beside.append(one)
         self._adopt(one.view)
@@ -327,7 +327,7 @@ class ImageViews(QWidget):
         along = Qt.Orientation.Horizontal if is_vertical else Qt.Orientation.Vertical
         self._splitter.setOrientation(along)
 
-    def _made(self) -> SecondaryImage:
+    def _make_image(self) -> SecondaryImage:
         source, changes = self._source, self._shared.map_changes
         own = OwnSettings(self._shared.view_settings)
         shared = replace(self._shared, view_settings=own.settings)

@@ -167,7 +167,7 @@ class TileImages(QObject):
                 if pixels is None:
                     missing.append(request)
                 else:
-                    made = self._keep(slot, request, self._drawn(picture, pixels))
+                    made = self._keep(slot, request, self._draw_tile(picture, pixels))
             if made is not None:
                 found[key] = made.image
         self._is_complete = not missing
@@ -198,7 +198,7 @@ class TileImages(QObject):
         pixels = self._tiles.get(request)
         if pixels is None:
             return None
-        return self._keep((*slot[:3], 1), request, self._drawn(picture, pixels)).image
+        return self._keep((*slot[:3], 1), request, self._draw_tile(picture, pixels)).image
 
     def _have_ahead(self, request: TileRequest, pixels: TilePixels) -> None:
         """Tiles loaded ahead are found when they are looked at."""
@@ -216,7 +216,7 @@ class TileImages(QObject):
             # One that became old on its way is looked up, or asked for, when it is painted.
             if self._tiles.is_current(request, pixels):
                 slot = (picture.drive.id, picture.image.kind, request.key, 1)
-                self._keep(slot, request, self._drawn(picture, pixels))
+                self._keep(slot, request, self._draw_tile(picture, pixels))
             self.changed.emit()
 
     def _request_for(self, picture: OrientedImage, key: TileKey) -> TileRequest:
@@ -232,14 +232,14 @@ class TileImages(QObject):
         ends = request.low_percent, request.high_percent
         return follows_labels, request.attribute, *ends, request.hides_noise, self._age
 
-    def _drawn(self, picture: OrientedImage, pixels: TilePixels) -> QImage:
+    def _draw_tile(self, picture: OrientedImage, pixels: TilePixels) -> QImage:
         colours = pixels.colours
         if self._chosen.size:
             colours = tint_points(pixels, self._chosen)
         return as_image(picture.laid(colours))
 
     def _keep(self, slot: _Slot, request: TileRequest, whole: QImage) -> _Made:
-        made = _Made(self._token(request), _thinned(whole, slot, self._picture))
+        made = _Made(self._token(request), _thin_image(whole, slot, self._picture))
         before = self._made.pop(slot, None)
         self._bytes += made.image.sizeInBytes() - (before.image.sizeInBytes() if before else 0)
         self._made[slot] = made
@@ -273,7 +273,7 @@ def _rgb(colour: QColor) -> tuple[int, int, int]:
     return colour.red(), colour.green(), colour.blue()
 
 
-def _thinned(image: QImage, slot: _Slot, picture: OrientedImage | None) -> QImage:
+def _thin_image(image: QImage, slot: _Slot, picture: OrientedImage | None) -> QImage:
     thinning = slot[3]
     if thinning == 1 or picture is None:
         return image

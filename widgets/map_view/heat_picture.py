@@ -87,7 +87,7 @@ class HeatPicture:
         made = self._made
         is_same = made is not None and made.change is change and made.limit_m == limit_m
         if made is None or not is_same or not made.part.holds(part):
-            made = self._made = _made_of(change, limit_m, _grown(part, change))
+            made = self._made = _made_of(change, limit_m, _grow_part(part, change))
         target = _on_screen(change, made.part, viewport)
         painter.save()
         painter.setRenderHint(QPainter.RenderHint.SmoothPixmapTransform, on=False)
@@ -141,7 +141,7 @@ def _between(low_m: float, high_m: float, size_m: float, count: int) -> tuple[in
     return (first, end) if first < end else None
 
 
-def _grown(part: _Part, change: ChangeGrid) -> _Part:
+def _grow_part(part: _Part, change: ChangeGrid) -> _Part:
     """The whole map where that isn't too much; else some more on every side."""
     grid, step = change.grid, part.step
     if grid.rows * grid.columns <= MOST_CELLS * step * step:

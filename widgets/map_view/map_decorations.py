@@ -58,7 +58,7 @@ def paint_vehicle_paths(
     low = np.full(2, -_MARGIN_PX)
     high = np.array([viewport.width, viewport.height]) + _MARGIN_PX
     for vehicle_path in vehicle_paths:
-        pixels = _thinned(viewport.to_screen(vehicle_path.positions))
+        pixels = _thin_path(viewport.to_screen(vehicle_path.positions))
         pieces, _, _ = clip_pieces(np.stack([pixels[:-1], pixels[1:]], axis=1), low, high)
         lines = as_lines(pieces)
         for colour, width in ((_SHADOW, 4.0), (_WAY, 1.5)):
@@ -162,7 +162,7 @@ def paint_slab(painter: QPainter, viewport: PlaneViewport, corners: Floats) -> N
         painter.drawLine(plane)
 
 
-def _thinned(pixels: Floats) -> Floats:
+def _thin_path(pixels: Floats) -> Floats:
     """A path of kilometres has more places than the window has pixels."""
     whole = np.rint(pixels)
     moves = (np.diff(whole, axis=0) != 0).any(axis=1)

@@ -152,13 +152,13 @@ class PlanFeed(QObject):
         return self._is_closed or self._next is not None
 
     def _fulfil(self, request: PlanRequest) -> None:
-        pyramids = self._prepared(request)
+        pyramids = self._prepare_tiles(request)
         raster = self._raster(request, request.frame)
         added: set[tuple[int, TileKey]] = set()
         for budget in (_FIRST_BUDGET, _FULL_BUDGET):
             is_first = budget == _FIRST_BUDGET
-            chosen = _chosen(pyramids, _camera(request.frame, request), budget)
-            lacking = [_wanted(request, *tile) for tile in chosen if tile not in added]
+            chosen = _choose_tiles(pyramids, _camera(request.frame, request), budget)
+            lacking = [_make_wanted(request, *tile) for tile in chosen if tile not in added]
             told_at = time.monotonic()
             for tile in self._tiles.get(lacking, request.origin, is_patient=is_first):
                 _add(raster, request, tile)
@@ -191,15 +191,15 @@ class PlanFeed(QObject):
         if request.manner == self._overview:
             return
         raster = self._raster(request, request.everything)
-        chosen = _chosen(pyramids, _camera(request.everything, request), _OVERVIEW_BUDGET)
-        wanted = [_wanted(request, *tile) for tile in chosen]
+        chosen = _choose_tiles(pyramids, _camera(request.everything, request), _OVERVIEW_BUDGET)
+        wanted = [_make_wanted(request, *tile) for tile in chosen]
         for tile in self._tiles.get(wanted, request.origin, is_patient=False):
             _add(raster, request, tile)
         picture = raster.picture()
         self._report(ShownPlan(request, picture, self._ground[1], is_sharp=True, is_overview=True))
         self._overview = request.manner
 
-    def _prepared(self, request: PlanRequest) -> list[tuple[int, TilePyramid]]:
+    def _prepare_tiles(self, request: PlanRequest) -> list[tuple[int, TilePyramid]]:
         """Drives' numbers and the tiles of those that can be shown."""
         pyramids = []
         for number, (drive, kind) in enumerate(request.drives):
@@ -261,7 +261,7 @@ def _camera(frame: PlanFrame, request: PlanRequest) -> Camera3D:
     )
 
 
-def _chosen(
+def _choose_tiles(
     pyramids: list[tuple[int, TilePyramid]], camera: Camera3D, budget_points: int
 ) -> list[tuple[int, TileKey]]:
     """Drives' numbers and tiles, coarse ones first."""
@@ -269,7 +269,7 @@ def _chosen(
     return [(pyramids[index][0], key) for index, key in found]
 
 
-def _wanted(request: PlanRequest, number: int, key: TileKey) -> WantedTile:
+def _make_wanted(request: PlanRequest, number: int, key: TileKey) -> WantedTile:
     drive, kind = request.drives[number]
     look = request.look
     ends = look.low_percent, look.high_percent

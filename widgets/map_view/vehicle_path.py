@@ -99,7 +99,7 @@ def _way_of(trajectory: Trajectory, drives: list[Drive]) -> VehiclePath | None:
     stations, xyz = line.measured_positions()
     is_recorded = np.zeros(len(stations), dtype=bool)
     for drive in drives:
-        is_recorded |= _recorded(line, stations, xyz, drive)
+        is_recorded |= _find_recorded(line, stations, xyz, drive)
     inside = np.flatnonzero(is_recorded)
     if inside.size > 1:
         stations, xyz = (one[inside[0] : inside[-1] + 1] for one in (stations, xyz))
@@ -109,7 +109,9 @@ def _way_of(trajectory: Trajectory, drives: list[Drive]) -> VehiclePath | None:
     return VehiclePath(on_plan(xyz[is_first]), stations[is_first])
 
 
-def _recorded(line: Stations, stations: Floats, xyz: Floats, drive: Drive) -> NDArray[np.bool_]:
+def _find_recorded(
+    line: Stations, stations: Floats, xyz: Floats, drive: Drive
+) -> NDArray[np.bool_]:
     """(k,) which places were passed while a drive was measured; without times, by its extent."""
     revolutions = drive.revolutions
     if revolutions is not None and len(revolutions.reference_times):

@@ -51,7 +51,7 @@ class EditingTool(MouseTool):
             return None
         return feature
 
-    def _chosen(self) -> tuple[Feature, ...]:
+    def _selected_features(self) -> tuple[Feature, ...]:
         found = [self._source.feature(id_) for id_ in sorted(self._selection.features)]
         return tuple(feature for feature in found if feature is not None)
 

@@ -121,7 +121,7 @@ class SnappingTool(MouseTool):
             return hit
         hit = self._on_plane(hit)
         is_free = self.tool.ctrl_frees and bool(hit.modifiers & Qt.KeyboardModifier.ControlModifier)
-        found = None if is_free or hit.position is None else self._found(hit, hit.position)
+        found = None if is_free or hit.position is None else self._find_snap(hit, hit.position)
         if found is None:
             self._shared.snap.show_mark(None)
             return hit
@@ -129,13 +129,15 @@ class SnappingTool(MouseTool):
         self._shared.snap.show_mark(SnapMark(position.xyz, mode))
         return replace(hit, position=position)
 
-    def _found(self, hit: Hit, position: PickedPosition) -> tuple[PickedPosition, SnapMode] | None:
+    def _find_snap(
+        self, hit: Hit, position: PickedPosition
+    ) -> tuple[PickedPosition, SnapMode] | None:
         """What is drawn, unless an edge of the cloud is much nearer to the mouse.
 
         Seen from far the circle about the mouse holds both edges of a curb: who points at the upper
         one doesn't mean the lower one that is drawn already.
         """
-        drawn, measured = self._drawn(hit), self._measured(hit)
+        drawn, measured = self._find_drawn_position(hit), self._find_measured_position(hit)
         if drawn is None or measured is None:
             return drawn or measured
         to_drawn = math.dist(drawn[0].xyz, position.xyz)
@@ -152,7 +154,7 @@ class SnappingTool(MouseTool):
             met = (easting, northing, plane.height_at(easting, northing))
         return replace(hit, position=None if met is None else PickedPosition(met, is_occluded=True))
 
-    def _drawn(self, hit: Hit) -> tuple[PickedPosition, SnapMode] | None:
+    def _find_drawn_position(self, hit: Hit) -> tuple[PickedPosition, SnapMode] | None:
         """The best place on what is drawn already, among the modes that are on."""
         modes = self._shared.snap.modes
         if hit.position is None or hit.reach_m <= 0 or not modes:
@@ -200,7 +202,7 @@ class SnappingTool(MouseTool):
             return PickedPosition(vertex.xyz, vertex.measured, vertex.is_occluded)
         return PickedPosition(found.xyz)
 
-    def _measured(self, hit: Hit) -> tuple[PickedPosition, SnapMode] | None:
+    def _find_measured_position(self, hit: Hit) -> tuple[PickedPosition, SnapMode] | None:
         """The lowest, the highest or the edge point near the point under the mouse."""
         modes, position = self._shared.snap.modes, hit.position
         if position is None or position.measured is None:

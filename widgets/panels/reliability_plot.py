@@ -86,7 +86,7 @@ class ReliabilityPlot:
         strip.setTop(field.bottom() - field.height() * _STRIP)
         field.setBottom(strip.top() - line / 4)
         self._paint_frame(painter, area, field, strip, colours)
-        if self._decided == 0:
+        if self._decided_count == 0:
             painter.setPen(colours.faint)
             painter.drawText(field, int(Qt.AlignmentFlag.AlignCenter), self.words.empty)
             return
@@ -94,7 +94,7 @@ class ReliabilityPlot:
         self._paint_curve(painter, field, colours)
 
     @property
-    def _decided(self) -> int:
+    def _decided_count(self) -> int:
         return round(sum(one.accepted.of for one in self.reliability.bins))
 
     def _paint_frame(
@@ -175,7 +175,7 @@ class ReliabilityPlot:
 
     def _facts(self) -> str:
         error = self.reliability.calibration_error
-        words = self.words.decided.format(count=f"{self._decided:,}")
+        words = self.words.decided.format(count=f"{self._decided_count:,}")
         if math.isnan(error):
             return words
         return f"{words} · " + self.words.error.format(error=f"{error:.2f}")

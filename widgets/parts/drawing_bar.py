@@ -158,9 +158,9 @@ class DrawingBar(QWidget):
         if not measures:
             self.show_tool(self._tool)
             return
-        self._words.setText("   ".join(self._said(measure) for measure in measures))
+        self._words.setText("   ".join(self._write_measure(measure) for measure in measures))
 
-    def _said(self, measure: Measure) -> str:
+    def _write_measure(self, measure: Measure) -> str:
         locale = QLocale()
         value = locale.toString(measure.value, "f", measure.decimals)
         return f"{measure.name.in_language(self._language)} {value} {measure.unit}".rstrip()

@@ -181,7 +181,7 @@ class ProjectedMap:
             for shape in shapes
             if shape.feature.id not in self._projected or projection is not self._projection
         )
-        made = {one.shape.feature.id: one for one in _projected(projection, lacking)}
+        made = {one.shape.feature.id: one for one in _project_shapes(projection, lacking)}
         if projection is self._projection:
             self._projected.update(made)
         return [made.get(one.feature.id) or self._projected[one.feature.id] for one in shapes]
@@ -205,7 +205,7 @@ def pieces_of(projection: PlaneProjection, xyz: Floats, ends: Integers) -> tuple
     return pieces, line_of[goes_on]
 
 
-def _projected(
+def _project_shapes(
     projection: PlaneProjection, shapes: tuple[FeatureShape, ...]
 ) -> list[ProjectedShape]:
     """All of them in one call of the lay."""

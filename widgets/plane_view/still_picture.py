@@ -53,14 +53,14 @@ class StillPicture:
         """Show ground and map, painted anew where they are others than before."""
         ratio = painter.device().devicePixelRatioF()
         if self._ground_shows != (viewport, ratio):
-            self._ground = _emptied(self._ground, viewport, ratio, BACKGROUND)
+            self._ground = _make_empty_picture(self._ground, viewport, ratio, BACKGROUND)
             with QPainter(self._ground) as still:
                 ground.paint_ground(still, viewport)
             self._ground_shows = viewport, ratio
         # Features and catalogue are values: others are other objects.
         shows = id(features), id(catalogue), viewport, selected, ratio
         if self._map_shows != shows:
-            self._map = _emptied(self._map, viewport, ratio, Qt.GlobalColor.transparent)
+            self._map = _make_empty_picture(self._map, viewport, ratio, Qt.GlobalColor.transparent)
             with QPainter(self._map) as still:
                 self._painter.paint(still, features, viewport, catalogue, selected)
             # Held, so that their ids belong to no others.
@@ -70,7 +70,7 @@ class StillPicture:
         painter.drawPixmap(0, 0, self._map)
 
 
-def _emptied(
+def _make_empty_picture(
     picture: QPixmap, viewport: PlaneViewport, ratio: float, colour: QColor | Qt.GlobalColor
 ) -> QPixmap:
     width, height = round(viewport.width * ratio), round(viewport.height * ratio)

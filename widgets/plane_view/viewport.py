@@ -81,7 +81,7 @@ class PlaneViewport:
     def zoomed(self, factor: float, x: float, y: float) -> PlaneViewport:
         """Larger or smaller; what is at the pixel stays there."""
         before = self.to_plane(x, y)
-        scaled = replace(self, scale=_limited(self.scale * factor))
+        scaled = replace(self, scale=_limit_scale(self.scale * factor))
         after = scaled.to_plane(x, y)
         return scaled.centred_on(
             scaled.centre[0] + before[0] - after[0], scaled.centre[1] + before[1] - after[1]
@@ -125,8 +125,8 @@ class PlaneViewport:
     def _fitting(self, wide: float, high: float, share: float = _FILLED) -> float:
         fits_x = share * self.width / max(wide, 1e-6)
         fits_y = share * self.height / max(high * self.exaggeration, 1e-6)
-        return _limited(min(fits_x, fits_y))
+        return _limit_scale(min(fits_x, fits_y))
 
 
-def _limited(scale: float) -> float:
+def _limit_scale(scale: float) -> float:
     return min(max(scale, _LEAST_SCALE), _MOST_SCALE)

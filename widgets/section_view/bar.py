@@ -118,9 +118,9 @@ class SectionBar(QWidget):
     def _lay_out(self) -> None:
         self._which = self._group(self._lying, self._line)
         self._numbers = self._group(
-            *self._named(self.tr("Width"), self._width),
-            *self._named(self.tr("Step"), self._step),
-            *self._named(self.tr("Heights"), self._heights),
+            *self._label_field(self.tr("Width"), self._width),
+            *self._label_field(self.tr("Step"), self._step),
+            *self._label_field(self.tr("Heights"), self._heights),
             self._ground,
             self._diagnostics,
         )
@@ -238,7 +238,7 @@ class SectionBar(QWidget):
     def _on_line_activated(self, index: int) -> None:
         self.line_wanted.emit(bool(index))
 
-    def _named(self, name: str, field: QWidget) -> tuple[QLabel, QWidget]:
+    def _label_field(self, name: str, field: QWidget) -> tuple[QLabel, QWidget]:
         label = QLabel(name, self)
         label.setBuddy(field)
         return label, field

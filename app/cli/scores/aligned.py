@@ -17,7 +17,7 @@ def align_lines(rows: Sequence[Sequence[str]]) -> list[str]:
     widths = [max(_width(cell) for cell in column) for column in zip(*rows, strict=True)]
     return [
         "  ".join(
-            _padded(cell, width, is_left=position == 0)
+            _pad_words(cell, width, is_left=position == 0)
             for position, (cell, width) in enumerate(zip(row, widths, strict=True))
         ).rstrip()
         for row in rows
@@ -28,6 +28,6 @@ def _width(words: str) -> int:
     return sum(2 if unicodedata.east_asian_width(one) in "WF" else 1 for one in words)
 
 
-def _padded(words: str, width: int, *, is_left: bool) -> str:
+def _pad_words(words: str, width: int, *, is_left: bool) -> str:
     blanks = " " * (width - _width(words))
     return words + blanks if is_left else blanks + words

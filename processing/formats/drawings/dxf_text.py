@@ -23,7 +23,7 @@ def dxf_text(text: str, encoding: str) -> str:
     ----------
     Autodesk, DXF reference, "ASCII control characters in DXF files" and Unicode escapes.
     """
-    return "".join(_escaped(text, position, encoding) for position in range(len(text)))
+    return "".join(_escape_character(text, position, encoding) for position in range(len(text)))
 
 
 def dxf_strings(text: str, encoding: str) -> list[str]:
@@ -31,7 +31,7 @@ def dxf_strings(text: str, encoding: str) -> list[str]:
     pieces = [""]
     size = 0
     for position in range(len(text)):
-        escaped = _escaped(text, position, encoding)
+        escaped = _escape_character(text, position, encoding)
         bytes_ = len(escaped.encode(encoding))
         if size + bytes_ > _LONGEST_BYTES:
             pieces.append("")
@@ -51,7 +51,7 @@ def label_text(text: str, encoding: str) -> str:
     return dxf_text(words, encoding)
 
 
-def _escaped(text: str, position: int, encoding: str) -> str:
+def _escape_character(text: str, position: int, encoding: str) -> str:
     character = text[position]
     code = ord(character)
     if character == "\\":

@@ -174,7 +174,7 @@ class _Sheet:
             words = one.label(digits, "m")
             layer = f"{CHANGE_LAYER}{number + 1}_{_as_layer(words.ja)}"
             self.document.add_layer(layer, ink.aci, ink.rgb)
-            rows.append((layer, self._said(words)))
+            rows.append((layer, self._in_language(words)))
             monitor.check()
             add_areas(self._space, areas.of_class.get(number, []), layer)
         if areas.unmeasured:
@@ -182,7 +182,9 @@ class _Sheet:
             add_areas(
                 self._space, areas.unmeasured, UNMEASURED_LAYER, lines_m=_LINES_M * self._scale
             )
-            rows.insert(0, (UNMEASURED_LAYER, self._said(Text("not measured", "未計測（補間）"))))
+            rows.insert(
+                0, (UNMEASURED_LAYER, self._in_language(Text("not measured", "未計測（補間）")))
+            )
         return rows
 
     def _draw_contours(self, monitor: Monitor) -> None:
@@ -256,7 +258,7 @@ class _Sheet:
         left, top = float(self._high[0]) + gap, float(self._high[1])
         if rows:
             title = Text("Change in height (+ fill, − cut)", "標高差（＋盛土 −切土）")
-            self._write(self._said(title), (left, top), "TOP_LEFT", layer=LEGEND_LAYER)
+            self._write(self._in_language(title), (left, top), "TOP_LEFT", layer=LEGEND_LAYER)
             top -= 2 * self._text_m
         for number, (layer, words) in enumerate(reversed(rows)):
             low = (left, top - number * row - height)
@@ -296,7 +298,9 @@ class _Sheet:
         lines = [*self._plan.title, last.filled(crs=crs, scale=self._scale)]
         y = float(self._high[1]) + 2 * self._text_m
         for line in reversed(lines):
-            self._write(self._said(line), (float(self._low[0]), y), "LEFT", layer=TITLE_LAYER)
+            self._write(
+                self._in_language(line), (float(self._low[0]), y), "LEFT", layer=TITLE_LAYER
+            )
             y += 1.8 * self._text_m
         return max(y, float(self._high[1]) + 8 * self._text_m)
 
@@ -306,7 +310,7 @@ class _Sheet:
     def _write(self, words: str, position: tuple[float, float], align: str, *, layer: str) -> None:
         self.document.write_text(words, position, align, {"layer": layer, "height": self._text_m})
 
-    def _said(self, text: Text) -> str:
+    def _in_language(self, text: Text) -> str:
         return text.in_language(self._look.language)
 
 

@@ -179,7 +179,7 @@ class _Sheet:
         names = {0.7: Text("Offset", "離れ"), 2.4: Text("Ground", "地盤高")}
         for lines, name in names.items():
             position = self._left - 1.5 * self._text_m, self._below(lines)
-            self._write(self._said(name), position, "MIDDLE_RIGHT")
+            self._write(self._in_language(name), position, "MIDDLE_RIGHT")
 
     def _draw_points(self) -> None:
         for offset, height in self._profile.points.tolist():
@@ -196,7 +196,7 @@ class _Sheet:
         head = position[0], position[1] + 4 * self._text_m
         self._space.add_circle(position, self._text_m / 2, dxfattribs=looks)
         self._space.add_line((position[0], position[1] + self._text_m / 2), head, dxfattribs=looks)
-        words = f"{self._said(crossing.name)} {crossing.height_m:.3f}"
+        words = f"{self._in_language(crossing.name)} {crossing.height_m:.3f}"
         head = head[0], head[1] + self._text_m / 2
         self._write(words, head, "MIDDLE_LEFT", layer=layer, rotation_deg=90.0)
 
@@ -204,8 +204,8 @@ class _Sheet:
         look, cut = self._look, self._profile.cut
         heights = look.scale / look.exaggeration
         lines = [
-            self._said(self._profile.title),
-            self._said(
+            self._in_language(self._profile.title),
+            self._in_language(
                 Text(
                     "Plan 1:{scale}, heights 1:{heights:g}; DL={datum} m; slab {width:.2f} m",
                     "縮尺 横1:{scale} 縦1:{heights:g}　DL={datum} m　断面の幅 {width:.2f} m",
@@ -216,7 +216,7 @@ class _Sheet:
                     width=cut.width_m,
                 )
             ),
-            self._said(
+            self._in_language(
                 Text(
                     "Offset 0 at E {e:.3f}, N {n:.3f}; to the right at {azimuth:.4f}° from north",
                     "離れ0の位置 東距 {e:.3f} 北距 {n:.3f}　右方向の方位角 {azimuth:.4f}°",
@@ -225,7 +225,7 @@ class _Sheet:
         ]
         if self._profile.station_m is not None:
             station = Text("Station {m:.3f} m", "測点 {m:.3f} m")
-            lines.insert(1, self._said(station.filled(m=self._profile.station_m)))
+            lines.insert(1, self._in_language(station.filled(m=self._profile.station_m)))
         for number, words in enumerate(reversed([line for line in lines if line])):
             position = self._left, self._y(self._top) - self._below(number + 1)
             self._write(words, position, "LEFT", layer=TITLE_LAYER)
@@ -245,7 +245,7 @@ class _Sheet:
         attributes = {"layer": layer, "height": self._text_m, "rotation": rotation_deg}
         self.document.write_text(words, position, align, attributes)
 
-    def _said(self, text: Text) -> str:
+    def _in_language(self, text: Text) -> str:
         return text.in_language(self._look.language)
 
 

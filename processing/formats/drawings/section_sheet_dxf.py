@@ -282,7 +282,7 @@ class _Sheet:
         )
         for number, line in enumerate(lines):
             position = (corner[0], corner[1] + (1.0 + 1.8 * number) * size)
-            self._write(self._said(line), position, "LEFT")
+            self._write(self._in_language(line), position, "LEFT")
 
     def _draw_title(self, title: Text, bottom: float) -> float:
         """Write title, scales and what the lines are above all sections; gives the upper end."""
@@ -293,11 +293,11 @@ class _Sheet:
         x, y = _LEFT_TEXTS * size, bottom + 2 * size
         for layer, name in zip((BEFORE_LAYER, AFTER_LAYER), look.names, strict=True):
             self._line((x, y + size / 2), (x + 6 * size, y + size / 2), layer)
-            self._write(self._said(name), (x + 7 * size, y), "LEFT", layer=TITLE_LAYER)
-            x += (10 + len(self._said(name))) * size
+            self._write(self._in_language(name), (x + 7 * size, y), "LEFT", layer=TITLE_LAYER)
+            x += (10 + len(self._in_language(name))) * size
         for number, words in enumerate((scales, title), 1):
             position = (_LEFT_TEXTS * size, y + 2 * number * size)
-            self._write(self._said(words), position, "LEFT", layer=TITLE_LAYER)
+            self._write(self._in_language(words), position, "LEFT", layer=TITLE_LAYER)
         return y + 7 * size
 
     def _line(self, start: tuple[float, float], end: tuple[float, float], layer: str) -> None:
@@ -309,7 +309,7 @@ class _Sheet:
         looks = {"layer": layer, "height": self._layout.text_m}
         self.document.write_text(words, position, align, looks)
 
-    def _said(self, text: Text) -> str:
+    def _in_language(self, text: Text) -> str:
         return text.in_language(self._look.language)
 
 

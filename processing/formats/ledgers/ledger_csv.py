@@ -123,7 +123,7 @@ def write_vertices(
         As :func:`write_features`.
     """
     monitor = monitor or SilentMonitor()
-    with _opened(path, style, never) as table:
+    with _open_table(path, style, never) as table:
         table.write([header(*one, style.language) for one in _VERTEX_TITLES], "")
         for number, feature in enumerate(features):
             if number % _CHECK_EVERY == 0:
@@ -169,7 +169,7 @@ def _write_rows(
     never: Iterable[Path],
 ) -> None:
     monitor = monitor or SilentMonitor()
-    with _opened(path, style, never) as table:
+    with _open_table(path, style, never) as table:
         table.write(_distinct([column.header(style.language) for column in columns]), "")
         for number, feature in enumerate(features):
             if number % _CHECK_EVERY == 0:
@@ -230,7 +230,7 @@ class _Table:
 
 
 @contextmanager
-def _opened(path: Path, style: TableStyle, never: Iterable[Path]) -> Iterator[_Table]:
+def _open_table(path: Path, style: TableStyle, never: Iterable[Path]) -> Iterator[_Table]:
     encoding = "utf-8-sig" if style.encoding == "utf-8" else style.encoding
     with (
         write_safely(path, never=never) as temporary,

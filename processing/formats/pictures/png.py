@@ -57,7 +57,7 @@ def write_png(path: Path, size: tuple[int, int], strips: Iterable[NDArray[np.uin
         written = 0
         for strip in strips:
             written += strip.shape[0]
-            _write_chunk(file, b"IDAT", packer.compress(_filtered(strip)))
+            _write_chunk(file, b"IDAT", packer.compress(_filter_rows(strip)))
         if written != rows:
             message = f"{written} rows of a picture of {rows}"
             raise ValueError(message)
@@ -65,7 +65,7 @@ def write_png(path: Path, size: tuple[int, int], strips: Iterable[NDArray[np.uin
         _write_chunk(file, b"IEND", b"")
 
 
-def _filtered(strip: NDArray[np.uint8]) -> bytes:
+def _filter_rows(strip: NDArray[np.uint8]) -> bytes:
     """Rows as differences of each pixel to the one on its left."""
     rows, columns, _ = strip.shape
     lines = np.empty((rows, 1 + 3 * columns), np.uint8)

@@ -200,9 +200,9 @@ def _plan_of(
         size += RECORD_SIZES[frame.point_format] - RECORD_SIZES[room_in]
     given = {name: values for name, values in part(0, 0).items() if name not in _OF_RECORDS}
     old = extra_dimensions(frame.extra_bytes(), size - RECORD_SIZES[frame.point_format])
-    new, dimensions = _placed(given, old)
+    new, dimensions = _place_dimensions(given, old)
     if len(new) > len(old):
-        frame = frame.with_extra_bytes(b"".join(_described(frame, old, new)))
+        frame = frame.with_extra_bytes(b"".join(_write_descriptions(frame, old, new)))
     size = RECORD_SIZES[frame.point_format] + sum(dimension.size for dimension in new)
     return _Plan(frame, count, size, records, promoted_from, room_in, dimensions, is_las(source))
 
@@ -217,7 +217,7 @@ def _needs_promotion(part: Callable[[int, int], ResultColumns], count: int) -> b
     return False
 
 
-def _placed(
+def _place_dimensions(
     given: ResultColumns, old: tuple[ExtraDimension, ...]
 ) -> tuple[tuple[ExtraDimension, ...], tuple[ExtraDimension, ...]]:
     """All extra dimensions of the output, and those among them that the results fill."""
@@ -236,7 +236,7 @@ def _placed(
     return tuple(dimensions), tuple(filled)
 
 
-def _described(
+def _write_descriptions(
     frame: LasFrame, old: tuple[ExtraDimension, ...], new: tuple[ExtraDimension, ...]
 ) -> Iterator[bytes]:
     """The source's own description as it is, then undescribed bytes, then the new dimensions."""

@@ -131,7 +131,7 @@ def _read_header(path: Path) -> _Header:
             break
     storage = (said.get("DATA") or [""])[0]
     if storage == "binary_compressed":
-        raise _compressed(path)
+        raise _make_compression_error(path)
     try:
         header = _header_of(path, said, size)
     except (KeyError, ValueError, IndexError, TypeError) as error:
@@ -183,7 +183,7 @@ def _ends_early(header: _Header, whole: int) -> BadFile:
     )
 
 
-def _compressed(path: Path) -> BadFile:
+def _make_compression_error(path: Path) -> BadFile:
     return BadFile(
         Text("Compressed PCD files can't be read.", "圧縮されたPCDファイルには対応していません。"),
         Text.same(str(path)),

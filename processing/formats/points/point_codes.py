@@ -95,19 +95,19 @@ def read_truth(
 
 
 def _loaded_array(path: Path) -> Arrays:
-    arrays = {"code": _mapped(path)}
+    arrays = {"code": _map_array(path)}
     beside = path.with_name(path.name.replace("labels", "kinds", 1))
     if beside != path and beside.exists():
-        arrays["kind"] = _mapped(beside)
+        arrays["kind"] = _map_array(beside)
     return arrays
 
 
-def _mapped(path: Path) -> NDArray[Any]:
+def _map_array(path: Path) -> NDArray[Any]:
     try:
         with report_as_user_error(path):
             found: NDArray[Any] = np.load(path, mmap_mode="r", allow_pickle=False)
     except (ValueError, EOFError) as error:
-        raise _damaged(path) from error
+        raise _make_damage_error(path) from error
     return found
 
 
@@ -116,7 +116,7 @@ def _loaded_arrays(path: Path) -> Arrays:
         with report_as_user_error(path):
             return read_arrays(path)
     except (ValueError, EOFError, zipfile.BadZipFile, KeyError) as error:
-        raise _damaged(path) from error
+        raise _make_damage_error(path) from error
 
 
 _ARRAYS = {"npy": _loaded_array, "npz": _loaded_arrays}
@@ -219,7 +219,7 @@ def _no_codes(path: Path, reported: str) -> BadFile:
     )
 
 
-def _damaged(path: Path) -> BadFile:
+def _make_damage_error(path: Path) -> BadFile:
     return BadFile(
         Text("The arrays in the file are damaged.", "ファイル内の配列が壊れています。"),
         Text.same(str(path)),

@@ -91,7 +91,7 @@ def _block(numbers: NDArray[np.float64], scan: _Scan, first_cell: int) -> Column
 
 def _next_scan(path: Path, lines: NumberLines, number: int, size: int) -> _Scan | None:
     """The scan whose header comes next; None at the end of the file."""
-    sizes = _taken(lines, 2, 1)
+    sizes = _take_lines(lines, 2, 1)
     if sizes.size == 0:
         return None
     if sizes.shape[0] < 2 or not (np.isfinite(sizes).all() and (sizes >= 0).all()):
@@ -100,8 +100,8 @@ def _next_scan(path: Path, lines: NumberLines, number: int, size: int) -> _Scan 
     # Held against the file, a count can't make anything be allocated.
     if sweeps * sweep_length * _LEAST_LINE_BYTES > size + 1:
         raise _ends_early(path, size // _LEAST_LINE_BYTES, sweeps * sweep_length)
-    position = _taken(lines, _POSITION_LINES, 3)
-    pose = _taken(lines, _POSE_LINES, 4)
+    position = _take_lines(lines, _POSITION_LINES, 3)
+    pose = _take_lines(lines, _POSE_LINES, 4)
     if (
         position.shape[0] + pose.shape[0] < _POSITION_LINES + _POSE_LINES
         or not np.isfinite(pose).all()
@@ -110,7 +110,7 @@ def _next_scan(path: Path, lines: NumberLines, number: int, size: int) -> _Scan 
     return _Scan(number, sweeps, sweep_length, pose)
 
 
-def _taken(lines: NumberLines, limit: int, columns: int) -> NDArray[np.float64]:
+def _take_lines(lines: NumberLines, limit: int, columns: int) -> NDArray[np.float64]:
     found = list(lines.numbers(columns, limit))
     return np.concatenate(found) if found else np.empty((0, columns))
 

@@ -55,7 +55,7 @@ def open_pulse_folder(path: Path) -> FloatFile:
         layout = _layout_of(path)
     for kind, name in (("pulse", "theta"), ("pulse", "n_echo"), ("echo", "range")):
         if name not in (layout.pulse if kind == "pulse" else layout.echo):
-            raise _damaged(
+            raise _make_damage_error(
                 path, Text(f"There is no {kind} {name}.", f"{kind} の {name} がありません。")
             )
     return FloatFile(path, "pulse folder", lambda: _blocks(layout))
@@ -127,7 +127,7 @@ def _read(
     path = folder / f"{name}.bin"
     with report_as_user_error(path):
         if path.stat().st_size % np.dtype(dtype).itemsize:
-            raise _damaged(
+            raise _make_damage_error(
                 path, Text("The file ends inside a value.", "ファイルが値の途中で終わっています。")
             )
         return np.fromfile(path, dtype=dtype)
@@ -139,7 +139,7 @@ def _times(folder: Path, name: str, pulses: int) -> NDArray[np.float64]:
         words = file.read(_LONGEST_TEXT).decode("utf-8", errors="replace")
     found = _LINEAR_TIME.match(words)
     if found is None:
-        raise _damaged(path, Text("The times can't be read.", "時刻を読み取れません。"))
+        raise _make_damage_error(path, Text("The times can't be read.", "時刻を読み取れません。"))
     times: NDArray[np.float64] = float(found.group(2)) + float(found.group(3)) * np.arange(
         pulses, dtype=np.float64
     )
@@ -151,10 +151,10 @@ def _sizes_differ(folder: Path, name: str, found: int, wanted: int) -> BadFile:
         f"The numbers of values don't agree: {found:,} and {wanted:,}.",
         f"値の数が一致しません（{found:,} と {wanted:,}）。",
     )
-    return _damaged(folder / name, what)
+    return _make_damage_error(folder / name, what)
 
 
-def _damaged(path: Path, what: Text) -> BadFile:
+def _make_damage_error(path: Path, what: Text) -> BadFile:
     return BadFile(
         what,
         Text.same(str(path)),

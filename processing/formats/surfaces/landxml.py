@@ -124,7 +124,7 @@ def read_landxml(path: Path, *, surface: str = "", monitor: Monitor | None = Non
     LandXML 1.2 (Surfaces, CoordinateSystem, Units); MLIT, J-LandXML 1.7.
     """
     header, drawn = records_of(path, monitor or SilentMonitor())
-    chosen = _chosen(path, drawn, surface)
+    chosen = _choose_surfaces(path, drawn, surface)
     scale = _scale(path, header)
     return LandXmlFile(
         path,
@@ -136,7 +136,7 @@ def read_landxml(path: Path, *, surface: str = "", monitor: Monitor | None = Non
     )
 
 
-def _chosen(path: Path, drawn: list[DrawnSurface], name: str) -> list[DrawnSurface]:
+def _choose_surfaces(path: Path, drawn: list[DrawnSurface], name: str) -> list[DrawnSurface]:
     where = Text.same(str(path))
     if not drawn:
         raise Unsuitable(
@@ -214,7 +214,7 @@ def _surface(path: Path, drawn: DrawnSurface, scale: NDArray[np.float64]) -> Lan
     (ax, ay), (bx, by) = (second - first).T, (third - first).T
     has_area = np.abs(ax * by - ay * bx) / 2 > _LEAST_AREA_M2
     if not has_area.any():
-        raise _refused(
+        raise _make_refusal(
             path,
             Text("All faces are without area seen from above.", "すべての面の平面積がゼロです。"),
             drawn.name,
@@ -237,7 +237,7 @@ def _rows_of_corners(path: Path, drawn: DrawnSurface) -> NDArray[np.int64]:
     if len(twice):
         row = int(order[twice[0] + 1])
         what = Text("Two points have the id {id}.", "点番号{id}が重複しています。")
-        raise _refused(
+        raise _make_refusal(
             path, what.filled(id=int(ids[twice[0]])), drawn.name, int(drawn.point_lines[row])
         )
     wanted = drawn.face_corners
@@ -245,7 +245,7 @@ def _rows_of_corners(path: Path, drawn: DrawnSurface) -> NDArray[np.int64]:
     is_missing = ids[at] != wanted if len(ids) else np.ones(wanted.shape, np.bool_)
     if is_missing.any():
         face, corner = np.argwhere(is_missing)[0].tolist()
-        raise _refused(
+        raise _make_refusal(
             path,
             Text(
                 "Face {face:,} has the point {id}, which is missing.",
@@ -267,10 +267,10 @@ def _require_positions(path: Path, drawn: DrawnSurface, positions: NDArray[np.fl
             "Face {face:,} has the point {id}, which has no height or lies beyond all coordinates.",
             "{face:,}番目の面の点{id}に標高がないか、座標が大きすぎます。",
         ).filled(face=face + 1, id=int(drawn.face_corners[face, corner]))
-        raise _refused(path, what, drawn.name, int(drawn.face_lines[face]))
+        raise _make_refusal(path, what, drawn.name, int(drawn.face_lines[face]))
 
 
-def _refused(path: Path, what: Text, name: str, line: int) -> BadFile:
+def _make_refusal(path: Path, what: Text, name: str, line: int) -> BadFile:
     where = Text(
         f"{path}, line {line:,}, surface {name or '-'}",
         f"{path}、{line:,}行目、サーフェス {name or '-'}",

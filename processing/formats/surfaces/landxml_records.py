@@ -184,7 +184,7 @@ class _Reading:
                 "The point {id} has {count} numbers instead of north, east and height.",
                 "点{id}の座標が{count}個あります（X・Y・標高の3個が必要）。",
             )
-            raise self._refused(what.filled(id=id_ or "-", count=len(words)))
+            raise self._make_refusal(what.filled(id=id_ or "-", count=len(words)))
         surface.ids.append(self._whole(id_))
         surface.positions.extend(map(self._number, words))
         if len(words) == 2:
@@ -203,7 +203,7 @@ class _Reading:
                 "A face has {count} corners; a TIN has triangles.",
                 "面の頂点が{count}個あります（TINは三角形です）。",
             )
-            raise self._refused(what.filled(count=len(words)))
+            raise self._make_refusal(what.filled(count=len(words)))
         surface.corners.extend(map(self._whole, words))
         surface.face_lines.append(self._line)
 
@@ -214,7 +214,7 @@ class _Reading:
                 "A break line has {count} numbers, which are no triples of north, east and height.",
                 "ブレークラインの数値が{count}個あり、X・Y・標高の組になっていません。",
             )
-            raise self._refused(what.filled(count=len(words)))
+            raise self._make_refusal(what.filled(count=len(words)))
         if words:
             positions = np.array(list(map(self._number, words)), dtype=np.float64)
             surface.breaklines.append(positions.reshape(-1, 3))
@@ -225,7 +225,7 @@ class _Reading:
         except ValueError:
             value = math.nan
         if not math.isfinite(value) or "_" in word:
-            raise self._refused(
+            raise self._make_refusal(
                 Text("“{word}” is no number.", "「{word}」は数値ではありません。").filled(
                     word=word[:40]
                 ),
@@ -242,12 +242,12 @@ class _Reading:
         except ValueError:
             value = -1
         if not 0 <= value < 1 << 62 or "_" in word:
-            raise self._refused(
+            raise self._make_refusal(
                 Text(
                     "“{word}” is no number of a point.", "「{word}」は点番号として使えません。"
                 ).filled(word=word[:40])
             )
         return value
 
-    def _refused(self, what: Text, remedy: Text = _CORRECT) -> Exception:
+    def _make_refusal(self, what: Text, remedy: Text = _CORRECT) -> Exception:
         return self.xml.refused(what, self._line, remedy)

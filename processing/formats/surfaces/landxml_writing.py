@@ -137,7 +137,7 @@ def write_landxml(
             monitor.check()
             file.write(words + "\n")
         if surfaces:
-            file.write(f"<Surfaces name={_quoted(facts.project)}>\n")
+            file.write(f"<Surfaces name={_quote_words(facts.project)}>\n")
             names = _names([one.surface.name for one in surfaces])
             for number, (name, one) in enumerate(zip(names, surfaces, strict=True)):
                 monitor.report(number / len(surfaces))
@@ -196,8 +196,8 @@ def _head(facts: LandXmlFacts, form: LandXmlForm) -> Iterator[str]:
         f'date="{written:%Y-%m-%d}" time="{written:%H:%M:%S}" version="1.2">'
     )
     criterion = f'<Property label="applicationCriterion" value="{_CRITERION}"/>'
-    yield f"<Project name={_quoted(facts.project)}><Feature>"
-    yield f'<Property label="projectPhase" value={_quoted(facts.phase)}/>'
+    yield f"<Project name={_quote_words(facts.project)}><Feature>"
+    yield f'<Property label="projectPhase" value={_quote_words(facts.phase)}/>'
     yield f"{criterion if form == 'J-LandXML' else ''}</Feature></Project>"
     yield f'<Application name="Zuka" version="{version("zuka")}"/>'
     names = {"name": "CRS1", **names_of_system(facts.crs)}
@@ -208,7 +208,7 @@ def _head(facts: LandXmlFacts, form: LandXmlForm) -> Iterator[str]:
         names["verticalDatum"] = "T.P" if is_tokyo else facts.height_datum
         # Heights of 2011 and of 2024 both count from Tokyo Peil, and differ.
         names["desc"] = facts.height_datum
-    reported = " ".join(f"{name}={_quoted(value)}" for name, value in names.items())
+    reported = " ".join(f"{name}={_quote_words(value)}" for name, value in names.items())
     yield f"<CoordinateSystem {reported}/>"
     yield (
         '<Units><Metric areaUnit="squareMeter" linearUnit="meter" volumeUnit="cubicMeter" '
@@ -219,17 +219,17 @@ def _head(facts: LandXmlFacts, form: LandXmlForm) -> Iterator[str]:
 
 def _surface(name: str, one: WrittenSurface, decimals: int, form: LandXmlForm) -> Iterator[str]:
     """Lines of the file, some thousand points at a time."""
-    yield f"<Surface name={_quoted(name)} desc={_quoted(one.description)}>"
+    yield f"<Surface name={_quote_words(name)} desc={_quote_words(one.description)}>"
     if form == "LandXML" and one.breaklines:
         yield "<SourceData><Breaklines>"
         for line in one.breaklines:
-            positions = _rounded(line[:, [1, 0, 2]], decimals)
+            positions = _round_values(line[:, [1, 0, 2]], decimals)
             numbers = " ".join(f"{value:.{decimals}f}" for value in positions.ravel().tolist())
             yield (f'<Breakline brkType="standard"><PntList3D>{numbers}</PntList3D></Breakline>')
         yield "</Breaklines></SourceData>"
     yield '<Definition surfType="TIN"><Pnts>'
     used, corners = np.unique(one.surface.corners, return_inverse=True)
-    positions = _rounded(one.surface.xyz[used][:, [1, 0, 2]], decimals)
+    positions = _round_values(one.surface.xyz[used][:, [1, 0, 2]], decimals)
     for start in range(0, len(positions), _ROWS):
         rows = enumerate(positions[start : start + _ROWS].tolist(), start + 1)
         yield "\n".join(
@@ -248,11 +248,11 @@ def _alignment(line: SectionedLine, facts: LandXmlFacts) -> Iterator[str]:
     """Lines of the file: the line's corners, then a section each."""
     decimals = facts.decimals
     moved = np.hypot(*np.diff(line.xy, axis=0).T) >= _LEAST_M
-    corners = _rounded(line.xy[np.append(True, moved)][:, ::-1], decimals)
+    corners = _round_values(line.xy[np.append(True, moved)][:, ::-1], decimals)
     lengths = [float(np.hypot(*(end - start))) for start, end in pairwise(corners)]
     names = ["BP", *(f"IP.{number}" for number in range(1, len(corners) - 1)), "EP"]
     reported = f'length="{sum(lengths):.{decimals}f}" staStart="{line.start_m:.{decimals}f}"'
-    yield f"<Alignments><Alignment name={_quoted(line.name or '1')} {reported}><CoordGeom>"
+    yield f"<Alignments><Alignment name={_quote_words(line.name or '1')} {reported}><CoordGeom>"
     ends = list(zip(names, corners.tolist(), strict=True))
     for length, (start, end) in zip(lengths, pairwise(ends), strict=True):
         positions = [
@@ -270,24 +270,24 @@ def _alignment(line: SectionedLine, facts: LandXmlFacts) -> Iterator[str]:
 
 def _section(section: DrawnSection, facts: LandXmlFacts) -> str:
     station = f"{section.station_m:.{facts.decimals}f}"
-    words = [f'<CrossSect name={_quoted(section.name)} sta="{station}">']
+    words = [f'<CrossSect name={_quote_words(section.name)} sta="{station}">']
     grounds = (section.before, section.after)
     for name, heights in zip(facts.section_names, grounds, strict=True):
         parts = parts_with_ground(section.offsets, heights)
         lists = [
             " ".join(
                 f"{value:.{facts.decimals}f}"
-                for value in _rounded(part, facts.decimals).ravel().tolist()
+                for value in _round_values(part, facts.decimals).ravel().tolist()
             )
             for part in parts
         ]
         if lists:
             drawn = "".join(f"<PntList2D>{numbers}</PntList2D>" for numbers in lists)
-            words.append(f"<CrossSectSurf name={_quoted(name)}>{drawn}</CrossSectSurf>")
+            words.append(f"<CrossSectSurf name={_quote_words(name)}>{drawn}</CrossSectSurf>")
     return "\n".join([*words, "</CrossSect>"])
 
 
-def _rounded(values: NDArray[np.float64], decimals: int) -> NDArray[np.float64]:
+def _round_values(values: NDArray[np.float64], decimals: int) -> NDArray[np.float64]:
     """As they are written, without a minus before zero."""
     rounded: NDArray[np.float64] = np.round(values, decimals) + 0.0
     return rounded
@@ -306,6 +306,6 @@ def _names(names: Iterable[str]) -> list[str]:
     return found
 
 
-def _quoted(words: str) -> str:
+def _quote_words(words: str) -> str:
     """An attribute's value with its marks; what XML can't hold becomes U+FFFD."""
     return quoteattr(_NO_CHARACTER.sub("\ufffd", words))

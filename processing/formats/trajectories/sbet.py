@@ -90,7 +90,7 @@ def read_sbet(path: Path, crs: str) -> Trajectory:
             ),
         )
     records = _read_records(path)
-    easting, northing, bearing_rad = _projected(records, crs, path)
+    easting, northing, bearing_rad = _project_records(records, crs, path)
     heading = records["heading"] - records["wander"] + bearing_rad
     xyz = np.column_stack([easting, northing, records["height"]])
     angles = np.degrees(np.column_stack([records["roll"], records["pitch"], heading]))
@@ -131,7 +131,7 @@ def _read_records(path: Path) -> NDArray[np.void]:
     return records[kept]
 
 
-def _projected(
+def _project_records(
     records: NDArray[np.void], crs: str, path: Path
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """Easting, northing, and the grid bearing of true north (rad) of each record."""

@@ -191,7 +191,7 @@ def _layers_of_geopackage(path: Path) -> tuple[dict[str, list[Any]], dict[str, s
             for name in pyogrio.list_layers(path)[:, 0]:
                 facts, _, shapes, _ = pyogrio.raw.read(path, layer=name, columns=[])
                 parts = shapely.get_parts(shapely.force_2d(shapely.from_wkb(shapes)))
-                areas = [part for part in _flattened(parts) if not part.is_empty]
+                areas = [part for part in _flatten_parts(parts) if not part.is_empty]
                 if areas:
                     found[name], systems[name] = areas, facts["crs"] or ""
     except (DataLayerError, DataSourceError, shapely.errors.GEOSException) as error:
@@ -205,14 +205,14 @@ def _layers_of_geopackage(path: Path) -> tuple[dict[str, list[Any]], dict[str, s
     return found, systems
 
 
-def _flattened(parts: Iterable[Any]) -> Iterable[Any]:
+def _flatten_parts(parts: Iterable[Any]) -> Iterable[Any]:
     import shapely
 
     for part in parts:
         if part.geom_type == "Polygon":
             yield part
         elif part.geom_type in ("MultiPolygon", "GeometryCollection"):
-            yield from _flattened(shapely.get_parts(part))
+            yield from _flatten_parts(shapely.get_parts(part))
 
 
 def areas_of_dxf(path: Path, layer: str) -> tuple[list[Any], str]:
@@ -228,10 +228,10 @@ def areas_of_dxf(path: Path, layer: str) -> tuple[list[Any], str]:
     for polygon in sorted(drawn, key=lambda one: -float(one.area)):
         if not any(polygon.equals(other) for other in distinct):
             distinct.append(polygon)
-    return _nested(distinct), drawing.crs
+    return _nest_outlines(distinct), drawing.crs
 
 
-def _nested(outlines: list[Any]) -> list[Any]:
+def _nest_outlines(outlines: list[Any]) -> list[Any]:
     """Outlines, the largest first, as polygons: what lies within an outline is its hole."""
     import shapely
 

@@ -85,7 +85,7 @@ class KindTally:
             It has none, and none is given for its geometry.
         """
         if not kind:
-            return self._chosen(geometry)
+            return self._choose_kind(geometry)
         if kind in self._catalogue and self._catalogue[kind].geometry is geometry:
             return kind
         nearest = self._nearest(kind, geometry)
@@ -121,7 +121,7 @@ class KindTally:
         ]
         return (*altered, *unknown)
 
-    def _chosen(self, geometry: Geometry) -> str:
+    def _choose_kind(self, geometry: Geometry) -> str:
         chosen = self._kind_for.get(geometry)
         if chosen is None:
             raise Unsuitable(

@@ -70,7 +70,7 @@ def features_of(
     if properties is None:
         properties = {}
     if not isinstance(properties, dict):
-        raise _damaged("properties", number)
+        raise _make_damage_error("properties", number)
     if not all(name in properties for name in _OWN_PROPERTIES):
         attributes = {name: _attribute(value) for name, value in properties.items()}
         for shape in shapes:
@@ -79,12 +79,12 @@ def features_of(
         return
     own = member.get(OURS, {})
     if not isinstance(own, dict):
-        raise _damaged(OURS, number)
+        raise _make_damage_error(OURS, number)
     kind, status = properties["kind"], properties["status"]
     if not isinstance(kind, str) or not kind:
-        raise _damaged("kind", number)
+        raise _make_damage_error("kind", number)
     if not isinstance(status, str) or status not in {one.value for one in Status}:
-        raise _damaged(f"status {status!r}", number)
+        raise _make_damage_error(f"status {status!r}", number)
     for shape in shapes:
         yield Feature(
             new_feature_id(),
@@ -92,7 +92,7 @@ def features_of(
             shape.geometry,
             _vertices(shape, own, number),
             {
-                _unescaped(name): _attribute(value)
+                _unescape_name(name): _attribute(value)
                 for name, value in properties.items()
                 if name not in _OWN_PROPERTIES
             },
@@ -104,7 +104,7 @@ def features_of(
 def _vertices(shape: GeoJsonGeometry, own: JsonObject, number: int) -> tuple[Vertex, ...]:
     measured, occluded = own.get("measured", []), own.get("occluded", [])
     if not isinstance(measured, list) or not isinstance(occluded, list):
-        raise _damaged("measured", number)
+        raise _make_damage_error("measured", number)
     references = [_reference(one, number) for one in measured]
     if len(references) != len(shape.positions):
         # Another program added or removed vertices: nobody knows what they rest on.
@@ -124,7 +124,7 @@ def _reference(value: Any, number: int) -> PointReference | None:
         case [str(drive), int(point)] if 0 <= point <= _LAST_POINT and point is not True:
             return PointReference(drive, point)
         case _:
-            raise _damaged("measured", number)
+            raise _make_damage_error("measured", number)
 
 
 def _provenance(properties: JsonObject, own: JsonObject, number: int) -> Provenance:
@@ -139,7 +139,7 @@ def _provenance(properties: JsonObject, own: JsonObject, number: int) -> Provena
         case (str(tool), int(version), dict(parameters), int() | float() as confidence, str(run)):
             if 0 <= confidence <= 1:
                 return Provenance(tool, version, parameters, float(confidence), run)
-    raise _damaged("tool", number)
+    raise _make_damage_error("tool", number)
 
 
 def _attribute(value: Any) -> AttributeValue:
@@ -149,12 +149,12 @@ def _attribute(value: Any) -> AttributeValue:
     return json.dumps(value, ensure_ascii=False)
 
 
-def _unescaped(name: str) -> str:
+def _unescape_name(name: str) -> str:
     is_escaped = name.startswith(ESCAPE) and is_reserved(name.removeprefix(ESCAPE))
     return name.removeprefix(ESCAPE) if is_escaped else name
 
 
-def _damaged(reason: str, number: int) -> Exception:
+def _make_damage_error(reason: str, number: int) -> Exception:
     return refusal(
         Text(
             "The text of a feature is damaged: {reason}.",

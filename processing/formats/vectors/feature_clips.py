@@ -131,7 +131,7 @@ def features_of_clip(
         There is no such reference system, or it can't express a place.
     """
     whole, members = read_collection(text)
-    described = _described(whole)
+    described = _read_descriptions(whole)
     shapes = [tuple(shapes_of(one.get("geometry"), at)) for at, one in enumerate(members, 1)]
     source = system_of(whole, [shape for several in shapes for shape in several])
     tally = KindTally(catalogue, described, kind_for or {})
@@ -140,8 +140,8 @@ def features_of_clip(
         for at, (member, several) in enumerate(zip(members, shapes, strict=True), 1)
         for feature in features_of(member, several, at)
     ]
-    moved, notes = _moved(copies, source, crs)
-    grounded = [_grounded(one, drives if source == crs else ()) for one in moved]
+    moved, notes = _transform_features(copies, source, crs)
+    grounded = [_detach_feature(one, drives if source == crs else ()) for one in moved]
     return PastedFeatures(
         tuple(grounded),
         (
@@ -153,7 +153,7 @@ def features_of_clip(
     )
 
 
-def _described(whole: JsonObject) -> dict[str, KindDescription]:
+def _read_descriptions(whole: JsonObject) -> dict[str, KindDescription]:
     """The kinds that a text of ours describes."""
     own = whole.get(OURS)
     if own is None:
@@ -171,7 +171,7 @@ def _described(whole: JsonObject) -> dict[str, KindDescription]:
     return read_descriptions(own.get("kinds"))
 
 
-def _moved(
+def _transform_features(
     features: list[Feature], source: str, target: str
 ) -> tuple[list[Feature], tuple[Text, ...]]:
     """The features in the target's reference system, and what is to be said of it."""
@@ -223,7 +223,7 @@ def _one_unknown(source: str, target: str) -> MissingInput:
     )
 
 
-def _grounded(feature: Feature, drives: Collection[str]) -> Feature:
+def _detach_feature(feature: Feature, drives: Collection[str]) -> Feature:
     """The feature without measured points, and a run, that its new project does not have."""
     vertices = tuple(
         vertex

@@ -85,7 +85,7 @@ def read_collection(text: str) -> tuple[JsonObject, list[JsonObject]]:
             # Half of a character, which no file could hold, can only be written as an escape.
             json.dumps(whole, ensure_ascii=False).encode()
     except (ValueError, RecursionError) as error:
-        raise _damaged(str(error)) from error
+        raise _make_damage_error(str(error)) from error
     kind = _type_of(whole)
     if kind == "Feature":
         members = [whole]
@@ -98,7 +98,7 @@ def read_collection(text: str) -> tuple[JsonObject, list[JsonObject]]:
             Text("The text is JSON, but not GeoJSON.", "JSONですが、GeoJSONではありません。")
         )
     if not isinstance(members, list) or not all(isinstance(one, dict) for one in members):
-        raise _damaged("features")
+        raise _make_damage_error("features")
     return whole, members
 
 
@@ -168,7 +168,7 @@ def shapes_of(geometry: object, number: int) -> Iterator[GeoJsonGeometry]:
     if geometry is None:
         return
     if not isinstance(geometry, dict):
-        raise _damaged("geometry", number)
+        raise _make_damage_error("geometry", number)
     kind = _type_of(geometry)
     if kind == "GeometryCollection":
         for part in _list(geometry.get("geometries"), number):
@@ -179,7 +179,7 @@ def shapes_of(geometry: object, number: int) -> Iterator[GeoJsonGeometry]:
         for part in _list(geometry.get("coordinates"), number):
             yield from _single(_PARTS[kind], part, number)
     else:
-        raise _damaged(f"geometry {kind}", number)
+        raise _make_damage_error(f"geometry {kind}", number)
 
 
 def refusal(what: Text, number: int = 0) -> BadFile:
@@ -214,7 +214,7 @@ def _single(kind: str, coordinates: object, number: int) -> Iterator[GeoJsonGeom
     else:
         rings = _list(coordinates, number)
         if not rings:
-            raise _damaged("polygon", number)
+            raise _make_damage_error("polygon", number)
         for position, ring in enumerate(rings):
             yield _shape(geometry, _list(ring, number), number, is_hole=position > 0)
 
@@ -239,7 +239,7 @@ def _shape(
 
 def _position(position: Any, number: int) -> tuple[Position, bool]:
     if not isinstance(position, list) or len(position) < 2:
-        raise _damaged("coordinates", number)
+        raise _make_damage_error("coordinates", number)
     numbers = position[:3]
     if not all(isinstance(one, (int, float)) and not isinstance(one, bool) for one in numbers):
         raise _no_position(position, number)
@@ -265,11 +265,11 @@ def _is_in_degrees(shape: GeoJsonGeometry) -> bool:
 
 def _list(value: object, number: int) -> list[Any]:
     if not isinstance(value, list):
-        raise _damaged("coordinates", number)
+        raise _make_damage_error("coordinates", number)
     return value
 
 
-def _damaged(reason: str, number: int = 0) -> BadFile:
+def _make_damage_error(reason: str, number: int = 0) -> BadFile:
     return refusal(
         Text("The text is damaged: {reason}.", "テキストが壊れています（{reason}）。").filled(
             reason=short(reason)

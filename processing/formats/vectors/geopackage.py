@@ -128,10 +128,10 @@ def _write_layer(path: Path, layer: _Layer, features: Sequence[Feature], crs: st
                 layer_options={"DESCRIPTION": layer.title},
             )
         except (DataLayerError, DataSourceError) as error:
-            raise _refused(path, error) from error
+            raise _make_refusal(path, error) from error
 
 
-def _refused(path: Path, error: RuntimeError) -> NoSpace:
+def _make_refusal(path: Path, error: RuntimeError) -> NoSpace:
     # Before its reason the library quotes pages of what it wanted to do.
     reason = " ".join(str(error).rsplit("failed: ", 1)[-1].split()).rstrip(".")
     return NoSpace(

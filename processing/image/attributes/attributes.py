@@ -344,7 +344,7 @@ def _label(drive: Drive, points: _Points, low: float, high: float) -> Colours:
     return shown
 
 
-def _judged(drive: Drive, points: _Points) -> Colours:
+def _colour_judged(drive: Drive, points: _Points) -> Colours:
     return np.asarray(error_map_colours()[drive.columns[ERROR_MAP][points]])
 
 
@@ -364,5 +364,5 @@ _PLAIN: Mapping[str, Callable[[Drive, _Points], Colours]] = {
     "segment": _segment,
     "color": _color,
     "class": _class,
-    "judged": _judged,
+    "judged": _colour_judged,
 }

@@ -296,7 +296,7 @@ class TileCache:
         except KeyError:
             made = None  # the drive was closed meanwhile; no one waits for its tiles
         finally:
-            listeners = self._kept(request, made, age)
+            listeners = self._keep_made(request, made, age)
         for done, refused in listeners.items():
             if isinstance(made, TilePixels):
                 done(request, made)
@@ -321,7 +321,7 @@ class TileCache:
             ).filled(unchanged=UNCHANGED),
         )
 
-    def _kept(
+    def _keep_made(
         self, request: TileRequest, made: TilePixels | UserError | None, age: int
     ) -> _Listeners:
         """Keep what a loader made; gives who is to be told."""

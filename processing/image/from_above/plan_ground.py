@@ -92,10 +92,10 @@ def _below_rows(drive: Drive, vehicle_path: Floats) -> Floats:
 
     beside_m, nearest = cKDTree(vehicle_path[:, :2]).query(positions[:, :2])
     is_below = (beside_m <= _BESIDE_M) & (positions[:, 2] < vehicle_path[nearest, 2])
-    return _smoothed(positions[is_below])
+    return _smooth_heights(positions[is_below])
 
 
-def _smoothed(positions: Floats) -> Floats:
+def _smooth_heights(positions: Floats) -> Floats:
     """Heights as medians of neighbours: a car below the beam is no road."""
     if len(positions) < _SMOOTHED:
         return positions

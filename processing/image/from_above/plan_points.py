@@ -85,7 +85,7 @@ class PlanPoints:
             return None
         away = np.concatenate([one[2] for one in found])
         heights = np.concatenate([one[3] for one in found])
-        best = _seen(away, heights, sought.close_m)
+        best = _find_seen_point(away, heights, sought.close_m)
         for drive, points, *_ in found:
             if best < points.size:
                 return drive, int(points[best])
@@ -121,7 +121,7 @@ class PlanPoints:
         return there
 
 
-def _seen(away: Floats, heights: Floats, close_m: float) -> int:
+def _find_seen_point(away: Floats, heights: Floats, close_m: float) -> int:
     """Of the highest surface that is close the nearest point, or else simply the nearest."""
     close = np.flatnonzero(away <= close_m)
     if not close.size:

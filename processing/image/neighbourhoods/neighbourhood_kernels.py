@@ -185,7 +185,7 @@ def _neighbour_row(segments: NDArray[np.int32], row: int, away: int) -> int:
 
 
 @kernel
-def _continued(rows: PointRows, row: int) -> tuple[int, int]:
+def _find_continued_rows(rows: PointRows, row: int) -> tuple[int, int]:
     """A row with those before and after it: the scan line goes on where a row ends."""
     before = _neighbour_row(rows.segments, row, -1)
     behind = _neighbour_row(rows.segments, row, 1)
@@ -211,7 +211,7 @@ def _distance(rows: PointRows, one: int, other: int) -> float:
 def _step_along(rows: PointRows, point: int, row: int) -> float:
     """Distance to the nearer of the two next pixels in the row."""
     step, clock = _FAR, rows.clocks[point]
-    start, stop = _continued(rows, row)
+    start, stop = _find_continued_rows(rows, row)
     other = point + 1
     while other < stop and rows.clocks[other] == clock:
         other += 1
@@ -292,7 +292,7 @@ def _nearest_in_row(
     """The point of another row nearest in space: downhill from a column, over small bumps."""
     if rows.row_starts[other] == rows.row_starts[other + 1]:
         return -1, _FAR
-    start, stop = _continued(rows, other)
+    start, stop = _find_continued_rows(rows, other)
     # Neighbouring rows miss about the same pulses, so the place in the row is a good guess.
     guess = rows.row_starts[other] + point - rows.row_starts[row]
     best = _start_of_search(rows, guess, other, column + rows.origins[other])
@@ -327,7 +327,7 @@ def _add_row(
     along: Floats,
 ) -> int:
     """Take in a row's middle, unless it is the point, and points within reach on its both sides."""
-    start, stop = _continued(rows, row)
+    start, stop = _find_continued_rows(rows, row)
     px, py, pz = float(rows.xyz[point, 0]), float(rows.xyz[point, 1]), float(rows.xyz[point, 2])
     sx, sy, sz = rows.scale[0], rows.scale[1], rows.scale[2]
     # Sums in variables, not in the array: the compiler can keep those in registers.

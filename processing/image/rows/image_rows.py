@@ -95,12 +95,12 @@ def image_rows(
         else plan_of_revolutions(kind, folding, pulses, folder)
     )
     if folder is None or pulses.size < _FEW_POINTS:
-        return _found(plan, pulses, folding, folder)
+        return _find_rows(plan, pulses, folding, folder)
     path = _path(folder, kind)
     made_of = _made_of(pulses, folding, folder)
     kept = _read(path, made_of)
     if kept is None or not _belongs(kept, plan, pulses):
-        kept = _found(plan, pulses, folding, folder)
+        kept = _find_rows(plan, pulses, folding, folder)
         _write(path, kept, made_of)
     return kept
 
@@ -117,7 +117,7 @@ def _path(folder: Path, kind: ImageKind) -> Path:
     return folder / f"image_rows_{kind.value}.npz"
 
 
-def _found(
+def _find_rows(
     plan: RowPlan, pulses: Integers, folding: RevolutionSource | int, folder: Path | None
 ) -> ImageRows:
     starts = _row_starts(plan, pulses, folder)

@@ -126,7 +126,7 @@ def strip_bound(pixels: Pixels, extents: Integers, old: int) -> int:
 
 
 @kernel
-def _crossed(
+def _cross_edge(
     pixels: Pixels,
     edge: MeshEdge,
     spacing: float,
@@ -266,15 +266,21 @@ def _mesh_cell(
     old, c, is_rising, has_lower, has_upper = cell
     new, d, right, cut = 1 - old, c + 1, -1, -1
     if left < 0 and (has_upper if is_rising else has_lower):
-        left, count = count, _crossed(pixels, MeshEdge(old, c, new, c), spacing, crossings, count)
+        left, count = (
+            count,
+            _cross_edge(pixels, MeshEdge(old, c, new, c), spacing, crossings, count),
+        )
     if has_lower if is_rising else has_upper:
-        right, count = count, _crossed(pixels, MeshEdge(old, d, new, d), spacing, crossings, count)
+        right, count = (
+            count,
+            _cross_edge(pixels, MeshEdge(old, d, new, d), spacing, crossings, count),
+        )
     if has_lower and pixels[old, c].crossing < 0:
         pixels[old, c].crossing = count
-        count = _crossed(pixels, MeshEdge(old, c, old, d), spacing, crossings, count)
+        count = _cross_edge(pixels, MeshEdge(old, c, old, d), spacing, crossings, count)
     if has_upper:
         pixels[new, c].crossing = count
-        count = _crossed(pixels, MeshEdge(new, c, new, d), spacing, crossings, count)
+        count = _cross_edge(pixels, MeshEdge(new, c, new, d), spacing, crossings, count)
     bases = CellBases(pixels[old, c].crossing, pixels[new, c].crossing, left, right)
     oc, od = pixels[old, c].level, pixels[old, d].level
     nc, nd = pixels[new, c].level, pixels[new, d].level
@@ -282,7 +288,7 @@ def _mesh_cell(
         _link_cell(CellLevels(oc, od, nc, nd), bases, 1 if is_rising else -1, crossings)
         return count, right
     diagonal = MeshEdge(old, c, new, d) if is_rising else MeshEdge(old, d, new, c)
-    cut, count = count, _crossed(pixels, diagonal, spacing, crossings, count)
+    cut, count = count, _cross_edge(pixels, diagonal, spacing, crossings, count)
     if has_lower and is_rising:
         corners, edges = TriangleLevels(oc, od, nd), TriangleBases(bases.old, right, cut)
     elif has_lower:

@@ -125,7 +125,7 @@ def tiles_in_view(
     if clip is not None:
         # What a clip shows has a·x + b·y + c·z ≥ d.
         planes = np.concatenate([planes, -np.array(clip.planes).reshape(-1, 4)])
-    met = [_met(pyramid, eye, planes) for pyramid in pyramids]
+    met = [_find_tiles(pyramid, eye, planes) for pyramid in pyramids]
     ends = np.cumsum([0, *(len(one) for one in met)])
     for one, first in zip(met, ends[:-1], strict=True):
         one[:, [FIRST, END]] += first
@@ -150,7 +150,7 @@ def tiles_in_view(
     ]
 
 
-def _met(pyramid: TilePyramid, eye: Floats, planes: Floats) -> Floats:
+def _find_tiles(pyramid: TilePyramid, eye: Floats, planes: Floats) -> Floats:
     """The tiles of a pyramid that a view may want; see `processing.image.tiles.tile_descent`."""
     facts = pyramid.facts
     rows, columns = pyramid.shape(0)

@@ -150,7 +150,7 @@ class TileBounds:
             self._sums, self._done = begun
         self._kept_at = time.monotonic()
         tiles, columns = self._shapes[0]
-        self.facts[: tiles * columns, :COUNT] = self._sketched().reshape(-1, COUNT)
+        self.facts[: tiles * columns, :COUNT] = self._sketch_bounds().reshape(-1, COUNT)
         if self._image.drive_count <= _SMALL_POINTS:
             self._pass_over(range(self._image.rows))
             self._done[:] = True
@@ -205,7 +205,7 @@ class TileBounds:
         rows = np.arange(first, end)
         known, unknown = rows[self._done[rows]], rows[~self._done[rows]]
         facts[known] = self._in_metres(sums[known])
-        facts[unknown, :, COUNT] = self._expected(0, unknown)
+        facts[unknown, :, COUNT] = self._expected_pixels(0, unknown)
         facts[unknown, :, POINTS] = facts[unknown, :, COUNT]
         for level in range(1, len(self._shapes)):
             first, end = first // 2, (end + 1) // 2
@@ -228,7 +228,7 @@ class TileBounds:
         united[:, :, LOWEST] = _fourfold(np.minimum, facts[:, :, LOWEST])
         united[:, :, HIGHEST] = _fourfold(np.maximum, facts[:, :, HIGHEST])
         united[:, :, COUNT] = np.where(
-            is_exact[:, None], sums[rows, :, COUNT], self._expected(level, rows)
+            is_exact[:, None], sums[rows, :, COUNT], self._expected_pixels(level, rows)
         )
         united[:, :, STEPS] = _mean_steps(sums[rows])
         united[:, :, POINTS] = _fourfold(np.add, facts[:, :, POINTS])
@@ -242,7 +242,7 @@ class TileBounds:
         facts[..., STEPS] = _mean_steps(sums)
         return facts
 
-    def _expected(self, level: int, rows: Integers) -> Floats:
+    def _expected_pixels(self, level: int, rows: Integers) -> Floats:
         """How many pixels of rows of tiles may be filled: (rows, tile columns)."""
         size = TILE << level
         firsts, ends = rows << level, np.minimum((rows + 1) << level, self._done.size)
@@ -253,7 +253,7 @@ class TileBounds:
         pixels: Floats = np.minimum(expected, float(TILE * TILE))
         return pixels
 
-    def _sketched(self) -> Floats:
+    def _sketch_bounds(self) -> Floats:
         """(tile rows, tile columns, 6): where tiles may be, by the rows between them.
 
         1. Take the rows at which rows of tiles meet, fewer of a very long recording.

@@ -76,7 +76,7 @@ def descent_kernel(
     if not _is_seen(facts[shapes[top, 2]], planes):
         return 0
     count, at = 1, 0
-    _put(facts, shapes, eye, TileAddress(top, 0, 0), met[0])
+    _put_tile(facts, shapes, eye, TileAddress(top, 0, 0), met[0])
     while at < count:
         level, row, column = int(met[at, LEVEL]), int(met[at, ROW]), int(met[at, COLUMN])
         met[at, FIRST] = count
@@ -85,7 +85,7 @@ def descent_kernel(
                 for j in range(2 * column, min(2 * column + 2, shapes[level - 1, 1])):
                     line = shapes[level - 1, 2] + i * shapes[level - 1, 1] + j
                     if _is_seen(facts[line], planes):
-                        _put(facts, shapes, eye, TileAddress(level - 1, i, j), met[count])
+                        _put_tile(facts, shapes, eye, TileAddress(level - 1, i, j), met[count])
                         count += 1
         if level == 0 and eye[_WANTS_ALL] and met[at, GAP_PX] > eye[_FINE_ENOUGH_PX]:
             count = _put_all(facts[int(met[at, LINE])], met, at, count)
@@ -196,7 +196,7 @@ def _is_seen(box: NDArray[np.float64], planes: NDArray[np.float64]) -> bool:
 
 
 @kernel
-def _put(
+def _put_tile(
     facts: NDArray[np.float64],
     shapes: NDArray[np.int64],
     eye: NDArray[np.float64],

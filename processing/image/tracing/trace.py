@@ -107,7 +107,7 @@ def trace(drive: Drive, start: int, end: int, *, across_gaps: bool = False) -> T
     beside = [_beside(positions[0], np.zeros(3))]
     last = [_beside(positions[-1], goal)] if is_complete else []
     line_xyz = np.array(beside + _between(positions, beside[0], goal) + last)
-    line_xyz = line_xyz[_thinned(line_xyz)]
+    line_xyz = line_xyz[_thin_vertices(line_xyz)]
     points = np.array([cloud.nearest(xyz) for xyz in line_xyz], dtype=np.int64)
     points[0] = start
     if is_complete:
@@ -211,7 +211,7 @@ def _is_far(away: Floats) -> bool:
     return float(np.linalg.norm(away)) > _REACHED_M
 
 
-def _thinned(xyz: Floats) -> Integers:
+def _thin_vertices(xyz: Floats) -> Integers:
     """Which vertices the polyline needs to stay within the tolerance of all (Douglas, Peucker)."""
     is_kept = np.zeros(xyz.shape[0], dtype=np.bool_)
     is_kept[[0, -1]] = True

@@ -126,7 +126,7 @@ class EdgeFollower:
 
     def turned(self, position: TracePoint) -> TracePoint:
         """The same edge for the opposite direction."""
-        return _turned(position)
+        return _turn_position(position)
 
 
 def _positions_of(section: EdgeProfile) -> list[TracePoint]:
@@ -148,11 +148,11 @@ def _positions_of_step(step: EdgeStep, heading_rad: float) -> list[TracePoint]:
     positions = []
     for xyz, grade, look in zip((step.lower, step.upper), step.grades, looks, strict=True):
         position = TracePoint(xyz, step.heading_rad, grade, 0.0, look)
-        positions.append(_turned(position) if is_turned else position)
+        positions.append(_turn_position(position) if is_turned else position)
     return positions
 
 
-def _turned(position: TracePoint) -> TracePoint:
+def _turn_position(position: TracePoint) -> TracePoint:
     kind, before, after = position.look
     return TracePoint(
         position.xyz,

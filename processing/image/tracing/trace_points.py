@@ -52,7 +52,7 @@ class PointsBetween:
     def __init__(self, drive: Drive, start: int, end: int) -> None:
         positions = drive.xyz(np.array([start, end]))
         self.origin = positions[0]
-        points, xyz = _gathered(drive, start, end, positions)
+        points, xyz = _gather_points(drive, start, end, positions)
         cells = np.floor(xyz[:, :2] / _CELL_M).astype(np.int64)
         self._lowest = cells.min(axis=0)
         cells -= self._lowest
@@ -100,7 +100,9 @@ class PointsBetween:
         return np.asarray(candidates[squares <= radius_m**2])
 
 
-def _gathered(drive: Drive, start: int, end: int, positions: Floats) -> tuple[Integers, Floats]:
+def _gather_points(
+    drive: Drive, start: int, end: int, positions: Floats
+) -> tuple[Integers, Floats]:
     pulses = drive.columns["pulse"]
     revolutions = drive.revolutions
     period = (

@@ -22,7 +22,7 @@ Disturbance = Callable[[MappedFile], MappedFile]
 _OTHER_SHAPES = {"circle": "square", "square": "circle"}
 
 
-def _moved(by_m: float) -> Disturbance:
+def _make_shift(by_m: float) -> Disturbance:
     def move(truth: MappedFile) -> MappedFile:
         """All together, across the direction in which most of them lie."""
         positions = np.concatenate([one.xyz[:, :2] for one in truth.features])
@@ -62,9 +62,9 @@ def _with(truth: MappedFile, features: list[MappedFeature]) -> MappedFile:
 
 DISTURBANCES: dict[str, Disturbance] = {
     "as it is": lambda truth: truth,
-    "5 cm aside": _moved(0.05),
-    "30 cm aside": _moved(0.3),
-    "3 m aside": _moved(3.0),
+    "5 cm aside": _make_shift(0.05),
+    "30 cm aside": _make_shift(0.3),
+    "3 m aside": _make_shift(3.0),
     "each third left out": _without_each_third,
     "of other kinds": _of_other_kinds,
 }

@@ -207,7 +207,7 @@ def rows_of(sites: Sequence[ScoredSite]) -> list[list[str]]:
     plain = np.array([_offs(site.plain, site.true_measured) for site in sites])
     whole = np.array([_offs(_cut_fill(site), _true(site)) for site in sites])
     net = np.array([site.net_off for site in sites])
-    stated = np.array([_stated(site) for site in sites])
+    stated = np.array([_read_stated_volume(site) for site in sites])
     # A share of next to nothing says nothing: half a cubic metre on a site of a thousand.
     worth = np.array([[part >= _WORTH * site.moved_m3 for part in _true(site)] for site in sites])
     columns = [
@@ -245,7 +245,7 @@ def _row(site: ScoredSite) -> list[str]:
         f"{volumes.unmeasured_area_m2:,.0f} of {volumes.area_m2:,.0f}",
         *(f"{100 * share:+.1f} %" for share in shares),
         f"{volumes.uncertainty_m3:.1f}",
-        f"{100 * _stated(site):.1f} %",
+        f"{100 * _read_stated_volume(site):.1f} %",
         "yes" if site.is_inside else "no",
     ]
 
@@ -262,7 +262,7 @@ def _true(site: ScoredSite) -> tuple[float, float]:
     return site.truth["cut_m3"], site.truth["fill_m3"]
 
 
-def _stated(site: ScoredSite) -> float:
+def _read_stated_volume(site: ScoredSite) -> float:
     return site.result.volumes.uncertainty_m3 / site.moved_m3
 
 

@@ -275,10 +275,10 @@ def _rows_of(cloud: Path, lines: list[TrueLine], *, is_with_trajectory: bool) ->
             sides = sorted({start.side for start in starts}, key=street.away_m)
             for which, side in zip(("near", "far"), sides, strict=False):
                 of_side = [start for start in starts if start.side == side]
-                yield f"{which}, {street.away_m(side):.1f} m | {_measured(street, of_side)}"
+                yield f"{which}, {street.away_m(side):.1f} m | {_measure_side(street, of_side)}"
 
 
-def _measured(street: CurbStreet, starts: list[TemplateOrigin]) -> str:
+def _measure_side(street: CurbStreet, starts: list[TemplateOrigin]) -> str:
     """The cells of one side of the vehicle."""
     followed = []
     for start in starts:

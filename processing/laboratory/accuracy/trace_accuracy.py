@@ -184,10 +184,10 @@ def _scores_of(
             yield snap_clicks(drive, lines, "dropped")
             curbs = [line for line in lines if line.kind == "curb"]
             yield follow_lines(drive, curbs, "trace, curbs of 20 m and more")
-            yield follow_lines(drive, _joined(lines), "trace, with dropped curbs between")
+            yield follow_lines(drive, _join_lines(lines), "trace, with dropped curbs between")
 
 
-def _joined(lines: list[TrueLine]) -> list[TrueLine]:
+def _join_lines(lines: list[TrueLine]) -> list[TrueLine]:
     """Stretches of one edge that follow each other, as one line."""
     joined: list[TrueLine] = []
     for edge in ("lower", "upper"):

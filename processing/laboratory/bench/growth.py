@@ -56,7 +56,7 @@ def measure_growth(options: BenchmarkOptions) -> tuple[Measurement, ...]:
     """The exponent with which the time of each work grows with the points, and its times."""
     sizes = _sizes_within(options)
     times: dict[str, list[float]] = {name: [] for name in _WORKS}
-    for size in _rehearsed(sizes):
+    for size in _rehearse_first(sizes):
         with tempfile.TemporaryDirectory(prefix="zuka-bench-") as name:
             for work, seconds in _times_of(Path(name), abs(size)):
                 if size > 0:
@@ -77,7 +77,7 @@ def _sizes_within(options: BenchmarkOptions) -> list[int]:
     return sizes if len(sizes) > 1 else [max(1, most // 3), most]
 
 
-def _rehearsed(sizes: list[int]) -> Iterator[int]:
+def _rehearse_first(sizes: list[int]) -> Iterator[int]:
     """The sizes, and before them the first one as a negative number: done, but not measured."""
     yield -sizes[0]
     yield from sizes

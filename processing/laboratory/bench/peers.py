@@ -78,7 +78,7 @@ def pcl_normals_s(local_xyz: NDArray[np.float64], folder: Path) -> float | None:
     """PCL's tool: 30 nearest neighbours; None where it isn't installed."""
     if shutil.which(_PCL) is None:
         return None
-    source = _written(folder / "peer.pcd", _PCD, local_xyz)
+    source = _write_cloud(folder / "peer.pcd", _PCD, local_xyz)
     command = [_PCL, str(source), str(folder / "peer-normals.pcd"), "-k", str(MOST_NEIGHBOURS)]
     return read_reported_seconds(command, _PCL_SAYS) / 1000
 
@@ -87,7 +87,7 @@ def cloudcompare_normals_s(local_xyz: NDArray[np.float64], folder: Path) -> floa
     """CloudCompare's command line: all neighbours within 0.2 m; None where it isn't installed."""
     if shutil.which(_CLOUDCOMPARE) is None:
         return None
-    source = _written(folder / "peer.ply", _PLY, local_xyz)
+    source = _write_cloud(folder / "peer.ply", _PLY, local_xyz)
     quiet = [_CLOUDCOMPARE, "-SILENT", "-AUTO_SAVE", "OFF", "-O", str(source)]
     hidden = {**os.environ, "QT_QPA_PLATFORM": "offscreen"}
     return read_reported_seconds(
@@ -97,10 +97,10 @@ def cloudcompare_normals_s(local_xyz: NDArray[np.float64], folder: Path) -> floa
 
 def write_pcd(path: Path, local_xyz: NDArray[np.float64]) -> Path:
     """The points as a binary PCD file, written if it isn't there."""
-    return _written(path, _PCD, local_xyz)
+    return _write_cloud(path, _PCD, local_xyz)
 
 
-def _written(path: Path, header: str, local_xyz: NDArray[np.float64]) -> Path:
+def _write_cloud(path: Path, header: str, local_xyz: NDArray[np.float64]) -> Path:
     if not path.exists():
         head = header.format(count=len(local_xyz)).encode()
         path.write_bytes(head + local_xyz.astype("<f4").tobytes())

@@ -85,7 +85,7 @@ def write_table(page: Path, circumstances: Circumstances, rows: Sequence[Measure
         {**run, "rows": [one for one in run["rows"] if one["name"] not in new]} for run in before
     ]
     runs = [run for run in runs if run["rows"]]
-    runs.append(_described(circumstances, rows))
+    runs.append(_describe_rows(circumstances, rows))
     kept = KEPT + text.partition(KEPT)[2] if KEPT in text else f"{KEPT}\n"
     with write_safely(data) as path:
         path.write_text(json.dumps(runs, ensure_ascii=False, indent=1) + "\n", "utf-8")
@@ -115,7 +115,7 @@ def number(value: float) -> str:
     return f"{value:.1f}" if abs(value) >= 10 else f"{value:.2f}"
 
 
-def _described(circumstances: Circumstances, rows: Sequence[Measurement]) -> dict[str, object]:
+def _describe_rows(circumstances: Circumstances, rows: Sequence[Measurement]) -> dict[str, object]:
     return {
         "command": circumstances.command,
         "date": circumstances.date,

@@ -74,7 +74,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             _make(what, options)
         for seed in _seeds(options.held_out):
             for scene, turn, name in [*_scenes(what, (seed,)), *_on_relief(what, (seed,))]:
-                _say(score_line(f"{what} {name}", _said(what, scene, turn), scene))
+                _say(score_line(f"{what} {name}", _classify_scene(what, scene, turn), scene))
     return 0
 
 
@@ -202,7 +202,7 @@ def _scene(what: str, seed: int) -> tuple[TrainingScene, float, str]:
     return *scene_of(seed, how, _BUDGETS[seed % len(_BUDGETS)]), how
 
 
-def _said(
+def _classify_scene(
     what: str, scene: TrainingScene, turn: float
 ) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
     if what == "beams":

@@ -66,12 +66,12 @@ class NoiseMaker:
         if self.random.random() < 0.85:
             self._arcs(amount)
         if self.random.random() < 0.7:
-            self._folded(ambiguity_m)
-        self._mixed(amount)
+            self._fold_ranges(ambiguity_m)
+        self._mix_ranges(amount)
         self._rain(amount)
         self._streaks()
         if self.street.panes and self.random.random() < 0.8:
-            self._mirrored(footprint)
+            self._mirror_beams(footprint)
         self._under_the_road()
         lone = self.random.uniform(1, 40, self._count) ** self.random.uniform(0.8, 1.1)
         self._put(self._some(0.0025 * amount), lone, ISOLATED)
@@ -128,7 +128,7 @@ class NoiseMaker:
             ranges = reach + drift + random.normal(0, spread, self._count)
             self._put(is_in & self._some(share), ranges, ARC)
 
-    def _folded(self, ambiguity_m: float) -> None:
+    def _fold_ranges(self, ambiguity_m: float) -> None:
         """Things beyond the range that the phase can tell, brought nearer by it."""
         met = self.met.ranges
         is_folded = (met > ambiguity_m) & (met < 2 * ambiguity_m) & (self.met.things >= 0)
@@ -136,7 +136,7 @@ class NoiseMaker:
         shift = -ambiguity_m + self.random.normal(0, 0.015, self._count)
         self._put(is_folded & self._some(share), met + shift, FOLDED)
 
-    def _mixed(self, amount: float) -> None:
+    def _mix_ranges(self, amount: float) -> None:
         """Beams that met an edge and what is behind it."""
         met, things = self.met
         after, thing_after = np.r_[met[1:], met[-1]], np.r_[things[1:], things[-1]]
@@ -176,7 +176,7 @@ class NoiseMaker:
             is_near &= np.abs(shots.rows - row) < random.integers(2, 60)
             self._put(is_near & self._some(0.3), random.uniform(1, 25, self._count), STREAK)
 
-    def _mirrored(self, footprint: float) -> None:
+    def _mirror_beams(self, footprint: float) -> None:
         """Glass: some beams come back from what it mirrors, most are lost."""
         random, shots = self.random, self.shots
         chances = random.random((self._count, 2))

@@ -79,7 +79,7 @@ def on_relief(scene: TrainingScene, seed: int) -> TrainingScene:
     """The scene on a relief of its own."""
     random = np.random.default_rng(seed * 7 + _STREAM)
     relief = relief_of(random, float(np.ptp(np.percentile(scene.xyz[:, 0], [1, 99]))))
-    xyz, origins = _lifted(scene.xyz, relief), _lifted(scene.origins, relief)
+    xyz, origins = _lift_points(scene.xyz, relief), _lift_points(scene.origins, relief)
     is_hidden = np.zeros(xyz.shape[0], np.bool_)
     for share in _ALONG:
         beam = origins + share * (xyz - origins)
@@ -88,5 +88,5 @@ def on_relief(scene: TrainingScene, seed: int) -> TrainingScene:
     return replace(scene, xyz=xyz, origins=origins, ranges=ranges).chosen(~is_hidden)
 
 
-def _lifted(xyz: Floats, relief: Relief) -> Floats:
+def _lift_points(xyz: Floats, relief: Relief) -> Floats:
     return np.column_stack([xyz[:, :2], xyz[:, 2] + relief.heights(xyz[:, :2])])

@@ -101,7 +101,7 @@ def scene_of(seed: int, how: str, budget: int) -> tuple[TrainingScene, float]:
         shots, footprint = standing_shots(random, length_m, budget, stations), 0.0004
     else:
         shots, footprint = airborne_shots(random, length_m, budget), 0.0005
-    scene = _measured(random, street, shots, footprint, (how, length_m))
+    scene = _measure_scene(random, street, shots, footprint, (how, length_m))
     if how == MOBILE and random.random() < 0.5:  # cut to a strip, as surveyors do
         low, wide = random.uniform(-15, 0), random.uniform(15, 30)
         y = scene.xyz[:, 1]
@@ -127,7 +127,7 @@ def thin_scene(scene: TrainingScene, seed: int) -> TrainingScene:
     return scene.chosen(np.sort(order[firsts]))
 
 
-def _measured(
+def _measure_scene(
     random: Generator,
     street: TrainingStreet,
     shots: Shots,
@@ -141,7 +141,7 @@ def _measured(
     met = trace_rays(shots.origins, shots.directions, things, footprint, chances[:, :2].copy())
     kinds = np.where(met.things >= 0, things[met.things, 1].astype(np.int64), -1)
     albedos = np.where(met.things >= 0, things[met.things, 2], 0.0)
-    kinds = _grown(random, street, shots, met.ranges, (kinds, chances[:, 2:]))
+    kinds = _grow_grass(random, street, shots, met.ranges, (kinds, chances[:, 2:]))
     ambiguity_m = ambiguity_of(random)
     most_m = _FAR_M if how == AIRBORNE else min(ambiguity_m, 119.0)
     if how == MOBILE:
@@ -176,7 +176,7 @@ def _measured(
     return scene.chosen(kept)
 
 
-def _grown(
+def _grow_grass(
     random: Generator,
     street: TrainingStreet,
     shots: Shots,

@@ -46,14 +46,14 @@ def known_lines(scenes: Iterator[RoadScene]) -> LabelledThings:
     """All lines on some streets; rear edges of kerb stones, which count neither way, left out."""
     rows: list[tuple[CurbFacts, bool, float, int]] = []
     for number, scene in enumerate(scenes):
-        rows += [(*one, number) for one in _judged(scene, read_mapped(scene.truth("curbs")))]
+        rows += [(*one, number) for one in _judge_runs(scene, read_mapped(scene.truth("curbs")))]
         sys.stderr.write(f"{scene.name}: {len(rows)} lines\n")
     known = LabelledThings.of(rows, len(CurbFacts._fields))
     known.worth[:] /= known.worth.mean() if rows else 1.0
     return known
 
 
-def _judged(scene: RoadScene, truth: MappedFile) -> Iterator[tuple[CurbFacts, bool, float]]:
+def _judge_runs(scene: RoadScene, truth: MappedFile) -> Iterator[tuple[CurbFacts, bool, float]]:
     lower = [one for one in truth.features if one.facts.get("edge") == "lower"]
     fronts = PolylineIndex([one.xyz for one in lower if kind_of(one) != "back"])
     rears = PolylineIndex([one.xyz for one in truth.features if kind_of(one) == "back"])

@@ -54,14 +54,14 @@ def known_covers(scenes: Iterator[RoadScene]) -> dict[str, LabelledThings]:
     """All covers on some streets, by where they are from: rows of joints, open rectangles."""
     rows: dict[str, list[_Row]] = {name: [] for name in _FACTS}
     for number, scene in enumerate(scenes):
-        for name, terms, is_right, worth in _judged(scene):
+        for name, terms, is_right, worth in _judge_covers(scene):
             rows[name].append((terms, is_right, worth, number))
         counts = ", ".join(f"{len(rows[name])} {name}" for name in rows)
         sys.stderr.write(f"{scene.name}: {counts}\n")
     return {name: LabelledThings.of(rows[name], len(_FACTS[name])) for name in rows}
 
 
-def _judged(scene: RoadScene) -> Iterator[tuple[str, Sequence[float], bool, float]]:
+def _judge_covers(scene: RoadScene) -> Iterator[tuple[str, Sequence[float], bool, float]]:
     truth = read_mapped(scene.truth("gutters"))
     laid, gratings = gutter_evidence(scene.drives, GutterParameters(), SilentMonitor())
     for one in laid:

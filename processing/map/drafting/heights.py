@@ -76,9 +76,9 @@ def set_on_ground(
         return ()
     line = Polyline.of(positions)
     search = _Search.of(line, reach_m, step_m)
-    pairs = _united([search.pairs_in(drive) for drive in drives if drive.count])
-    heights, is_found = _fitted(pairs, len(positions), reach_m)
-    rises = _filled(line, heights, is_found)
+    pairs = _unite_pairs([search.pairs_in(drive) for drive in drives if drive.count])
+    heights, is_found = _fit_heights(pairs, len(positions), reach_m)
+    rises = _fill_heights(line, heights, is_found)
     return tuple(
         Vertex((position[0], position[1], position[2] + rise), is_occluded=not found)
         for position, rise, found in zip(positions, rises.tolist(), is_found.tolist(), strict=True)
@@ -160,7 +160,7 @@ class _Search:
             )
             for start, stop in zip(starts.tolist(), stops.tolist(), strict=True)
         ]
-        return _united(found)
+        return _unite_pairs(found)
 
     def _pairs_among(self, xyz: NDArray[np.int32], frame: Floats) -> _Pairs:
         room = _PAIRS_AT_FIRST
@@ -206,7 +206,7 @@ def _image_of(drive: Drive) -> PointCloudImage:
     return ready or image_of(drive, drive.image_kinds[0])
 
 
-def _united(pairs: Sequence[_Pairs]) -> _Pairs:
+def _unite_pairs(pairs: Sequence[_Pairs]) -> _Pairs:
     if not pairs:
         return _Pairs(np.empty(0, np.int64), np.empty((0, 3)))
     return _Pairs(
@@ -215,7 +215,7 @@ def _united(pairs: Sequence[_Pairs]) -> _Pairs:
     )
 
 
-def _fitted(pairs: _Pairs, count: int, reach_m: float) -> tuple[Floats, NDArray[np.bool_]]:
+def _fit_heights(pairs: _Pairs, count: int, reach_m: float) -> tuple[Floats, NDArray[np.bool_]]:
     """Heights of the surface above the given ones, (count,), and where there is any."""
     order = np.lexsort([pairs.offsets[:, 2], pairs.owners])
     owners, offsets = pairs.owners[order], pairs.offsets[order]
@@ -225,12 +225,12 @@ def _fitted(pairs: _Pairs, count: int, reach_m: float) -> tuple[Floats, NDArray[
     levels = np.zeros((count, 3))
     levels[:, 0] = _levels(owners, offsets[:, 2], closeness, count)
     near = _Near(owners, offsets, closeness)
-    planes = _settled(near, levels, _CUTOFFS_M, _LIKELY_SLOPE)
+    planes = _settle_planes(near, levels, _CUTOFFS_M, _LIKELY_SLOPE)
     # On a steep bank no level holds many points, but one tilted plane nearly all of them. What a
     # tilted plane holds of a curb is less: its foot, its top and some of its face.
     is_steep = near.share_on(planes) < _MOST_OF_THEM
     some = near.of(is_steep)
-    tilted = _settled(some, planes, _CUTOFFS_OF_BANK_M, _SLOPE_OF_BANK)
+    tilted = _settle_planes(some, planes, _CUTOFFS_OF_BANK_M, _SLOPE_OF_BANK)
     is_better = is_steep & (some.share_on(tilted) > _NEARLY_ALL)
     planes[is_better] = tilted[is_better]
     heights = planes[:, 0]
@@ -290,7 +290,7 @@ class _Near:
         return np.divide(on_it, all_of_them, out=np.ones(len(planes)), where=all_of_them > 0)
 
 
-def _settled(near: _Near, planes: Floats, cutoffs_m: Sequence[float], slope: float) -> Floats:
+def _settle_planes(near: _Near, planes: Floats, cutoffs_m: Sequence[float], slope: float) -> Floats:
     """Planes (height at the place and two slopes), fitted again while points off them drop out."""
     for cutoff in cutoffs_m:
         off = np.clip(np.abs(near.residuals(planes)) / cutoff, 0, 1)
@@ -317,7 +317,7 @@ def _planes(near: _Near, weights: Floats, before: Floats, slope: float) -> Float
     return planes
 
 
-def _filled(line: Polyline, heights: Floats, is_found: NDArray[np.bool_]) -> Floats:
+def _fill_heights(line: Polyline, heights: Floats, is_found: NDArray[np.bool_]) -> Floats:
     """Rises of all places: between found ones the line's heights are interpolated."""
     if is_found.all() or not is_found.any():
         return heights

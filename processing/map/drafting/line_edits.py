@@ -104,9 +104,9 @@ def move_feature(feature: Feature, by: Position) -> Feature:
     """
     if not any(by):
         return feature
-    return feature.with_vertices(tuple(_moved(vertex, by) for vertex in feature.vertices))
+    return feature.with_vertices(tuple(_move_vertex(vertex, by) for vertex in feature.vertices))
 
 
-def _moved(vertex: Vertex, by: Position) -> Vertex:
+def _move_vertex(vertex: Vertex, by: Position) -> Vertex:
     east, north, height = (float(value) for value in np.add(vertex.xyz, by))
     return dataclasses.replace(vertex, xyz=(east, north, height), measured=None)

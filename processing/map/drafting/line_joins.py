@@ -53,7 +53,7 @@ def join(features: Sequence[Feature], tolerance_m: float = 0.0) -> Feature:
     vertices: tuple[Vertex, ...] = ()
     for number, is_reversed in _order_of(features):
         own = features[number].vertices[:: -1 if is_reversed else 1]
-        vertices = _appended(vertices, own, max(tolerance_m, SAME_POSITION_M))
+        vertices = _append_vertices(vertices, own, max(tolerance_m, SAME_POSITION_M))
     attributes = dict(first.attributes)
     for feature in features[1:]:
         for name, value in feature.attributes.items():
@@ -172,7 +172,7 @@ def _order_of(features: Sequence[Feature]) -> list[tuple[int, bool]]:
     return [(number, not flip) for number, flip in reversed(order)] if runs_back else order
 
 
-def _appended(
+def _append_vertices(
     vertices: tuple[Vertex, ...], more: tuple[Vertex, ...], tolerance_m: float
 ) -> tuple[Vertex, ...]:
     if not vertices:

@@ -99,7 +99,7 @@ def evaluate_classes(
         part = PartMonitor(monitor, number / len(wanted), (number + 1) / len(wanted))
         counts = BinaryConfusionMatrix(0, 0, 0, 0)
         for drive in on:
-            counts += _counted(drive, truth, tool, which, part)
+            counts += _count_run(drive, truth, tool, which, part)
         found.append(ClassEvaluation(tool, which, ids, counts))
     return tuple(found)
 
@@ -140,7 +140,10 @@ def evaluations_of(
     """
     tool, run, asked = evaluation.tool, evaluation.run, asked_classes()[evaluation.tool]
     codes = read_truth(drive, truth, start, stop)
-    is_true, is_found = is_one_of(codes, asked.codes), _found(drive, tool, run, start, stop)
+    is_true, is_found = (
+        is_one_of(codes, asked.codes),
+        _read_found_points(drive, tool, run, start, stop),
+    )
     if not asked.removes:
         is_true, is_found = ~is_true, ~is_found
     return map_errors(codes > 0, is_true, is_found)
@@ -150,7 +153,7 @@ def _is_on(drive: Drive, wanted: Sequence[tuple[str, Run | None, list[Drive]]]) 
     return any(drive in on for _, _, on in wanted)
 
 
-def _counted(
+def _count_run(
     drive: Drive, truth: str, tool: str, run: Run | None, monitor: Monitor
 ) -> BinaryConfusionMatrix:
     counts = BinaryConfusionMatrix(0, 0, 0, 0)
@@ -161,14 +164,16 @@ def _counted(
         codes = read_truth(drive, truth, start, stop)
         is_known = codes > 0
         if is_known.any():
-            is_found = _found(drive, tool, run, start, stop)[is_known]
+            is_found = _read_found_points(drive, tool, run, start, stop)[is_known]
             counts += BinaryConfusionMatrix.of(
                 is_one_of(codes[is_known], asked_classes()[tool].codes), is_found
             )
     return counts
 
 
-def _found(drive: Drive, tool: str, run: Run | None, start: int, stop: int) -> NDArray[np.bool_]:
+def _read_found_points(
+    drive: Drive, tool: str, run: Run | None, start: int, stop: int
+) -> NDArray[np.bool_]:
     if run is not None:
         return read_finding(drive, run.tool, run.id, start, stop)
     return is_one_of(classes_as_they_stand(drive, start, stop), asked_classes()[tool].codes)

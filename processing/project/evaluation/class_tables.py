@@ -48,7 +48,7 @@ def write_class_evaluations(
         facts = {"tool": one.tool, "truth": truth, "run": "" if run is None else run.id}
         facts["started"] = "" if run is None else run.started.isoformat()
         parameters = {} if run is None else run.parameters
-        rows.append({**facts, **_scores(one.tool, one.counts), **_named(parameters)})
+        rows.append({**facts, **_scores(one.tool, one.counts), **_name_parameters(parameters)})
     _write(path, rows, never)
 
 
@@ -69,9 +69,9 @@ def write_study(path: Path, study: ParameterStudy, *, never: Iterable[Path] = ()
     rows = [
         {
             "tool": study.tool,
-            **_named(dict(zip(names, cell.values, strict=True))),
+            **_name_parameters(dict(zip(names, cell.values, strict=True))),
             **_scores(study.tool, cell.counts),
-            **_named(study.fixed),
+            **_name_parameters(study.fixed),
         }
         for cell in study.cells
     ]
@@ -98,7 +98,7 @@ def _scores(tool: str, counts: BinaryConfusionMatrix) -> dict[str, str]:
     }
 
 
-def _named(parameters: Mapping[str, ParameterValue | None]) -> dict[str, str]:
+def _name_parameters(parameters: Mapping[str, ParameterValue | None]) -> dict[str, str]:
     return {name: "" if value is None else str(value) for name, value in parameters.items()}
 
 

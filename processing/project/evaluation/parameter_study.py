@@ -139,14 +139,14 @@ def study(request: StudyRequest, truth: TruthOf, monitor: Monitor, into: Path) -
     cells = []
     for number, setting in enumerate(settings):
         part = PartMonitor(monitor, number / len(settings), (number + 1) / len(settings))
-        counts = _tried(request, setting, truth, part, into / str(number))
+        counts = _try_setting(request, setting, truth, part, into / str(number))
         cells.append(StudyCell(tuple(setting[one.parameter] for one in request.varied), counts))
     names = {one.parameter for one in request.varied}
     fixed = {name: value for name, value in request.fixed.items() if name not in names}
     return ParameterStudy(tool.id, tool.version, fixed, request.varied, tuple(cells))
 
 
-def _tried(
+def _try_setting(
     request: StudyRequest,
     setting: Mapping[str, ParameterValue],
     truth: TruthOf,
@@ -162,7 +162,7 @@ def _tried(
             found = run_together(share.request, share.monitor, into=into)
             for drive, columns in zip(share.drives, found.columns, strict=True):
                 if drive in request.drives:
-                    counts += _counted(columns, drive, truth, codes, monitor)
+                    counts += _count_result(columns, drive, truth, codes, monitor)
         finally:
             remove_folder(into)
     return counts
@@ -257,7 +257,7 @@ def _varied_of(known: Mapping[str, Parameter], words: str) -> VariedParameter:
     )
 
 
-def _counted(
+def _count_result(
     result: FinishedColumns,
     drive: Drive,
     truth: TruthOf,

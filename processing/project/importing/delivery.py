@@ -111,7 +111,7 @@ def read_delivery(
     for path in inputs:
         monitor.check()
         files.append(_looked_at(path, columns))
-    groups = _grouped(files)
+    groups = _group_files(files)
     recordings = tuple(tuple(group.files) for group in groups)
     return Delivery(recordings, _dates_of(groups), _plane_system(crs or _common_crs(files), files))
 
@@ -231,7 +231,7 @@ class _Group:
         self.span = self.span[0], max(self.span[1], file.last_time)
 
 
-def _grouped(files: list[DeliveredFile]) -> list[_Group]:
+def _group_files(files: list[DeliveredFile]) -> list[_Group]:
     """Files of the same scanners that overlap in time, or are days apart, are other scanners'."""
     timeless = [_Group([file], [], _span(file)) for file in files if not file.has_times]
     groups: list[_Group] = []

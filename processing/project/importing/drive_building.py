@@ -160,10 +160,10 @@ def build_drive(
         monitor.report(0.7, _CELLS.filled(name=name))
         _order_for_top_view(recording, found.view, steps, PartMonitor(monitor, 0.7, 1.0))
     remove_grid_column(recording.folder)
-    return _finished(recording, plan, found, steps, taken)
+    return _finish_folder(recording, plan, found, steps, taken)
 
 
-def _finished(
+def _finish_folder(
     recording: Recording,
     plan: BuildPlan,
     found: _FoundRows,

@@ -119,7 +119,7 @@ def complete_drive(
         Nothing is left.
     """
     try:
-        return _completed(drive, trajectories, into, monitor)
+        return _complete_drive_folder(drive, trajectories, into, monitor)
     except BaseException:
         remove_folder(into)
         raise
@@ -153,7 +153,7 @@ def drive_changed(name: str) -> OutOfRange:
     )
 
 
-def _completed(
+def _complete_drive_folder(
     drive: Drive, trajectories: tuple[NamedTrajectory, ...], into: Path, monitor: Monitor
 ) -> CompletedDrive:
     folder, names = into / "0", tuple(name for name in _DELIVERED if drive.columns.has(name))

@@ -50,7 +50,7 @@ def additions_of_files(
         A file can't be read.
     """
     sorted_out: dict[Content, list[Path]] = {content: [] for content in DELIVERED}
-    for path in _unfolded(files, formats):
+    for path in _unfold_folders(files, formats):
         sorted_out[content_of(path, formats)].append(path)
     points, trajectories, images = sorted_out.values()
     return ImportRequest(tuple(points), tuple(trajectories), tuple(images), crs)
@@ -79,7 +79,7 @@ def is_folder_of_files(path: Path, formats: FormatList = FORMATS) -> bool:
     return path.is_dir() and formats.folder_format(path) is None
 
 
-def _unfolded(files: tuple[Path, ...], formats: FormatList) -> list[Path]:
+def _unfold_folders(files: tuple[Path, ...], formats: FormatList) -> list[Path]:
     endings = formats.endings_read(*DELIVERED)
     found: list[Path] = []
     for path in files:

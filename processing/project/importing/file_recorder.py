@@ -143,7 +143,7 @@ class _Recorder:
         number = self._stream_of(scanner, names)
         stream = self._record.streams[number]
         columns = {name: given[name] for name in names if name in given}
-        columns["xyz"] = self._moved(given["xyz"])
+        columns["xyz"] = self._move_points(given["xyz"])
         columns["time"] = _times_of(stream, given)
         self._note_indices(number, columns, indices)
         self._columns_of(number).write(stream.count, columns)
@@ -163,7 +163,7 @@ class _Recorder:
         self._record.streams.append(Stream(scanner, names))
         return len(self._record.streams) - 1
 
-    def _moved(self, xyz: NDArray[np.int32]) -> NDArray[np.int32]:
+    def _move_points(self, xyz: NDArray[np.int32]) -> NDArray[np.int32]:
         if self._quantisation == self._job.quantisation:
             return xyz
         move = shift_between(self._job.quantisation, self._quantisation)
@@ -197,10 +197,10 @@ class _Recorder:
             # A file may hold more scans than files may be open at a time; they follow one another.
             if len(self._open) >= _MOST_OPEN:
                 self._open.pop(next(iter(self._open))).close()
-            self._open[number] = self._opened(number)
+            self._open[number] = self._open_writer(number)
         return self._open[number]
 
-    def _opened(self, number: int) -> OffsetColumnWriter:
+    def _open_writer(self, number: int) -> OffsetColumnWriter:
         position = self._job.position
         if position is not None:
             return OffsetColumnWriter(Path(position.folder), position.first)
@@ -305,7 +305,7 @@ def _times_of(stream: Stream, given: ChunkColumns) -> NDArray[np.float64]:
     times = np.asarray(given["time"], dtype=np.float64)
     # A sum is not finite where any value is not: one quick pass in the usual case.
     if not np.isfinite(times.sum()):
-        times = _filled(times, stream.last_time)
+        times = _fill_times(times, stream.last_time)
         if np.isnan(times).any():
             stream.has_times = False
             return times
@@ -318,7 +318,7 @@ def _times_of(stream: Stream, given: ChunkColumns) -> NDArray[np.float64]:
     return times
 
 
-def _filled(times: NDArray[np.float64], before: float) -> NDArray[np.float64]:
+def _fill_times(times: NDArray[np.float64], before: float) -> NDArray[np.float64]:
     good = np.isfinite(times)
     if not good.any():
         return np.full_like(times, before if np.isfinite(before) else np.nan)

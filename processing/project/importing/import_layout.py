@@ -109,7 +109,7 @@ def layout_of(
             for number, file in enumerate(group)
         ]
         if at not in mixed and all(len(file.scanners) == 1 for file in group):
-            own, planned[at] = _placed(own, group, options, into / f"{at}")
+            own, planned[at] = _place_jobs(own, group, options, into / f"{at}")
         jobs += own
     return ImportLayout(tuple(jobs), tuple(groups), planned)
 
@@ -140,7 +140,7 @@ def _job(
     )
 
 
-def _placed(
+def _place_jobs(
     jobs: list[FileJob], group: tuple[DeliveredFile, ...], options: ReadOptions, stem: Path
 ) -> tuple[list[FileJob], tuple[Recording, ...]]:
     """The jobs with their places, and the recordings that these make."""

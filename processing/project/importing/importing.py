@@ -157,7 +157,7 @@ class _Import:
             has_labels=any("label" in info.attributes for info in self._files),
             labels=request.labels,
         )
-        self._layout = self._planned()
+        self._layout = self._plan_import()
         self._records: dict[int, FileRecord] = {}
 
     def run(self, taken: tuple[str, ...]) -> tuple[Path, ...]:
@@ -203,7 +203,7 @@ class _Import:
             self._journal.save()
         return self.is_kept
 
-    def _planned(self) -> ImportLayout:
+    def _plan_import(self) -> ImportLayout:
         groups = range(len(self._delivery.recordings))
         mixed = [group for group in groups if self._journal.known(f"mixed {group}") is not None]
         return layout_of(self._delivery, self._marks, self._options, self._into, mixed)
@@ -248,7 +248,7 @@ class _Import:
                 self._journal.settle()
                 for recording in self._layout.planned[group]:
                     remove_folder(recording.folder, self._into)
-                self._layout = self._planned()
+                self._layout = self._plan_import()
             else:
                 return
 

@@ -60,7 +60,7 @@ def join_parts(
         elif number:
             remove_folder(part_folder(job, part.at))
         if move is not None:
-            recording.parts[number] = replace(part, stream=_moved(part.stream, move))
+            recording.parts[number] = replace(part, stream=_move_stream(part.stream, move))
         first += part.stream.count
         monitor.report(first / recording.count)
 
@@ -114,7 +114,7 @@ def _no_values(name: str, count: int) -> Iterator[VaryingValues]:
         yield VaryingValues.nothing(stop - start, VARYING_TYPES[name])
 
 
-def _moved(stream: Stream, move: QuantisationShift) -> Stream:
+def _move_stream(stream: Stream, move: QuantisationShift) -> Stream:
     corners = np.array([stream.lowest, stream.highest], dtype=np.int32)
     with_move = move.applied(corners)
     low, high = (corners if with_move is None else with_move).tolist()

@@ -76,17 +76,17 @@ def _candidates(inputs: Sequence[Path]) -> Iterator[Path]:
     seen: set[Path] = set()
     for home in dict.fromkeys(path.resolve().parent for path in inputs):
         for folder in (home, *_folders_in(home), *_folders_in(home.parent)):
-            for path in _listed(folder)[: 4 * _MOST_FILES]:
+            for path in _list_files(folder)[: 4 * _MOST_FILES]:
                 if len(seen) < _MOST_FILES and path not in seen and _is_trajectory(path):
                     seen.add(path)
                     yield path
 
 
 def _folders_in(folder: Path) -> list[Path]:
-    return [path for path in _listed(folder) if _FOLDER.search(path.name) and path.is_dir()]
+    return [path for path in _list_files(folder) if _FOLDER.search(path.name) and path.is_dir()]
 
 
-def _listed(folder: Path) -> list[Path]:
+def _list_files(folder: Path) -> list[Path]:
     try:
         return sorted(folder.iterdir())
     except OSError:  # a folder that nobody may read offers nothing

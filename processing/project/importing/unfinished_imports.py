@@ -101,7 +101,7 @@ def remove_litter(project: Path, drives: Collection[str]) -> None:
         Ids of the project's drives.
     """
     for folder in _folders(project):
-        finished = _finished(folder)
+        finished = _finished_drives(folder)
         is_there = bool(finished) and all(id_ in drives for id_ in finished)
         if is_there or _request_of(folder) is None:
             remove_import(folder)
@@ -136,7 +136,7 @@ def _request_of(folder: Path) -> ImportRequest | None:
     return request if is_same else None
 
 
-def _finished(folder: Path) -> tuple[str, ...]:
+def _finished_drives(folder: Path) -> tuple[str, ...]:
     try:
         ids = json.loads((folder / FINISHED).read_text(encoding="utf-8"))
     except (OSError, ValueError):

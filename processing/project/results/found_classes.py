@@ -110,7 +110,9 @@ def _labels_within(
     """The labels of a stretch."""
     stop = min(start + MOST_POINTS, drive.count)
     found = result.read(_CLASS, start, stop)
-    after = np.where(found != _delivered(drive, start, stop), found, 0).astype(np.uint8)
+    after = np.where(found != _read_delivered_classes(drive, start, stop), found, 0).astype(
+        np.uint8
+    )
     return relabel_points(drive, np.arange(start, stop), after, tool)
 
 
@@ -159,7 +161,7 @@ def relabel_points(
     return LabelChange.of(drive.id, points[changed], before[changed], after[changed])
 
 
-def _delivered(drive: Drive, start: int, stop: int) -> NDArray[np.uint8]:
+def _read_delivered_classes(drive: Drive, start: int, stop: int) -> NDArray[np.uint8]:
     if not drive.columns.has(_CLASS):
         return np.zeros(stop - start, np.uint8)
     return np.asarray(read_chunk(drive.folder, _CLASS, start, stop))

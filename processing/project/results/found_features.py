@@ -133,15 +133,15 @@ def summary_of(tool: Tool, count: int, note: Text = _NO_NOTE, beside: Beside = _
     nothing = _NOTHING_NEW if beside.decided else _NOTHING
     text = _FOUND if count > 1 else (_FOUND_ONE if count else nothing)
     summary = text.filled(tool=tool.name, count=f"{count:,}")
-    replaced = _counted(beside.replaced, _REPLACED_ONE, _REPLACED)
-    decided = _counted(beside.decided, _DECIDED_ONE, _DECIDED)
+    replaced = _write_count(beside.replaced, _REPLACED_ONE, _REPLACED)
+    decided = _write_count(beside.decided, _DECIDED_ONE, _DECIDED)
     reported = _BOTH.filled(replaced=replaced, decided=decided) if replaced and decided else None
     if reported := reported or replaced or decided:
         summary = _BESIDE.filled(summary=summary, told=reported)
     return _NOTED.filled(summary=summary, note=note) if note.en else summary
 
 
-def _counted(count: int, one: Text, many: Text) -> Text | None:
+def _write_count(count: int, one: Text, many: Text) -> Text | None:
     """None where there is nothing to count."""
     return (one if count == 1 else many).filled(count=f"{count:,}") if count else None
 

@@ -68,7 +68,7 @@ def check_point_output(
     sources = sorted(found)
     paths = _paths_of(sources, output)
     for path in paths:
-        refuse_inputs(path, _delivered(drives))
+        refuse_inputs(path, _delivered_files(drives))
     return tuple(zip(sources, paths, strict=True))
 
 
@@ -107,7 +107,7 @@ def write_point_results(
             first = _DEALING + number * share
             monitor.report(first, _WRITING.filled(name=path.name))
             part = PartMonitor(monitor, first, first + share)
-            temporary = whole.enter_context(write_safely(path, never=_delivered(drives)))
+            temporary = whole.enter_context(write_safely(path, never=_delivered_files(drives)))
             found, columns = _results_of(order, source), noted[source].columns
             write_results(source, temporary, found, part, columns=columns)
     return tuple(path for _, path in files)
@@ -116,7 +116,7 @@ def write_point_results(
 _WRITING = Text("Writing {name}", "{name} を書き込み中")
 
 
-def _delivered(drives: Sequence[Drive]) -> list[Path]:
+def _delivered_files(drives: Sequence[Drive]) -> list[Path]:
     return [path for drive in drives for path in drive.delivered_files]
 
 
@@ -163,12 +163,12 @@ def _reader_of(
 def _results_of(order: DeliveredOrder, source: Path) -> Callable[[int, int], Values]:
     def part(start: int, stop: int) -> Values:
         found = order.values(source, start, stop)
-        return dict(one for name, values in found.items() for one in _spread(name, values))
+        return dict(one for name, values in found.items() for one in _spread_vectors(name, values))
 
     return part
 
 
-def _spread(name: str, values: NDArray[Any]) -> list[tuple[str, NDArray[Any]]]:
+def _spread_vectors(name: str, values: NDArray[Any]) -> list[tuple[str, NDArray[Any]]]:
     if name not in _PARTS:
         return [(name, values)]
     parts, one = _PARTS[name]

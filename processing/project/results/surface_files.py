@@ -81,10 +81,10 @@ def write_surface_content(surface: StoredSurface, path: Path, monitor: Monitor) 
         heights, filled = surface.window(southern, columns)
         return np.stack([heights, filled])[:, ::-1]
 
-    write_geotiff(path, raster, window, _touched(surface), monitor)
+    write_geotiff(path, raster, window, _find_touched_tiles(surface), monitor)
 
 
-def _touched(surface: StoredSurface) -> set[tuple[int, int]]:
+def _find_touched_tiles(surface: StoredSurface) -> set[tuple[int, int]]:
     """Tiles of the picture that tiles of the surface reach into."""
     last = surface.grid.rows - 1
     return {

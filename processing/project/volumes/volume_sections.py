@@ -35,11 +35,11 @@ def write_sections(path: Path, line: SectionedLine, between: SectionSpans) -> No
             station_m=np.array([one.station_m for one in sections]),
             names=np.array([one.name for one in sections], np.str_),
             count=np.array([len(one.offsets) for one in sections], np.int64),
-            offsets=_joined([one.offsets for one in sections]),
-            before=_joined([one.before for one in sections]),
-            after=_joined([one.after for one in sections]),
+            offsets=_join_parts([one.offsets for one in sections]),
+            before=_join_parts([one.before for one in sections]),
+            after=_join_parts([one.after for one in sections]),
             has_boundary=np.array([one.is_inside is not None for one in sections], np.bool_),
-            is_inside=_joined([_inside_of(one) for one in sections]).astype(np.bool_),
+            is_inside=_join_parts([_inside_of(one) for one in sections]).astype(np.bool_),
             areas=np.array([(one.cut_m2, one.fill_m2) for one in sections]).reshape(-1, 2),
         )
 
@@ -93,5 +93,5 @@ def _inside_of(section: DrawnSection) -> NDArray[np.bool_]:
     return section.is_inside
 
 
-def _joined(parts: list[NDArray[Any]]) -> NDArray[Any]:
+def _join_parts(parts: list[NDArray[Any]]) -> NDArray[Any]:
     return np.concatenate(parts) if parts else np.empty(0)

@@ -116,7 +116,7 @@ class VolumeStore:
             grid = grid_of(facts["grid"])
         except (KeyError, TypeError, ValueError) as error:
             raise damaged(folder / _FACTS) from error
-        arrays = {name: _mapped(folder / f"{name}.npy", grid) for name in _ARRAYS}
+        arrays = {name: _map_grid(folder / f"{name}.npy", grid) for name in _ARRAYS}
         return ChangeGrid(grid, **arrays)
 
     def read_result(self, kept: KeptVolume) -> VolumeResult:
@@ -170,7 +170,7 @@ def _flush(file: int) -> None:
     os.fsync(file)
 
 
-def _mapped(path: Path, grid: CellGrid) -> Any:  # each array has its own dtype
+def _map_grid(path: Path, grid: CellGrid) -> Any:  # each array has its own dtype
     with report_as_user_error(path):
         try:
             values = np.load(path, mmap_mode="r", allow_pickle=False)

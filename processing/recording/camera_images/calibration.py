@@ -24,7 +24,11 @@ _PAIRS_FOR_SHIFT = 5
 shows."""
 
 _STEEP = 1e-9
-"""Cosine of the pitch below which heading and roll cannot be told apart."""
+"""Cosine of the pitch below which heading and roll cannot be separated."""
+
+_LEAST_SINGULAR = 1e-6
+"""Of the largest singular value: below it a direction of the offset is not determined by the pairs
+but by rounding. By trial; no measurement is recorded."""
 
 _BEHIND_PX = 1e4
 """Stands for the error of a place behind the camera: larger than any image."""
@@ -121,7 +125,7 @@ def apply_offset(
         What the time moves the camera along; the time stays without effect where it doesn't
         cover both moments.
     """
-    return _moved([image], offset, trajectory)[0]
+    return _move_images([image], offset, trajectory)[0]
 
 
 def apply_offsets(
@@ -135,7 +139,9 @@ def apply_offsets(
     for camera, offset in offsets.items():
         own = np.flatnonzero(cameras == camera)
         for number, image in zip(
-            own.tolist(), _moved([images[n] for n in own.tolist()], offset, trajectory), strict=True
+            own.tolist(),
+            _move_images([images[n] for n in own.tolist()], offset, trajectory),
+            strict=True,
         ):
             moved[number] = image
     return ImageList(tuple(moved))
@@ -167,7 +173,7 @@ def angles_of(rotations: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(np.degrees(np.stack([omega, phi, kappa], axis=-1)))
 
 
-def _moved(
+def _move_images(
     images: Sequence[CameraImage], offset: CameraOffset, trajectory: Trajectory | None
 ) -> list[CameraImage]:
     """Images of one camera with its offset."""
@@ -229,7 +235,7 @@ def estimate_offset(
     start = np.zeros(6 if has_shift else 3)
     found = least_squares(misses, start, method="lm")
     singular = np.linalg.svd(np.asarray(found.jac, dtype=np.float64), compute_uv=False)
-    if not found.success or singular[-1] < 1e-6 * singular[0]:
+    if not found.success or singular[-1] < _LEAST_SINGULAR * singular[0]:
         raise Unsuitable(_NOT_DETERMINED, Text.same(f"{len(pairs)}"), _SPREAD)
     residuals = np.linalg.norm(found.fun.reshape(-1, 2), axis=1)
     offset = dataclasses.replace(_offset_of(found.x), time_s=time_s)

@@ -67,7 +67,7 @@ class Camera:
             down = np.arctan2(y, np.hypot(x, forward)) * self.image.height_px / np.pi
         else:
             forward = np.where(forward > 0, forward, np.nan)
-            right, down = self._distorted(x / forward, y / forward)
+            right, down = self._distort_rays(x / forward, y / forward)
             right, down = right * self.image.focal_px, down * self.image.focal_px
         return np.column_stack([self.image.cx_px + right, self.image.cy_px + down])
 
@@ -105,12 +105,12 @@ class Camera:
                 [level * np.sin(azimuth), -np.sin(below), -level * np.cos(azimuth)]
             )
         else:
-            x, y = self._undistorted(right / self.image.focal_px, down / self.image.focal_px)
+            x, y = self._undistort_rays(right / self.image.focal_px, down / self.image.focal_px)
             seen = np.column_stack([x, -y, np.full(x.size, -1.0)])
             seen /= np.linalg.norm(seen, axis=1, keepdims=True)
         return np.asarray(seen @ self.rotation, dtype=np.float64)
 
-    def _distorted(
+    def _distort_rays(
         self, x: NDArray[np.float64], y: NDArray[np.float64]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         if not any(self.image.distortion):
@@ -125,7 +125,7 @@ class Camera:
             y * radial + p1 * (r2 + 2 * y * y) + 2 * p2 * x * y,
         )
 
-    def _undistorted(
+    def _undistort_rays(
         self, x: NDArray[np.float64], y: NDArray[np.float64]
     ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         if not any(self.image.distortion):

@@ -37,7 +37,7 @@ def read_array(path: Path) -> NDArray[Any]:
         found: NDArray[Any] = np.load(path, allow_pickle=False)
         return found
 
-    return _tried(read)
+    return _try_reading(read)
 
 
 def read_arrays(path: Path) -> dict[str, NDArray[Any]]:
@@ -54,10 +54,10 @@ def read_arrays(path: Path) -> dict[str, NDArray[Any]]:
         with path.open("rb") as file, np.load(file, allow_pickle=False) as kept:
             return {name: kept[name] for name in kept.files}
 
-    return _tried(read)
+    return _try_reading(read)
 
 
-def _tried(read: Callable[[], _Found]) -> _Found:
+def _try_reading(read: Callable[[], _Found]) -> _Found:
     with _reading:
         try:
             for _ in range(_TRIES - 1):

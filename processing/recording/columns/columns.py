@@ -154,7 +154,7 @@ class Columns:
         """
         self._pages.look()
         if name not in self._maps:
-            self._maps[name] = self._mapped(name)
+            self._maps[name] = self._map_column(name)
         return self._maps[name]
 
     def has_varying(self, name: str) -> bool:
@@ -258,7 +258,7 @@ class Columns:
         self._files.pop(name, None)
         self._varying.pop(name, None)
 
-    def _mapped(self, name: str) -> NDArray[Any]:
+    def _map_column(self, name: str) -> NDArray[Any]:
         dtype, width = COLUMN_TYPES[name]
         shape = (self._count,) if width == 1 else (self._count, width)
         path = column_path(self._folder, name)

@@ -122,7 +122,7 @@ class Coordinates:
         delivered: NDArray[np.int32] = self.columns["xyz"][points]
         if self.correction is None:
             return delivered
-        moved = self._moved(delivered, self.columns["time"][points])
+        moved = self._correct_points(delivered, self.columns["time"][points])
         # Kernels are compiled for mapped columns, which are read-only.
         moved.flags.writeable = False
         return moved
@@ -146,7 +146,7 @@ class Coordinates:
         delivered: NDArray[np.int32] = self._read("xyz", start, stop)
         if self.correction is None:
             return delivered
-        return self._moved(delivered, self._read("time", start, stop))
+        return self._correct_points(delivered, self._read("time", start, stop))
 
     def chunk_xyz(self, start: int, stop: int) -> Floats:
         """As :meth:`xyz` of the points ``start … stop − 1``, read into memory."""
@@ -189,7 +189,7 @@ class Coordinates:
             return np.ascontiguousarray(self.columns[name][start:stop])
         return read_chunk(self.folder, name, start, stop)
 
-    def _moved(self, delivered: NDArray[np.int32], time: Floats) -> NDArray[np.int32]:
+    def _correct_points(self, delivered: NDArray[np.int32], time: Floats) -> NDArray[np.int32]:
         if self.correction is None or not delivered.size:
             return delivered
         flat = delivered.reshape(-1, 3)

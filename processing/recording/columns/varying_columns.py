@@ -184,7 +184,7 @@ class VaryingWriter:
         size = values_path(self._folder, name).stat().st_size
         end = int(found[0]) if found.size else -1
         if not 0 <= end * np.dtype(VARYING_TYPES[name]).itemsize <= size:
-            raise _damaged(path, self._first)
+            raise _make_damage_error(path, self._first)
         return end
 
 
@@ -214,13 +214,13 @@ class VaryingColumn:
         self._pages = pages or MappedPages()
         self._path = starts_path(folder, name)
         self.count = count
-        self._starts = self._mapped(self._path, _START)
-        self._values = self._mapped(values_path(folder, name), np.dtype(VARYING_TYPES[name]))
+        self._starts = self._map_file(self._path, _START)
+        self._values = self._map_file(values_path(folder, name), np.dtype(VARYING_TYPES[name]))
         if self._starts.size != count + 1:
-            raise _damaged(self._path, min(self._starts.size, count + 1))
+            raise _make_damage_error(self._path, min(self._starts.size, count + 1))
         ends = int(self._starts[0]), int(self._starts[-1])
         if ends != (0, self._values.size):
-            raise _damaged(self._path, 0 if ends[0] else count)
+            raise _make_damage_error(self._path, 0 if ends[0] else count)
 
     def between(self, start: int, stop: int) -> VaryingValues:
         """Values of the points ``start … stop − 1``: a mapped view, not to be written.
@@ -243,7 +243,7 @@ class VaryingColumn:
         BadFile
         """
         self._pages.look()
-        return self._taken(*self._ends_of(points))
+        return self._take_values(*self._ends_of(points))
 
     def pieces(self, points: Integers | slice) -> Iterator[VaryingValues]:
         """Values of points, so many points at a time that not too much is held in memory.
@@ -272,16 +272,16 @@ class VaryingColumn:
                 else points[at:end]
             )
             begins, ends = self._ends_of(some)
-            for low, high in _bounded(ends - begins):
+            for low, high in _bound_stretches(ends - begins):
                 self._pages.look()
-                yield self._taken(begins[low:high], ends[low:high])
+                yield self._take_values(begins[low:high], ends[low:high])
 
     def _ends_of(self, points: Integers) -> tuple[Integers, Integers]:
         begins, ends = np.asarray(self._starts[points]), np.asarray(self._starts[points + 1])
         self._check(begins, ends, points)
         return begins, ends
 
-    def _taken(self, begins: Integers, ends: Integers) -> VaryingValues:
+    def _take_values(self, begins: Integers, ends: Integers) -> VaryingValues:
         lengths = ends - begins
         starts = np.concatenate([[0], np.cumsum(lengths)]).astype(np.int64)
         if begins.size and (begins[1:] == ends[:-1]).all():
@@ -294,13 +294,13 @@ class VaryingColumn:
         if wrong.size:
             first = int(wrong[0])
             point = points + first if isinstance(points, int) else int(points[first])
-            raise _damaged(self._path, point)
+            raise _make_damage_error(self._path, point)
 
-    def _mapped(self, path: Path, dtype: np.dtype[Any]) -> NDArray[Any]:
+    def _map_file(self, path: Path, dtype: np.dtype[Any]) -> NDArray[Any]:
         with report_as_user_error(path):
             size = path.stat().st_size
             if size % dtype.itemsize:
-                raise _damaged(path, size // dtype.itemsize)
+                raise _make_damage_error(path, size // dtype.itemsize)
             if not size:
                 return np.empty(0, dtype)
             with path.open("rb") as file:
@@ -309,7 +309,7 @@ class VaryingColumn:
             return np.frombuffer(mapped, dtype)
 
 
-def _bounded(lengths: Integers) -> Iterator[tuple[int, int]]:
+def _bound_stretches(lengths: Integers) -> Iterator[tuple[int, int]]:
     """First and end of stretches with so many values that they may be held in memory."""
     totals, low = np.cumsum(lengths), 0
     while True:
@@ -321,7 +321,7 @@ def _bounded(lengths: Integers) -> Iterator[tuple[int, int]]:
         low = high
 
 
-def _damaged(path: Path, point: int) -> BadFile:
+def _make_damage_error(path: Path, point: int) -> BadFile:
     return BadFile(
         Text(
             "A column of the drive tells wrongly where the values of points begin.",

@@ -132,7 +132,7 @@ class _CentreFinder:
         plane = find_plane(local, steady)
         if plane.flatness > _FLATTEST:
             return
-        fit = self._fitted(plane, local, time, middle, base)
+        fit = self._fit_window(plane, local, time, middle, base)
         if fit.coherence < _LEAST_COHERENCE:
             return
         off_plane = np.linalg.lstsq(steady, local @ plane.normal)[0]
@@ -159,14 +159,14 @@ class _CentreFinder:
         order = np.argsort(led_times)
         led = np.concatenate([first, np.arange(times.size), last])[order]
         times, since = led_times[order], led_times[order] - times[led]
-        centres = centres[led] + since[:, None] * _smoothed(velocities)[led]
+        centres = centres[led] + since[:, None] * _smooth_velocities(velocities)[led]
         normals = normals[led]
         velocity = np.median(velocities, axis=0)
         angles = np.zeros((times.size, 3))
         angles[:, 2] = _headings_deg(times, centres, normals, velocity)
         return Trajectory(times, centres, angles, has_attitude=False)
 
-    def _fitted(
+    def _fit_window(
         self, plane: ScanPlane, local: Floats, time: Floats, middle: float, base: Floats
     ) -> RotationFit:
         flat = PlanePoints(plane.project(local), time, np.zeros(time.size, dtype=np.int64))
@@ -186,7 +186,7 @@ class _CentreFinder:
         return fit_rotation(flat, starts, moves=True, rates_hz=rates)
 
 
-def _smoothed(velocities: Floats) -> Floats:
+def _smooth_velocities(velocities: Floats) -> Floats:
     """Medians of neighbours: one short window gives a velocity badly."""
     padded = np.pad(velocities, ((_NEIGHBOURS // 2,) * 2, (0, 0)), mode="edge")
     windows = np.lib.stride_tricks.sliding_window_view(padded, _NEIGHBOURS, axis=0)

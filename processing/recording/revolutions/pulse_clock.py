@@ -129,7 +129,7 @@ def estimate_clock(samples: Iterable[PointColumns]) -> PulseClock | None:
     step = _common_step(apart)
     if step is None:
         return None
-    interval = _refined(distinct, step)
+    interval = _refine_interval(distinct, step)
     coherence = _coherence(distinct, interval)
     if coherence < _LEAST_COHERENCE:
         return None
@@ -225,7 +225,7 @@ def _common_step(steps: Floats) -> float | None:
     return next(step for strength, step in best if strength >= _AS_STRONG * most)
 
 
-def _refined(chunks: list[Floats], step: float) -> float:
+def _refine_interval(chunks: list[Floats], step: float) -> float:
     for size in _STAGES:
         slopes = [
             _slopes(times, starts, size, step)

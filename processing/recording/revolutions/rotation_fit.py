@@ -151,11 +151,11 @@ def fit_rotation(
         angle = _angles(points.position - start)
         candidates = rates_hz or _candidate_rates(angle, points)
         fits.extend(
-            _refined(some, (rate, start), moves=moves, rounds=_ROUNDS_TO_CHOOSE)
+            _refine_fit(some, (rate, start), moves=moves, rounds=_ROUNDS_TO_CHOOSE)
             for rate in candidates
         )
     best = max(fits, key=lambda fit: fit.coherence)
-    return _refined(points, (best.rate_hz, best.centre), moves=moves, rounds=_ROUNDS)
+    return _refine_fit(points, (best.rate_hz, best.centre), moves=moves, rounds=_ROUNDS)
 
 
 def _angles(position: Floats) -> Floats:
@@ -227,7 +227,7 @@ def warm_up() -> None:
     _strengths(50.0, 1.0, 2, (np.zeros(2), np.zeros(2), np.zeros(2, np.int64)))
 
 
-def _refined(
+def _refine_fit(
     points: PlanePoints, begin: tuple[float, Floats], *, moves: bool, rounds: int
 ) -> RotationFit:
     """Gauss-Newton on centre, velocity, rate and the windows' phases; far misses count less."""

@@ -43,8 +43,8 @@ _LEAST_S = 1e-9
 """Guard of divisions and of ties: far shorter than any interval between pulses."""
 
 _SPARE_REVOLUTIONS = 3
-"""So many before its first point a segment's rows may begin: two that `_expected` has to spare and
-the fold's share of one."""
+"""So many before its first point a segment's rows may begin: two that `_expect_rows` has to spare
+and the fold's share of one."""
 
 _SHARED_REVOLUTIONS = 2
 """That chunks have in common: one that begins in the chunk before, and what is searched about
@@ -103,10 +103,10 @@ def find_rows(
     """
     segments, interval_s = _first_pass(points, clock, mirror_rotation, pulses, monitor)
     monitor.report(0.6)
-    revolutions = [(segment, _expected(segment, mirror_rotation)) for segment in segments]
+    revolutions = [(segment, _expect_rows(segment, mirror_rotation)) for segment in segments]
     _second_pass(points, mirror_rotation, pulses, revolutions, monitor)
     monitor.report(0.95)
-    return _assembled(revolutions, interval_s)
+    return _assemble_rows(revolutions, interval_s)
 
 
 def _first_pass(
@@ -184,7 +184,7 @@ class _Segments:
         self._ended.append(_Segment(self._start, end, phase))
 
 
-def _expected(segment: _Segment, mirror_rotation: MirrorRotation) -> _SegmentRows:
+def _expect_rows(segment: _Segment, mirror_rotation: MirrorRotation) -> _SegmentRows:
     """The revolutions that may hold points of the segment, with one to spare at both ends."""
     fold = mirror_rotation.fold_angle * np.sign(mirror_rotation.rate_hz) / (2 * np.pi)
     first, last = (
@@ -271,7 +271,9 @@ def _anchor(
     revolutions.anchor_pulse[asked] = numbers[nearer]
 
 
-def _assembled(revolutions: list[tuple[_Segment, _SegmentRows]], interval_s: float) -> FoundRows:
+def _assemble_rows(
+    revolutions: list[tuple[_Segment, _SegmentRows]], interval_s: float
+) -> FoundRows:
     segments = [segment for segment, _ in revolutions]
     times, folds, ends, numbers = [], [], [], []
     last_time, last_fold = 0.0, 0

@@ -33,6 +33,13 @@ _LEAST_SHARE = 0.9
 """Share of times that a trajectory must cover for its clock to be taken as that of the points. By
 trial; no measurement is recorded."""
 
+_BETTER_BY = 0.01
+"""Share of times that a later shift must cover more than a simpler one to be taken instead. By
+trial; no measurement is recorded."""
+
+_ALL = 0.999
+"""Share of times from which no other shift is tried: a point in a thousand may be stray."""
+
 _START = datetime(1980, 1, 6, tzinfo=UTC)
 """Of GPS time."""
 
@@ -176,9 +183,9 @@ def match_clock(
     best_shift, best_share = 0.0, 0.0
     for shift in _shifts(times, trajectory, is_adjusted_standard=is_adjusted_standard):
         share = _covered_share(times + shift, trajectory)
-        if share > best_share + 0.01:
+        if share > best_share + _BETTER_BY:
             best_shift, best_share = shift, share
-        if share >= 0.999:
+        if share >= _ALL:
             break
     if best_share >= _LEAST_SHARE:
         return best_shift

@@ -53,7 +53,7 @@ class PathReach(NamedTuple):
 
 
 @kernel
-def _solved(
+def _solve_station(
     east: float, north: float, guess: float, step_m: float, positions: Floats, directions: Floats
 ) -> tuple[float, float]:
     """Station and across of a place; NaN, NaN where no section near the guess holds it.
@@ -152,7 +152,9 @@ def stations_kernel(
         guess = stations[j] + share * (stations[j + 1] - stations[j])
         if not _may_count(local[i], guess, vehicle_path, far_m, heights):
             continue
-        station, across = _solved(local[i, 0], local[i, 1], guess, step_m, positions, directions)
+        station, across = _solve_station(
+            local[i, 0], local[i, 1], guess, step_m, positions, directions
+        )
         if abs(station - guess) <= reach_m:
             found[i, 0], found[i, 1] = station, across
             found[i, 2] = local[i, 2] - _height_at(station, step_m, positions)
@@ -167,7 +169,9 @@ def records_kernel(
     length = step_m * (positions.shape[0] - 1)
     reached = 0.0
     for i in range(local.shape[0]):
-        station, _ = _solved(local[i, 0], local[i, 1], guesses[i], step_m, positions, directions)
+        station, _ = _solve_station(
+            local[i, 0], local[i, 1], guesses[i], step_m, positions, directions
+        )
         if np.isnan(station):
             station = guesses[i]
         reached = max(reached, min(station, length))

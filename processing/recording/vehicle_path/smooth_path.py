@@ -26,6 +26,9 @@ SMOOTHED_M = 1.0
 """Standard deviation of the bell over which positions are averaged along the vehicle's path:
 an axle's distance is some three of it, so no vehicle turns faster than this follows."""
 
+_LEAST_CHORD_M = 1e-6
+"""Shorter chords have no direction: far below the millimetre of delivered positions."""
+
 
 class SmoothPath(NamedTuple):
     """A path in plan with its heights, sampled at even steps.
@@ -103,10 +106,10 @@ def smooth_way(xyz: Floats) -> SmoothPath | None:
     corners = _means(xyz)
     if len(corners) < 2:
         return None
-    even = _at_even_steps(_rounded(corners))
+    even = _at_even_steps(_round_corners(corners))
     if len(even) < 3:
         return None
-    even = _at_even_steps(_averaged(even))
+    even = _at_even_steps(_average_positions(even))
     if len(even) < 3:
         return None
     step = float(np.hypot(*np.diff(even[:, :2], axis=0).T).sum()) / (len(even) - 1)
@@ -140,13 +143,13 @@ def _means(xyz: Floats) -> Floats:
     return np.asarray(positions[kept])
 
 
-def _rounded(corners: Floats) -> Floats:
+def _round_corners(corners: Floats) -> Floats:
     """Places along a cubic through corners, some five centimetres apart or nearer."""
     chords = np.diff(corners, axis=0)
     lengths = np.hypot(chords[:, 0], chords[:, 1])
-    is_way = lengths > 1e-6
-    corners = np.concatenate([corners[:1], corners[1:][is_way]])
-    lengths, chords = lengths[is_way], chords[is_way]
+    is_long = lengths > _LEAST_CHORD_M
+    corners = np.concatenate([corners[:1], corners[1:][is_long]])
+    lengths, chords = lengths[is_long], chords[is_long]
     if len(corners) < 3:
         return corners
     # Tangents per metre: the parabola's through a corner and its neighbours.
@@ -177,7 +180,7 @@ def _at_even_steps(positions: Floats) -> Floats:
     return np.column_stack([np.interp(wanted, along, axis) for axis in positions.T])
 
 
-def _averaged(even: Floats) -> Floats:
+def _average_positions(even: Floats) -> Floats:
     aside = min(round(3 * SMOOTHED_M / STEP_M), len(even) - 1)
     weights = np.exp(-0.5 * (np.arange(-aside, aside + 1) * STEP_M / SMOOTHED_M) ** 2)
     weights /= weights.sum()

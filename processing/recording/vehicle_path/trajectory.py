@@ -126,7 +126,7 @@ class Trajectory:
         OutOfRange
             For a time that is not covered.
         """
-        times = self._checked(time)
+        times = self._check_times(time)
         return np.column_stack([np.interp(times, self.time, axis) for axis in self.xyz.T])
 
     def rotations_at(self, time: ArrayLike) -> NDArray[np.float64]:
@@ -146,7 +146,7 @@ class Trajectory:
         OutOfRange
             For a time that is not covered.
         """
-        w, x, y, z = self._quaternions_at(self._checked(time))
+        w, x, y, z = self._quaternions_at(self._check_times(time))
         rotations = np.empty((w.size, 3, 3))
         rotations[:, 0, 0] = 1 - 2 * (y * y + z * z)
         rotations[:, 0, 1] = 2 * (x * y - w * z)
@@ -179,7 +179,7 @@ class Trajectory:
         OutOfRange
             For a time that is not covered.
         """
-        times = self._checked(time)
+        times = self._check_times(time)
         x, y, z = (
             axis - np.interp(times, self.time, own)
             for axis, own in zip(np.asarray(xyz, dtype=np.float64).T, self.xyz.T, strict=True)
@@ -222,7 +222,7 @@ class Trajectory:
         length = np.sqrt(w * w + x * x + y * y + z * z)
         return w / length, x / length, y / length, z / length
 
-    def _checked(self, time: ArrayLike) -> NDArray[np.float64]:
+    def _check_times(self, time: ArrayLike) -> NDArray[np.float64]:
         times = np.atleast_1d(np.asarray(time, dtype=np.float64))
         covered = self.covers(times)
         if covered.all():

@@ -130,7 +130,7 @@ def order_by_grid(
             return grid.cells_of(columns[COLUMN]), columns["return_number"]
 
         sort_points(folder, names(), count, by_cell, PartMonitor(monitor, 0.2, 0.8))
-    if _repeated(folder, grid, count) > _MOST_REPEATED * count:
+    if _count_repeated(folder, grid, count) > _MOST_REPEATED * count:
         return NoGrid(_CONTRADICTION.filled(why=_REPEATED))
     if not _has_neighbours(folder, grid, count):
         return NoGrid(_CONTRADICTION.filled(why=_NO_NEIGHBOURS))
@@ -186,7 +186,7 @@ def _is_in_order(folder: Path, grid: ScanGrid, count: int, monitor: Monitor) -> 
     return True
 
 
-def _repeated(folder: Path, grid: ScanGrid, count: int) -> int:
+def _count_repeated(folder: Path, grid: ScanGrid, count: int) -> int:
     """Points in the cell of the point before that are the same return."""
     repeated, last = 0, (-1, -1)
     for cells, returns in _cells(folder, grid, count):

@@ -18,6 +18,12 @@ _LEAST_CELL_M = 1e-3
 _MOST_CELLS = 1e10
 """More would not fit into memory, as facts of their tiles."""
 
+_MOST_ACROSS = 1e7
+"""Cells across: rows and columns of tiles stay far below what 32 bits count."""
+
+_EDGE_SLACK = 1e-9
+"""Of a cell: a side of whole cells has no more of them for the rounding of a division."""
+
 _COARSEST, _FINEST = 7, 24
 """Levels of division that are tried: 2 to the power of so many cells across."""
 
@@ -101,9 +107,9 @@ def top_view_of(
     cell_m = math.sqrt(area / max(count, 1))
     # What tiles need grows with the cells, filled or not; long strips may have fine ones.
     cell_m = max(cell_m, math.sqrt(width * height / _MOST_CELLS), _LEAST_CELL_M)
-    cell_m = max(cell_m, max(width, height) / 1e7)
+    cell_m = max(cell_m, max(width, height) / _MOST_ACROSS)
     # Points on the outer edges are in the last cells.
-    columns, rows = (math.ceil(side / cell_m - 1e-9) for side in (width, height))
+    columns, rows = (math.ceil(side / cell_m - _EDGE_SLACK) for side in (width, height))
     return TopView(float(low[0]), float(high[1]), cell_m, columns, rows)
 
 

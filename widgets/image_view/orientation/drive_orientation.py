@@ -168,10 +168,10 @@ def _positions_of_rows(drive: Drive, image: PointCloudImage, rows: NDArray[np.in
             step = max(1, int(end - start) // _POINTS_PER_ROW)
             last = np.median(drive.xyz(slice(int(start), int(end), step)), axis=0)
         positions[index] = last
-    return _smoothed(positions)
+    return _smooth_positions(positions)
 
 
-def _smoothed(positions: Floats) -> Floats:
+def _smooth_positions(positions: Floats) -> Floats:
     """Middles of rows jump from wall to wall; a running mean leaves the way of the drive."""
     reach = min(25, (positions.shape[0] - 1) // 2)
     if reach < 1:

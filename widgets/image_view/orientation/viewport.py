@@ -139,20 +139,20 @@ class Viewport:
     def to_picture(self, x: float, y: float) -> tuple[float, float]:
         """Picture coordinates of a position in the widget."""
         middle = self.middle
-        du, dv = self._moved(x - middle[0], y - middle[1])
+        du, dv = self._to_picture_step(x - middle[0], y - middle[1])
         return self.centre[0] + du, self.centre[1] + dv
 
     def zoomed(self, factor: float, x: float, y: float) -> Viewport:
         """Larger or smaller; what is at the position stays there."""
         before = self.to_picture(x, y)
-        scaled = replace(self, zoom=self._limited(self.zoom * factor))
+        scaled = replace(self, zoom=self._limit_zoom(self.zoom * factor))
         after = scaled.to_picture(x, y)
         moved = (before[0] - after[0], before[1] - after[1])
         return scaled.centred_on(scaled.centre[0] + moved[0], scaled.centre[1] + moved[1])
 
     def panned(self, right_px: float, down_px: float) -> Viewport:
         """The picture pushed by so many screen pixels."""
-        du, dv = self._moved(right_px, down_px)
+        du, dv = self._to_picture_step(right_px, down_px)
         return self.centred_on(self.centre[0] - du, self.centre[1] - dv)
 
     def rolled(self, windows: float) -> Viewport:
@@ -195,7 +195,7 @@ class Viewport:
         shrunk = min(
             1.0, 0.8 * self.along_px / max(wide, 1.0), 0.8 * self.across_px / max(high, 1.0)
         )
-        scaled = replace(self, zoom=self._limited(self.zoom * shrunk))
+        scaled = replace(self, zoom=self._limit_zoom(self.zoom * shrunk))
         return scaled.centred_on((span.left + span.right) / 2, (span.top + span.bottom) / 2)
 
     def with_start(self) -> Viewport:
@@ -233,13 +233,13 @@ class Viewport:
             return (0.0, scale_y), (scale_x, 0.0)
         return (scale_x, 0.0), (0.0, scale_y)
 
-    def _moved(self, right_px: float, down_px: float) -> tuple[float, float]:
+    def _to_picture_step(self, right_px: float, down_px: float) -> tuple[float, float]:
         """How far in u and v a way on the screen leads."""
         scale_x, scale_y = self._scales
         right, down = right_px / scale_x, down_px / scale_y
         return (down, right) if self.orientation.is_vertical else (right, down)
 
-    def _limited(self, zoom: float) -> float:
+    def _limit_zoom(self, zoom: float) -> float:
         u, v = self.extent
         least = 0.5 * min(self.along_px / (u * self.stretch), self.across_px / v)
         return min(max(zoom, min(least, 1.0)), max(_MOST_ZOOM / max(self.stretch, 1.0), 16.0))

@@ -136,7 +136,7 @@ class DrawLine(DrawingTool):
             self._bend = bend_at(self._path, vertex, hit.reach_m)
             if self._bend is not None:
                 return
-        self._add(self._squared(hit, vertex))
+        self._add(self._square_vertex(hit, vertex))
 
     @override
     def move(self, hit: Hit) -> None:
@@ -144,7 +144,9 @@ class DrawLine(DrawingTool):
         if self._bend is not None and vertex is not None:
             self._bend = self._bend.moved_to(vertex)
         elif self._path.end is not None:
-            self._preview = None if vertex is None else self._squared(hit, vertex, is_final=False)
+            self._preview = (
+                None if vertex is None else self._square_vertex(hit, vertex, is_final=False)
+            )
         self._show()
 
     @override
@@ -175,7 +177,7 @@ class DrawLine(DrawingTool):
         if crossing is not None:
             self.reported.emit(CROSSES.filled(east=crossing[0], north=crossing[1]))
             return
-        self._asked_for = self._drawn()
+        self._asked_for = self._interrupted_drawing()
         self._path, self._dropped = DrawnPath(), None
         self._ask_for(vertices)
         self._asked_for = None
@@ -242,12 +244,12 @@ class DrawLine(DrawingTool):
     def put_down(self) -> None:
         self._stop_following()
         if len(self._path.vertices) > 1 and (self._base is None or self._path.legs):
-            self._dropped = self._drawn()
+            self._dropped = self._interrupted_drawing()
         self._path, self._preview, self._bend, self._base = DrawnPath(), None, None, None
         self._is_turned = self._bridges = self._completes = False
         self._show()
 
-    def _drawn(self) -> InterruptedDrawing:
+    def _interrupted_drawing(self) -> InterruptedDrawing:
         return InterruptedDrawing(self._path, self._base, self._is_turned)
 
     def _take_up(self, drawn: InterruptedDrawing) -> None:
@@ -288,10 +290,10 @@ class DrawLine(DrawingTool):
         if self._mode is LegMode.ARC and not path.pending:
             self._path = path.with_pending(vertex)
         else:
-            self._path = self._grown(path, start, vertex, is_final=True)
+            self._path = self._extend_path(path, start, vertex, is_final=True)
         self._show()
 
-    def _grown(
+    def _extend_path(
         self, path: DrawnPath, start: Vertex, vertex: Vertex, *, is_final: bool
     ) -> DrawnPath:
         """The path with one more click; curves get their heights from the points at last."""
@@ -317,7 +319,7 @@ class DrawLine(DrawingTool):
         vertices = tuple(one if one in clicked else next(ground) for one in leg.vertices)
         return replace(leg, vertices=vertices)
 
-    def _squared(self, hit: Hit, vertex: Vertex, *, is_final: bool = True) -> Vertex:
+    def _square_vertex(self, hit: Hit, vertex: Vertex, *, is_final: bool = True) -> Vertex:
         """The vertex, or with Shift the place straight on or across."""
         vertices = self._path.vertices
         if not hit.modifiers & Qt.KeyboardModifier.ShiftModifier or len(vertices) < 2:
@@ -391,7 +393,7 @@ class DrawLine(DrawingTool):
         shown, preview = path.vertices, self._preview
         coming: tuple[Vertex, ...] = ()
         if preview is not None and self._bend is None and not self._is_following:
-            grown = self._grown(path, end, preview, is_final=False)
+            grown = self._extend_path(path, end, preview, is_final=False)
             kept = len(path.vertices)
             if self._mode is LegMode.SPLINE and path.legs and path.legs[-1].mode is LegMode.SPLINE:
                 kept -= len(path.legs[-1].vertices)

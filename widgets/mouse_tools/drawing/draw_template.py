@@ -194,7 +194,7 @@ class DrawTemplate(MouseTool):
     def _vertex_of(self, hit: Hit, cut: Cut) -> Vertex | None:
         """Where a click lands on the section's plane: beside a measured point, or free of them."""
         is_free = bool(hit.modifiers & Qt.KeyboardModifier.ControlModifier)
-        on_plane = None if hit.ray is None else _met(cut, hit)
+        on_plane = None if hit.ray is None else _meet_cut(cut, hit)
         if hit.position is not None and (on_plane is None or not (is_free or self._draws_zone)):
             section = cut.to_section([hit.position.xyz])
             if cut.holds(section)[0]:
@@ -244,7 +244,7 @@ def _apart(cut: Cut, one: Vertex, other: Vertex) -> float:
     return math.hypot(across, up)
 
 
-def _met(cut: Cut, hit: Hit) -> Position | None:
+def _meet_cut(cut: Cut, hit: Hit) -> Position | None:
     """Where a line of sight goes through the plane of the section."""
     if hit.ray is None:
         return None

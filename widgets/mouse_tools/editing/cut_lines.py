@@ -116,7 +116,9 @@ class TrimLine(EditingTool):
             self.reported.emit(PICK_REST)
             return
         try:
-            self._replace(TRIM, picked, trim_at(picked, cutter, _clicked(picked, hit)))
+            self._replace(
+                TRIM, picked, trim_at(picked, cutter, _find_clicked_position(picked, hit))
+            )
         except UserError as refusal:
             self._report_refusal(refusal)
 
@@ -125,7 +127,7 @@ class TrimLine(EditingTool):
         self._cutter = ""
 
 
-def _clicked(line: Feature, hit: Hit) -> Position:
+def _find_clicked_position(line: Feature, hit: Hit) -> Position:
     """Where the line was clicked: the point there, or the middle of the segment."""
     if hit.vertex >= 0:
         return line.vertices[hit.vertex].xyz
@@ -145,6 +147,6 @@ def _on_segment(line: Feature, segment: int, hit: Hit) -> Vertex:
 
 
 def _nearer_end(line: Feature, hit: Hit) -> Literal["start", "end"]:
-    clicked = _clicked(line, hit)
+    clicked = _find_clicked_position(line, hit)
     first, last = (math.dist(line.vertices[position].xyz, clicked) for position in (0, -1))
     return "start" if first < last else "end"

@@ -70,7 +70,7 @@ class EditVertices(VertexDragTool):
         if feature is not None and 0 <= hit.vertex < len(feature.vertices):
             self._remove_vertex(feature, hit.vertex)
             return
-        features = self._chosen()
+        features = self._selected_features()
         if features:
             self.change_requested.emit(*removal_of(features))
 

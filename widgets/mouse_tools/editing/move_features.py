@@ -67,7 +67,7 @@ class MoveFeatures(EditingTool):
         if grip is None:
             self.reported.emit(NO_POINT)
             return
-        self._held, self._from, self._to = self._chosen(), grip, None
+        self._held, self._from, self._to = self._selected_features(), grip, None
 
     @override
     def move(self, hit: Hit) -> None:

@@ -69,7 +69,7 @@ class Select(VertexDragTool):
         if boxed.modifiers & _SHIFT:
             points = selection.points
             for drive, added in boxed.points.items():
-                points[drive] = _joined(points.get(drive), added)
+                points[drive] = _join_points(points.get(drive), added)
             selection.choose_features(selection.features | boxed.features)
             selection.choose_points(points)
         else:
@@ -78,7 +78,7 @@ class Select(VertexDragTool):
 
     @override
     def delete(self) -> None:
-        features = self._chosen()
+        features = self._selected_features()
         if features:
             self.change_requested.emit(*removal_of(features))
 
@@ -103,5 +103,5 @@ class Select(VertexDragTool):
             self._cursor.move_to(hit.position)
 
 
-def _joined(one: NDArray[np.int64] | None, other: NDArray[np.int64]) -> NDArray[np.int64]:
+def _join_points(one: NDArray[np.int64] | None, other: NDArray[np.int64]) -> NDArray[np.int64]:
     return other if one is None else np.concatenate([one, other])

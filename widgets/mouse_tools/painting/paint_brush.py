@@ -43,7 +43,7 @@ class PaintBrush(PaintTool):
     @override
     def press(self, hit: Hit) -> None:
         self._slab = None if hit.ray is None else hit.ray.slab
-        measured = _measured(hit)
+        measured = _measured_point(hit)
         if self._slab is not None:
             self._drives = self._drives_in_sections()
         elif measured is not None:
@@ -77,7 +77,7 @@ class PaintBrush(PaintTool):
                 return None
             position: Floats = self._slab.to_section([hit.ray.origin])[0, :2]
             return position
-        measured = _measured(hit)
+        measured = _measured_point(hit)
         if measured is None or measured.drive not in self._drives or hit.position is None:
             return None
         return np.array(hit.position.xyz)
@@ -114,5 +114,5 @@ class PaintBrush(PaintTool):
         )
 
 
-def _measured(hit: Hit) -> PointReference | None:
+def _measured_point(hit: Hit) -> PointReference | None:
     return None if hit.position is None else hit.position.measured

@@ -140,7 +140,7 @@ class AttributeForm(QWidget):
                 for kind, count in kinds.most_common(_MOST_KINDS_LISTED)
             ]
             listed = "\n".join((*names, "…") if len(kinds) > len(names) else names)
-            self._form.addRow(_wrapped(listed))
+            self._form.addRow(_wrap_words(listed))
 
     def _add_kind(self) -> QuietBox:
         """Over the whole width, as a heading: names of kinds are long."""
@@ -193,7 +193,7 @@ class AttributeForm(QWidget):
         if len(self._features) == 1:
             # Attributes that the catalogue doesn't know: shown as they are.
             for id_, value in self._others(self._features[0]).items():
-                self._add_row(id_, _wrapped(words_of_value(value, None, self._language)))
+                self._add_row(id_, _wrap_words(words_of_value(value, None, self._language)))
 
     def _add_facts(self, feature: Feature) -> None:
         for title, words in facts_of(feature, self._language):
@@ -238,7 +238,7 @@ class AttributeForm(QWidget):
         self.status_chosen.emit(Status(self._status.currentData()))
 
 
-def _wrapped(words: str) -> QLabel:
+def _wrap_words(words: str) -> QLabel:
     label = QLabel(words)
     label.setWordWrap(True)
     label.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)

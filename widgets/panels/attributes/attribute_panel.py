@@ -78,10 +78,10 @@ class AttributePanel(QWidget):
         empty = self._scroll.widget()
         return (empty.text(),) if isinstance(empty, QLabel) else ()
 
-    def _chosen(self) -> tuple[Feature, ...]:
-        return self._found(sorted(self._selection.features))
+    def _selected_features(self) -> tuple[Feature, ...]:
+        return self._find_features(sorted(self._selection.features))
 
-    def _found(self, ids: Iterable[str]) -> tuple[Feature, ...]:
+    def _find_features(self, ids: Iterable[str]) -> tuple[Feature, ...]:
         """The features of these ids that are still there."""
         features = map(self._source.feature, ids)
         return tuple(feature for feature in features if feature is not None)
@@ -120,11 +120,13 @@ class AttributePanel(QWidget):
     def _show_chosen(self) -> None:
         """Show what is chosen; behind another panel not before it can be seen."""
         self._is_stale = not self.isVisible()
-        self._show(() if self._is_stale else self._chosen())
+        self._show(() if self._is_stale else self._selected_features())
 
     def _shown_now(self) -> tuple[Feature, ...]:
         """The features that the form is for, as they are now."""
-        return () if self._form is None else self._found(one.id for one in self._form.features)
+        return (
+            () if self._form is None else self._find_features(one.id for one in self._form.features)
+        )
 
     def _ask_for(self, label: Text, change: Change) -> None:
         if not change.is_empty:

@@ -125,7 +125,7 @@ class ClassPanel(QWidget):
             tool = name_of_tool(one.tool, self._language)
             if not self._rows or self._rows[-1] is None or self._rows[-1].tool != one.tool:
                 self._rows.append(None)
-                rows.append((self._untouched_name(one.tool), _untouched(one)))
+                rows.append((self._untouched_name(one.tool), _make_untouched(one)))
             self._rows.append(one)
             rows.append((self._name_of(one, tool), one.counts))
         with QSignalBlocker(self._table):  # nobody chose another row
@@ -297,7 +297,7 @@ class ClassPanel(QWidget):
         self._ask_if_seen()
 
 
-def _untouched(one: ClassEvaluation) -> BinaryConfusionMatrix:
+def _make_untouched(one: ClassEvaluation) -> BinaryConfusionMatrix:
     """What the same truth gives where every point is kept."""
     if asked_classes()[one.tool].removes:
         return one.counts.if_nothing_was_positive()

@@ -280,7 +280,7 @@ class StudyPlot:
         for number, score in enumerate(scores):
             box = self._box(field, number)
             share = 0.0 if math.isnan(score) or high == low else (score - low) / (high - low)
-            colour = _mixed(share)
+            colour = _mix_colours(share)
             painter.fillRect(box.adjusted(0.5, 0.5, -0.5, -0.5), colour)
             word = "–" if math.isnan(score) else f"{100 * score:.1f}"
             if painter.fontMetrics().horizontalAdvance(word) < width and (
@@ -360,7 +360,7 @@ def _y_of(field: QRectF, value: float, low: float) -> float:
     return field.bottom() - field.height() * (value - low) / (1.0 - low)
 
 
-def _mixed(share: float) -> QColor:
+def _mix_colours(share: float) -> QColor:
     """Between the ends of the ramp."""
     one, other = _LIGHT, _DARK
     red = one.red() + (other.red() - one.red()) * share

@@ -114,15 +114,15 @@ def _renderer(name: str, palette: QPalette) -> QSvgRenderer:
     source = picture_source(name)
     for drawn, colour in (
         (_LINES, ink),
-        (_BESIDE, _mixed(ground, ink, _BESIDE_SHARE)),
-        (_BODIES, _mixed(ground, ink, _BODY_SHARE)),
+        (_BESIDE, _mix_colours(ground, ink, _BESIDE_SHARE)),
+        (_BODIES, _mix_colours(ground, ink, _BODY_SHARE)),
         (_MEANT, meant),
     ):
         source = source.replace(drawn, colour.name())
     return QSvgRenderer(QByteArray(source.encode()))
 
 
-def _mixed(first: QColor, second: QColor, share: float) -> QColor:
+def _mix_colours(first: QColor, second: QColor, share: float) -> QColor:
     def part(one: float, other: float) -> float:
         return one * (1 - share) + other * share
 

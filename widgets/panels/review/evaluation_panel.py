@@ -78,7 +78,7 @@ class EvaluationPanel(QWidget):
         self._map_scores: Mapping[str, FileScore] = {}
         self._against_map = QLabel(self)
         self._against_map.setWordWrap(True)
-        self._around_map_score = self._scrolled(self._against_map)
+        self._around_map_score = self._make_scroll_area(self._against_map)
         self._table = self._new_table()
         self._plot = ReliabilityView(self)
         self._halves = QSplitter(Qt.Orientation.Horizontal, self)
@@ -241,7 +241,7 @@ class EvaluationPanel(QWidget):
         layout.addWidget(button, 0, Qt.AlignmentFlag.AlignLeft)
         return half
 
-    def _scrolled(self, label: QLabel) -> QScrollArea:
+    def _make_scroll_area(self, label: QLabel) -> QScrollArea:
         """Words that ask for no height on a low screen; hidden until there are some."""
         area = QScrollArea(self)
         area.setWidget(label)

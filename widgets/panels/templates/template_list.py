@@ -115,7 +115,7 @@ class TemplateList(QWidget):
 
     def add(self, template: ProfileTemplate) -> None:
         """Keep a new template, under a name that is free, and choose it."""
-        self._store(lambda store: _added(store, template))
+        self._store(lambda store: _add_template(store, template))
 
     def replace(self, template: ProfileTemplate) -> None:
         """Keep a changed template under its name."""
@@ -139,13 +139,13 @@ class TemplateList(QWidget):
         """Give the chosen template another name."""
         template = self.current
         if template is not None:
-            self._store(lambda store: _renamed(store, template.name, name))
+            self._store(lambda store: _rename_template(store, template.name, name))
 
     def remove(self) -> None:
         """Forget the chosen template."""
         template = self.current
         if template is not None:
-            self._store(lambda store: _removed(store, template.name))
+            self._store(lambda store: _remove_template(store, template.name))
 
     def _make_menu(self) -> QMenu:
         menu = QMenu(self)
@@ -175,7 +175,7 @@ class TemplateList(QWidget):
     def _on_list_item_changed(self, item: QListWidgetItem) -> None:
         before = _name_of(item)
         if item.text() != before:
-            self._store(lambda store: _renamed(store, before, item.text()))
+            self._store(lambda store: _rename_template(store, before, item.text()))
 
     def _on_menu_about_to_show(self) -> None:
         is_there = self._list.currentItem() is not None
@@ -210,7 +210,7 @@ def _name_of(item: QListWidgetItem) -> str:
     return str(item.data(Qt.ItemDataRole.UserRole))
 
 
-def _added(store: TemplateStore, template: ProfileTemplate) -> str:
+def _add_template(store: TemplateStore, template: ProfileTemplate) -> str:
     named = replace(template, name=store.free_name(template.name))
     store.put(named)
     return named.name
@@ -221,11 +221,11 @@ def _put(store: TemplateStore, template: ProfileTemplate) -> str:
     return template.name
 
 
-def _renamed(store: TemplateStore, before: str, name: str) -> str:
+def _rename_template(store: TemplateStore, before: str, name: str) -> str:
     store.rename(before, name)
     return name.strip()
 
 
-def _removed(store: TemplateStore, name: str) -> str:
+def _remove_template(store: TemplateStore, name: str) -> str:
     store.remove(name)
     return ""

@@ -184,7 +184,7 @@ class TemplatePanel(QWidget):
             return
         zones = drawn.about(lying.anchor)
         if lying.is_mirrored:
-            zones = tuple(_mirrored(zone) for zone in zones)
+            zones = tuple(_mirror_profile(zone) for zone in zones)
         try:
             changed = replace(template, empty=(*template.empty, *zones))
         except UserError as error:
@@ -280,5 +280,5 @@ class TemplatePanel(QWidget):
             self._lying = _Lying((easting, northing, height), preview.is_mirrored)
 
 
-def _mirrored(profile: TemplateProfile) -> TemplateProfile:
+def _mirror_profile(profile: TemplateProfile) -> TemplateProfile:
     return tuple((0.0 - offset, height) for offset, height in profile)

@@ -37,16 +37,16 @@ class FrameBudget:
 
     def record_moving(self, points: int, seconds: float) -> None:
         """Learn from a frame that was drawn while the camera moved."""
-        self._moving = _adapted(self._moving, points, seconds, _MOVING_S)
+        self._moving = _adapt_budget(self._moving, points, seconds, _MOVING_S)
         self._moving = min(max(self._moving, _LEAST), _MOST_MOVING)
 
     def record_still(self, points: int, seconds: float) -> None:
         """Learn from a frame that was drawn at rest."""
-        self._still = _adapted(self._still, points, seconds, _STILL_S)
+        self._still = _adapt_budget(self._still, points, seconds, _STILL_S)
         self._still = min(max(self._still, _LEAST), _MOST_STILL)
 
 
-def _adapted(budget: float, points: int, seconds: float, wanted_s: float) -> float:
+def _adapt_budget(budget: float, points: int, seconds: float, wanted_s: float) -> float:
     step = min(max(wanted_s / max(seconds, 1e-3), 0.7), 1.25)
     # A frame far below the budget says nothing about what the budget would take.
     if step > 1.0 and points < 0.5 * budget:

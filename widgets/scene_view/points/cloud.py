@@ -159,7 +159,7 @@ class PointCloudLayer(QObject):
         before, self._marked = self._marked, self._to_mark
         none = np.empty(0, np.int64)
         touched = {
-            drive_id: self._touched(
+            drive_id: self._find_touched_tiles(
                 drive_id,
                 np.setxor1d(
                     before.get(drive_id, none), self._marked.get(drive_id, none), assume_unique=True
@@ -182,7 +182,7 @@ class PointCloudLayer(QObject):
     def refresh_labels(self, drive_id: str, points: NDArray[np.int64]) -> None:
         """Labels of points changed: get the colours of the tiles that show them again."""
         if self._showing.look.follows_labels:
-            touched = self._touched(drive_id, points)
+            touched = self._find_touched_tiles(drive_id, points)
             self._shown = {
                 tile: shown
                 for tile, shown in self._shown.items()
@@ -216,7 +216,7 @@ class PointCloudLayer(QObject):
         self._marks.stop()
         self._feed.close()
 
-    def _touched(
+    def _find_touched_tiles(
         self, drive_id: str, points: NDArray[np.int64]
     ) -> TouchedTiles | tuple[TileKey, ...]:
         for drive, kind in self._drives:

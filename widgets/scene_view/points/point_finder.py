@@ -93,7 +93,7 @@ class PointFinder:
             hits.search_tile(drive, image, key, self._clip, hides_noise=self._hides_noise)
 
         sight = sight_at(projection, self._origin, x, y)
-        return self._found(pick(np.concatenate(entries), search, sight))
+        return self._find_point(pick(np.concatenate(entries), search, sight))
 
     def drawn(
         self, shown: Sequence[DrawnTile], projection: SceneProjection, x: float, y: float
@@ -112,7 +112,7 @@ class PointFinder:
         low = np.array([one.low for one in tiles], dtype=np.float64)
         high = np.array([one.high for one in tiles], dtype=np.float64)
         entries = entry_depths(low, high, ray_at(projection, np.zeros(3), x, y))
-        return self._found(pick(entries, search, sight_at(projection, self._origin, x, y)))
+        return self._find_point(pick(entries, search, sight_at(projection, self._origin, x, y)))
 
     def enclosed(
         self, projection: SceneProjection, outline: Floats
@@ -174,7 +174,7 @@ class PointFinder:
         rows, columns = image.pixel_of(np.array([reference.point]))
         return [(drive.id, TileKey(0, int(rows[0]) // TILE, int(columns[0]) // TILE))]
 
-    def _found(self, hit: RayHit | None) -> FoundPoint | None:
+    def _find_point(self, hit: RayHit | None) -> FoundPoint | None:
         if hit is None:
             return None
         drive, _ = self._drives[hit.drive_id]

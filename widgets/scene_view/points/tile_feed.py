@@ -180,7 +180,7 @@ class TileFeed(QObject):
             shown = tile
             if known.get(tile.id) != replace(request.showing, clip=tile.clip):
                 try:
-                    shown = _coloured(tile, drive, request.showing.look)
+                    shown = _colour_tile(tile, drive, request.showing.look)
                 except UserError:
                     continue  # the image view says why; the points keep the colours they have
             done.append(
@@ -248,7 +248,7 @@ def _with_their_points(request: SceneRequest) -> frozenset[TileId]:
     )
 
 
-def _coloured(tile: SceneTile, drive: Drive, look: PointStyle) -> SceneTile:
+def _colour_tile(tile: SceneTile, drive: Drive, look: PointStyle) -> SceneTile:
     """The tile before it was clipped, in other colours."""
     whole = tile if tile.whole is None else tile.whole
     attribute = most_telling_attribute(drive, look.attribute)

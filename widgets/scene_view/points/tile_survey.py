@@ -78,7 +78,7 @@ class TileSurvey:
                 continue
             if has_opened and time.monotonic() - began_at > _AT_ONCE_S:
                 break
-            self._pyramids[one] = _opened(*one)
+            self._pyramids[one] = _open_pyramid(*one)
             has_opened = True
         return has_opened
 
@@ -90,7 +90,7 @@ class TileSurvey:
         return sorted(self._drives, key=lambda one: _distance_m(one[0], self._eye))
 
 
-def _opened(drive: Drive, kind: ImageKind) -> TilePyramid | None:
+def _open_pyramid(drive: Drive, kind: ImageKind) -> TilePyramid | None:
     try:
         pyramid = image_of(drive, kind).pyramid
         pyramid.sketch()

@@ -120,7 +120,7 @@ class FeatureActors:
     def _segments(self, styled: Sequence[StyledShape]) -> tuple[Floats, Colours]:
         """(k, 2, 3) places and (k, 3) colours of all lines."""
         pieces = [
-            self._dashed(one.shape)
+            self._cut_dashes(one.shape)
             if one.style.is_dashed
             else one.shape.local_xyz[one.shape.segments]
             for one in styled
@@ -128,7 +128,7 @@ class FeatureActors:
         colours = np.array([_rgb(one.style) for one in styled])
         return np.concatenate(pieces), np.repeat(colours, [len(one) for one in pieces], axis=0)
 
-    def _dashed(self, shape: FeatureShape) -> Floats:
+    def _cut_dashes(self, shape: FeatureShape) -> Floats:
         """The dashes of a feature, cut once: thousands are drawn anew whenever one is chosen."""
         id_ = shape.feature.id
         known = self._dashes.get(id_)

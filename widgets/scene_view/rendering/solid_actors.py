@@ -115,7 +115,7 @@ def _mesh(body: StyledSolid) -> _Mesh | None:
     positions, top = solid.positions, list(solid.top)
     is_barred = body.shape.feature.kind == _BARRED and len(solid.positions) == 8
     if is_barred:
-        positions, top = _barred(solid)
+        positions, top = _make_bars(solid)
     faces = [*top, *solid.sides, *solid.bottom]
     is_gap = np.zeros(len(faces), dtype=np.bool_)
     is_gap[1 : len(top) : 2] = is_barred
@@ -141,7 +141,7 @@ def _opacity(body: StyledSolid) -> float:
     return _DOUBTFUL + (_SURE - _DOUBTFUL) * confidence
 
 
-def _barred(solid: Solid) -> tuple[Floats, list[FaceIndices]]:
+def _make_bars(solid: Solid) -> tuple[Floats, list[FaceIndices]]:
     """The top as bars across its longer side, with gaps between them."""
     corners = solid.positions[:4]
     if np.linalg.norm(corners[1] - corners[0]) < np.linalg.norm(corners[2] - corners[1]):

@@ -192,7 +192,7 @@ def picture_of(
             _colours_of(drive, part.points, attribute, request.look)
             for drive, part in zip(request.drives, parts, strict=True)
         ]
-        painted = _lifted(np.concatenate([np.empty((0, 3), np.uint8), *shown]))
+        painted = _lighten_colours(np.concatenate([np.empty((0, 3), np.uint8), *shown]))
     order = np.argsort(section[:, 0], kind="stable")
     most = MOST_POINTS // max(len(request.drives), 1)
     return SectionPicture(
@@ -213,7 +213,7 @@ def distance_colours(distances_m: Floats, half_width_m: float) -> NDArray[np.uin
     return np.asarray(np.rint(blend), dtype=np.uint8)
 
 
-def _lifted(shown: NDArray[np.uint8]) -> NDArray[np.uint8]:
+def _lighten_colours(shown: NDArray[np.uint8]) -> NDArray[np.uint8]:
     """Lighter: a dark road is a surface in other views, but a thin line on dark ground here."""
     return np.asarray(_LIFT + shown * (1.0 - _LIFT / 255.0), dtype=np.uint8)
 

@@ -69,13 +69,17 @@ def diagnostics_at(
         try:
             scanlines = scanline_through(drive, position, ScanlineSettings())
             if scanlines is not None:
-                found.append(_shown(RequestedPosition(drive, position, scanlines), cut, parameters))
+                found.append(
+                    _find_diagnostics(
+                        RequestedPosition(drive, position, scanlines), cut, parameters
+                    )
+                )
         except UserError:  # whoever runs the tool is told; here there is just nothing to show
             continue
     return tuple(found)
 
 
-def _shown(
+def _find_diagnostics(
     asked: RequestedPosition, cut: Cut, parameters: Mapping[str, object]
 ) -> SectionDiagnostics:
     diagnostics = [

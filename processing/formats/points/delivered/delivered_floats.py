@@ -144,7 +144,7 @@ def _chunk_columns(
     for name in _SMALL_COLUMNS:
         lowest = 0 if name == "classification" else 1
         given = values.get(name)
-        column = np.full(count, lowest) if given is None else _bounded(given, lowest, 255)
+        column = np.full(count, lowest) if given is None else _clip_values(given, lowest, 255)
         columns[name] = column.astype(np.uint8)
     if "time" in values:
         time = values["time"].astype(np.float64)
@@ -164,7 +164,7 @@ def _chunk_columns(
 def _scanners(values: ColumnBlock, summary: _Summary) -> NDArray[np.uint16]:
     if len(summary.scanner_positions) < 2:
         return np.zeros(values["xyz"].shape[0], dtype=np.uint16)
-    return _bounded(values["scan"], 0, _FULL).astype(np.uint16)
+    return _clip_values(values["scan"], 0, _FULL).astype(np.uint16)
 
 
 def _intensity(values: ColumnBlock, summary: _Summary) -> NDArray[np.uint16]:
@@ -173,12 +173,12 @@ def _intensity(values: ColumnBlock, summary: _Summary) -> NDArray[np.uint16]:
         return np.zeros(values["xyz"].shape[0], dtype=np.uint16)
     low, high = summary.intensity_low, summary.intensity_high
     if summary.is_intensity_integral and low >= 0 and high <= _FULL:
-        return _bounded(given, 0, _FULL).astype(np.uint16)
+        return _clip_values(given, 0, _FULL).astype(np.uint16)
     low, high = _intensity_range(low, high)
     if not high > low:
         return np.zeros(given.size, dtype=np.uint16)
     share = (given.astype(np.float64) - low) / (high - low)
-    return np.rint(_bounded(share, 0, 1) * _FULL).astype(np.uint16)
+    return np.rint(_clip_values(share, 0, 1) * _FULL).astype(np.uint16)
 
 
 def _intensity_range(low: float, high: float) -> tuple[float, float]:
@@ -193,7 +193,7 @@ def _intensity_range(low: float, high: float) -> tuple[float, float]:
     return low, high
 
 
-def _bounded(values: NDArray[np.generic], low: float, high: float) -> NDArray[np.float64]:
+def _clip_values(values: NDArray[np.generic], low: float, high: float) -> NDArray[np.float64]:
     """Values within bounds; what is no number becomes the lower one."""
     numbers = values.astype(np.float64)
     return np.asarray(np.clip(np.nan_to_num(numbers, nan=low), low, high), dtype=np.float64)

@@ -303,20 +303,20 @@ def _first_time(header: LasHeader) -> float:
     return float(time) if abs(time) < _LONGEST_TIME_S else float("nan")
 
 
-def _described(header: LasHeader) -> tuple[ExtraDimension, ...]:
+def _read_dimensions(header: LasHeader) -> tuple[ExtraDimension, ...]:
     vlr, standard = header.vlr("LASF_Spec", 4), RECORD_SIZES[header.point_format]
     return extra_dimensions(b"" if vlr is None else vlr.data, header.point_size - standard)
 
 
 def _label_of(header: LasHeader) -> ExtraDimension | None:
     """The extra dimension for labels of one byte, as exporting writes it."""
-    own = (one for one in _described(header) if (one.name, one.dtype) == (_LABEL, "u1"))
+    own = (one for one in _read_dimensions(header) if (one.name, one.dtype) == (_LABEL, "u1"))
     return next(own, None)
 
 
 def _grid_of(header: LasHeader) -> tuple[ExtraDimension, ExtraDimension] | None:
     """The extra dimensions that say a point's column and row in a structured scan."""
-    plain = {plain_name(one.name): one for one in _described(header) if one.dtype}
+    plain = {plain_name(one.name): one for one in _read_dimensions(header) if one.dtype}
     found = [next((plain[name] for name in names if name in plain), None) for names in GRID_NAMES]
     column, row = found
     return None if column is None or row is None else (column, row)

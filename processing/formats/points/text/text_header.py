@@ -139,7 +139,7 @@ def read_heading(path: Path, columns: tuple[str, ...] = ()) -> Heading:
     """
     begins = read_beginning(path)
     if columns:
-        given = _given(columns, begins)
+        given = _given_fields(columns, begins)
         return Heading(given, begins.start, begins.has_words, is_named=False)
     readings = [(at, line, read_header(line, begins.width)) for at, line in begins.header]
     certain = {one.columns for _, _, one in readings if one.certainty is Certainty.CERTAIN}
@@ -194,7 +194,7 @@ def _is_points(line: bytes) -> bool:
     return numbers >= _LEAST_NUMBERS
 
 
-def _given(columns: tuple[str, ...], begins: TextBeginning) -> tuple[str, ...]:
+def _given_fields(columns: tuple[str, ...], begins: TextBeginning) -> tuple[str, ...]:
     """The fields of columns that somebody named."""
     unknown = [name for name in columns if not field_of(name)]
     fields = taken_columns(columns)

@@ -114,7 +114,7 @@ class NumberLines:
             self._taken += len(lines)
             if width is not None:
                 _refuse_other_widths(self._path, lines, width)
-            yield _parsed(self._path, lines, wanted)
+            yield _parse_lines(self._path, lines, wanted)
             if limit is not None:
                 limit -= len(lines)
 
@@ -134,7 +134,7 @@ class NumberLines:
         first_line, self._data = self._following_line, following
         if not end:
             raise _bad_line(self._path, first_line, b"")
-        lines = _divided(head).split(b"\n")
+        lines = _divide_cells(head).split(b"\n")
         self._following_line += len(lines)
         return [
             (first_line + i, line)
@@ -145,7 +145,7 @@ class NumberLines:
 
 def words_in(line: bytes) -> list[bytes]:
     """The words of a line of numbers as they are counted here; ``?`` for an empty cell."""
-    return _divided(line.rstrip(b",;\t\r\n ")).split()
+    return _divide_cells(line.rstrip(b",;\t\r\n ")).split()
 
 
 def number_blocks(part: TextPart, columns: int | Sequence[int]) -> Iterator[NDArray[np.float64]]:
@@ -163,7 +163,7 @@ def number_blocks(part: TextPart, columns: int | Sequence[int]) -> Iterator[NDAr
         yield from lines.numbers(columns, part.limit, width=part.width)
 
 
-def _divided(text: bytes) -> bytes:
+def _divide_cells(text: bytes) -> bytes:
     """Lines with separators made blanks; an empty cell stays a word, or the others would move."""
     if text.startswith(b",") or any(cell in text for cell in _EMPTY_CELLS):
         text = _EMPTY_CELL.sub(b"?", text)
@@ -185,7 +185,7 @@ def _refuse_other_widths(path: Path, lines: list[tuple[int, bytes]], width: int)
             raise _bad_line(path, number, line)
 
 
-def _parsed(
+def _parse_lines(
     path: Path, lines: list[tuple[int, bytes]], columns: tuple[int, ...]
 ) -> NDArray[np.float64]:
     words = [line.decode("latin-1") for _, line in lines]

@@ -69,11 +69,11 @@ def paint_errors(
     )
     stem = f"{scene.name}-{name}".replace(",", "").replace(" ", "-")
     paths = [folder / f"{stem}-plan.png"]
-    _write(paths[0], _painted(scene.xyz[:, :2], spots, _PLAN_PX))
+    _write(paths[0], _paint_points(scene.xyz[:, :2], spots, _PLAN_PX))
     for number, inside in enumerate(_worst_strips(scene.xyz, is_true != is_kept)):
         paths.append(folder / f"{stem}-section-{number + 1}.png")
         cut = tuple(_Spot(one.colour, one.size_px + 1, one.chosen[inside]) for one in spots)
-        _write(paths[-1], _painted(scene.xyz[inside][:, [0, 2]], cut, _SECTION_PX))
+        _write(paths[-1], _paint_points(scene.xyz[inside][:, [0, 2]], cut, _SECTION_PX))
     return tuple(paths)
 
 
@@ -88,7 +88,9 @@ def _worst_strips(
             yield strip == number
 
 
-def _painted(positions: NDArray[np.float64], spots: tuple[_Spot, ...], longest_px: int) -> Picture:
+def _paint_points(
+    positions: NDArray[np.float64], spots: tuple[_Spot, ...], longest_px: int
+) -> Picture:
     """Places (right, up) in m as dots; heights of a section are drawn as wide as lengths."""
     low, high = _middle_extent(positions)
     px_per_m = (longest_px - 2 * _MARGIN_PX) / max(float((high - low).max()), 1e-6)

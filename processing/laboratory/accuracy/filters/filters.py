@@ -103,7 +103,7 @@ def write_sections(page: Path | None, sections: Mapping[str, str]) -> None:
 
 
 def _of_noise(chosen: argparse.Namespace) -> Iterator[str]:
-    found = list(_found(noise_scenes(chosen.data), NOISE_SCORER, noise_methods(), chosen))
+    found = list(_find_results(noise_scenes(chosen.data), NOISE_SCORER, noise_methods(), chosen))
     yield f"{_ABOUT}{_ABOUT_NOISE}"
     yield noise_table(found)
 
@@ -114,7 +114,7 @@ def _of_unseen(_: argparse.Namespace) -> Iterator[str]:
 
 
 def _of_sites(chosen: argparse.Namespace) -> Iterator[str]:
-    found = list(_found(sites(chosen.data), GROUND_SCORER, site_methods(), chosen))
+    found = list(_find_results(sites(chosen.data), GROUND_SCORER, site_methods(), chosen))
     yield f"{_ABOUT}{_ABOUT_SITES}"
     yield sites_table(found)
     yield "Points of each kind that got the right class:\n"
@@ -124,10 +124,10 @@ def _of_sites(chosen: argparse.Namespace) -> Iterator[str]:
 def _of_airborne(chosen: argparse.Namespace) -> Iterator[str]:
     scenes = airborne_samples(chosen.data)
     yield f"{_ABOUT}{_ABOUT_AIRBORNE}"
-    yield airborne_table(list(_found(scenes, GROUND_SCORER, airborne_methods(), chosen)))
+    yield airborne_table(list(_find_results(scenes, GROUND_SCORER, airborne_methods(), chosen)))
 
 
-def _found(
+def _find_results(
     scenes: Iterable[FilterScene],
     scorer: PointScorer,
     methods: Sequence[FilterMethod],
@@ -137,10 +137,10 @@ def _found(
         with tempfile.TemporaryDirectory(prefix="zuka-") as folder:
             for method in methods:
                 if method.ours or not chosen.ours:
-                    yield _scored(scene, method, scorer, Path(folder), chosen.pictures)
+                    yield _score_method(scene, method, scorer, Path(folder), chosen.pictures)
 
 
-def _scored(
+def _score_method(
     scene: FilterScene,
     method: FilterMethod,
     scorer: PointScorer,

@@ -36,7 +36,7 @@ def unseen_rows(seeds: Sequence[int] = SEEDS, pulses: int = _PULSES) -> Iterator
         name = "beams" if knows_beams else "places"
         figures = []
         for seed in seeds:
-            scanner, scene, said = _judged(seed, pulses, knows_beams=knows_beams)
+            scanner, scene, said = _make_judged_scene(seed, pulses, knows_beams=knows_beams)
             mine = _figures(scene, said)
             figures.append(mine)
             yield [name, f"{scanner} {seed}", f"{scene.noise.size:,}", *map(_cell, mine)]
@@ -46,7 +46,9 @@ def unseen_rows(seeds: Sequence[int] = SEEDS, pulses: int = _PULSES) -> Iterator
         yield [name, "**middle**", "", *map(_cell, middles)]
 
 
-def _judged(seed: int, pulses: int, *, knows_beams: bool) -> tuple[str, TrainingScene, Flags]:
+def _make_judged_scene(
+    seed: int, pulses: int, *, knows_beams: bool
+) -> tuple[str, TrainingScene, Flags]:
     scanners = _SCANNERS_WITH_BEAMS if knows_beams else _SCANNERS_IN_SPACE
     scanner = scanners[seed % len(scanners)]
     scene, turn = scene_of(seed, scanner, pulses)

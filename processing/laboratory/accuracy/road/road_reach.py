@@ -33,7 +33,7 @@ def count_by_reach(
     ]
     slots = [(one[None], True) for one in gutters.found]
     slots += [(one[None], False) for one in gutters.missed]
-    return {"curbs": _counted(sections, around), "gutters": _counted(slots, around)}
+    return {"curbs": _count_by_reach(sections, around), "gutters": _count_by_reach(slots, around)}
 
 
 def reach_table(streets: Sequence[Reached]) -> str:
@@ -52,7 +52,7 @@ def _cells(streets: Sequence[Reached], band: int) -> Iterator[str]:
         yield f"{100 * found / (found + missed):.1f} %" if found + missed else "–"
 
 
-def _counted(
+def _count_by_reach(
     positions: Sequence[tuple[Floats, bool]], around: StreetSurroundings
 ) -> NDArray[np.int64]:
     counts = np.zeros((len(BANDS_M) - 1, 2), np.int64)

@@ -84,7 +84,7 @@ def measure_searchable(options: BenchmarkOptions) -> tuple[Measurement, ...]:
         ours, theirs = alternating(
             [
                 importing(request, folder / "import"),
-                lambda: open3d_searchable(_decoded(cloud)),
+                lambda: open3d_searchable(_decode_coordinates(cloud)),
             ],
             options.repeats(_REPEATS),
         )
@@ -148,7 +148,7 @@ def _normals_row(peer: str, points: int, ours: float, theirs: float | None) -> M
     )
 
 
-def _decoded(cloud: Path) -> NDArray[np.float64]:
+def _decode_coordinates(cloud: Path) -> NDArray[np.float64]:
     """Coordinates about the first point, as laspy gives them."""
     xyz = np.asarray(laspy.read(cloud).xyz, np.float64)
     local_xyz: NDArray[np.float64] = xyz - xyz[0]
