@@ -1,7 +1,9 @@
 """A tool that runs again: which of its earlier candidates go, and what isn't proposed once more.
 
 Candidates that nobody decided on are replaced by those of the new run. What a person accepted,
-rejected or corrected stays, and the new run is silent about those places.
+rejected or corrected stays, and the new run is silent about those places. What was deleted is
+proposed again: who clears a run's undecided candidates away says nothing of their places, and to
+say no to one is to reject it.
 """
 
 from __future__ import annotations

@@ -98,6 +98,13 @@ def test_what_was_decided_stays_and_is_not_proposed_again(project: Project) -> N
     )
 
 
+def test_what_was_deleted_is_no_decision_and_is_proposed_again(project: Project) -> None:
+    store(project, lines(0, 10))
+    project.features.apply(LABEL, Change(removed=(at(project, 0),)))
+    store(project, lines(0, 10))
+    assert positions(project) == [0, 10]
+
+
 def test_a_candidate_that_was_moved_by_hand_is_known_where_it_was_and_where_it_is(
     project: Project,
 ) -> None:
