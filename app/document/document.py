@@ -29,7 +29,7 @@ from processing.operations.export import ExportRequest
 from processing.operations.finished_runs import FinishedRun
 from processing.operations.project_export import export_of
 from processing.operations.run import operation_on_drive
-from processing.operations.store import StoredRun, store_run
+from processing.operations.store import StoredRun, store_prepared, store_run
 from processing.project.importing.importing import ImportRequest
 from processing.project.project import Project
 from processing.project.results.found_features import FoundFeatures
@@ -61,6 +61,8 @@ class Document(QObject):
         Something the user wanted can't be done; everything is as it was.
     reported(text: Text)
         Something was done that is worth a line.
+    step_coming(change: Change)
+        A step about drives or files is undone or done again in a moment.
     """
 
     about_to_close = Signal()
@@ -69,6 +71,7 @@ class Document(QObject):
     catalogue_changed = Signal()
     refused = Signal(object)
     reported = Signal(object)
+    step_coming = Signal(object)
 
     def __init__(self, jobs: JobQueue, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -87,10 +90,11 @@ class Document(QObject):
         self._bundled_catalogue = read_catalogue(path_of("catalogue/level500.toml"))
         self._job_results = JobResultApplier(jobs, self)
         self._job_results.refused.connect(self.refused)
-        self._label_steps = LabelSteps(
-            self._job_results, self.undo_stack, self._change_history, self
+        self._label_steps = LabelSteps(self._job_results, self.undo_stack, self._change_history, self)
+        self._label_steps.step_coming.connect(self.step_coming)
+        self._runs = RunResultApplier(
+            self._job_results, self._label_steps, self._store_finished, self._store_prepared
         )
-        self._runs = RunResultApplier(self._job_results, self._label_steps, self._store_finished)
         self._label_steps.reported.connect(self.reported)
         self._label_steps.refused.connect(self.refused)
         self._label_steps.cancelled.connect(jobs.cancel)
@@ -100,6 +104,7 @@ class Document(QObject):
         self.drive_results.reported.connect(self.reported)
         self.drive_results.refused.connect(self.refused)
         self.drive_results.taken.connect(self._on_drives_taken)
+        self.step_coming.connect(self.drive_results.on_step_coming)
         self._preparation = Preparation(self._prepare, jobs, self)
 
     # Reading: what views ask (MapSource).
@@ -203,6 +208,17 @@ class Document(QObject):
             return change
 
         return self._change_history(push)
+
+    def do_step(self, act: Callable[[Project], Change]) -> bool:
+        """Have a function do a step of the open project; tells the views, says whether it could."""
+        project = self._need_project()
+
+        def noted() -> Change:
+            change = act(project)
+            self.undo_stack.note(change)
+            return change
+
+        return self._change_history(noted)
 
     def undo(self) -> bool:
         """Take the last step back; says whether there was one."""
@@ -332,17 +348,14 @@ class Document(QObject):
         """Put what a run gave into the project and tell the views; says whether the map changed."""
         stored: list[StoredRun] = []
 
-        def act() -> Change:
-            stored.append(store_run(self._need_project(), done))
-            self.undo_stack.note(stored[-1].change)
+        def act(project: Project) -> Change:
+            stored.append(store_run(project, done))
             return stored[-1].change
 
-        is_changed = self._change_history(act)
+        is_changed = self.do_step(act)
         # Told last: the review says what it loses by this step, which is the lesser news.
         for one in stored:
             if one.run is None:
-                self.tiles.drop(done.drive)
-                self.shared.map_changes.drive_columns_changed.emit(done.drive)
                 continue
             self.reported.emit(one.summary)
             if one.change.added:
@@ -350,6 +363,18 @@ class Document(QObject):
         if done.found is not None and (done.found.change.labels or done.found.change.filed):
             self.drive_results.first_look.show_classes()
         return is_changed
+
+    def _store_prepared(self, done: FinishedRun) -> None:
+        try:
+            store_prepared(self._need_project(), done)
+        except UserError as error:
+            self.refused.emit(error)
+            return
+        self._tell_columns(done.drive)
+
+    def _tell_columns(self, drive: str) -> None:
+        self.tiles.drop(drive)
+        self.shared.map_changes.drive_columns_changed.emit(drive)
 
     def _change_history(self, act: Callable[[], Change | None]) -> bool:
         try:
@@ -369,6 +394,11 @@ class Document(QObject):
         report_labels(labels, filed, self.tiles, self.shared.map_changes)
         self._label_steps.note(change)
         self.drive_results.follow_step(self._need_project(), change)
+        if change.files is not None:
+            for drive in change.files.drives:
+                self._tell_columns(drive)
+            if change.files.names_of(""):
+                self.shared.map_changes.volumes_changed.emit()
         return True
 
     def _replace_by(self, make: Callable[[], Project]) -> bool:

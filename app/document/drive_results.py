@@ -23,6 +23,7 @@ from processing.project.drive_removal import removal_of
 from processing.project.importing.drive_completion import carry_results_again
 from processing.project.importing.import_request import ImportRequest
 from processing.project.project import Project
+from processing.recording.camera_images.image_store import IMAGES
 from widgets.shared.shared_state import SharedState
 
 _CARRYING = Text("Taking over labels", "ラベルの引き継ぎ")
@@ -128,11 +129,19 @@ class DriveResults(QObject):
         self._shared.map_changes.drives_changed.emit()
 
     def follow_step(self, project: Project, change: Change) -> None:
-        """Follow a step that removed or restored drives."""
-        listed = (*change.removed_drives, *change.restored_drives)
-        if listed:
-            self.follow(project, [one.id for one in listed])
+        """Follow a step by which drives came, went or became others."""
+        others = list(change.drive_ids)
+        if change.files is not None:
+            files = change.files
+            others += [id_ for id_ in files.drives if IMAGES in files.names_of(id_)]
+        if others:
+            self.follow(project, others)
             self.taken.emit(())
+
+    def on_step_coming(self, change: Change) -> None:
+        """A step is undone or done again in a moment."""
+        if change.drive_ids:
+            self.points_leaving.emit()
 
     def _show(self, project: Project) -> None:
         settings = self._shared.view_settings
@@ -152,6 +161,8 @@ class DriveResults(QObject):
         if has_moved:
             self.points_leaving.emit()
         drives = take_over(project, brought)
+        # Undo is of this step now: what was being taken back is another one.
+        self._label_steps.note(Change())
         new = drives[: len(brought.folders)]
         others = drives[len(brought.folders) :]
         if drives:

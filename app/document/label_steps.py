@@ -85,11 +85,14 @@ class LabelSteps(QObject):
     -------
     told(text: Text), refused(error: UserError), cancelled(job: str)
         As the document's; a job is to be cancelled.
+    step_coming(change: Change)
+        As the document's.
     """
 
     reported = Signal(object)
     refused = Signal(object)
     cancelled = Signal(str)
+    step_coming = Signal(object)
 
     def __init__(
         self,
@@ -200,11 +203,14 @@ class LabelSteps(QObject):
             return False
         try:
             filed = project.features.coming_labels(by)
+            moved = project.history.coming_move(by)
         except UserError as error:
             self.refused.emit(error)
             return False
         act = self._undo_stack.undo if by < 0 else self._undo_stack.redo
         if filed is None:
+            if moved is not None:
+                self.step_coming.emit(moved)
             return self._changed(act)
         self._begin_move(project, filed, by)
         return True

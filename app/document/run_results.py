@@ -31,11 +31,14 @@ class RunResultApplier:
     label_steps : LabelSteps
     store : callable
         Gets a finished run, for the project.
+    store_prepared : callable
+        Gets one that nobody asked for.
     """
 
     adoption: JobResultApplier
     label_steps: LabelSteps
     store: Callable[[FinishedRun], object]
+    store_prepared: Callable[[FinishedRun], object]
 
     def start(self, project: Project, operation: RunOperation, lane: JobLane) -> str:
         """Run a tool on one drive in the background; gives the job's id."""
@@ -55,11 +58,13 @@ class RunResultApplier:
                 return
             if done.columns is not None:
                 steps.drop(step)
-                if lane is JobLane.PREPARED and _has_columns(project, done):
+                if lane is not JobLane.PREPARED:
+                    self.store(done)
+                elif _has_columns(project, done):
                     # The user ran the tool meanwhile, with parameters of their own.
                     done.remove()
-                    return
-                self.store(done)
+                else:
+                    self.store_prepared(done)
             if (found := done.found) is not None:
                 steps.arrive(step, found.change, partial(store, done, found))
 

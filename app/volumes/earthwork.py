@@ -23,10 +23,16 @@ from app.volumes.volume_work import (
 from processing.core.errors import UserError
 from processing.core.monitor import Monitor
 from processing.core.text import Language, Text
+from processing.map.change import Change
 from processing.methods.earthwork.maps.change_grid import ChangeGrid
 from processing.methods.earthwork.maps.contours import LevelLine
 from processing.methods.earthwork.volumes.volume_result import VolumeResult
-from processing.operations.project_volumes import MadeVolume, sides_reader, store_volume
+from processing.operations.project_volumes import (
+    MadeVolume,
+    remove_volume,
+    sides_reader,
+    store_volume,
+)
 from processing.project.project import Project
 from processing.project.volumes.epochs import Epoch, epochs_of, has_ground
 from processing.project.volumes.volume import ChosenSide, KeptVolume, SideKind, VolumeRequest
@@ -89,6 +95,8 @@ class Earthwork(QObject):
         changes = document.shared.map_changes
         changes.drives_changed.connect(self._on_drives_changed)
         changes.labels_changed.connect(self._on_labels_changed)
+        changes.volumes_changed.connect(self._on_volumes_changed)
+        document.step_coming.connect(self._on_document_step_coming)
         document.shared.volume.changed.connect(self._draw_contours)
         document.shared.volume.look_changed.connect(self._draw_contours)
         document.shared.cursor.hovered.connect(document.shared.volume.hover_over_point)
@@ -134,8 +142,8 @@ class Earthwork(QObject):
         title, work = volume_work(request, project.drives, project.crs, into)
 
         def take(made: MadeVolume) -> None:
-            self._volumes = (*self._volumes, store_volume(project, made))
-            self.show(made.kept.id)
+            if not self._document.do_step(lambda project: store_volume(project, made)):
+                return
             volumes = made.kept.volumes
             reported = _TOLD.filled(
                 cut=f"{volumes.cut_m3:,.1f}",
@@ -169,18 +177,13 @@ class Earthwork(QObject):
         self._in_background(project, map_work(VolumeStore(project.folder), kept), take, fail)
 
     def remove(self, id_: str) -> None:
-        """Forget a volume for good; the newest of the others is shown."""
-        project = self._document.project
-        if project is None:
+        """Remove a volume as one undoable step; the newest of the others is shown."""
+        kept = next((one for one in self._volumes if one.id == id_), None)
+        if kept is None:
             return
-        if self._shown == id_:
-            self.show("")  # its map is let go before its files are
-        try:
-            VolumeStore(project.folder).remove(id_)
-        except UserError as error:
-            self._document.refused.emit(error)
-        self._read(project)
-        self.show(self._volumes[-1].id if self._volumes else "")
+        self._let_go()
+        if not self._document.do_step(lambda project: remove_volume(project, kept)):
+            self.show(id_)
 
     def export(self, kind: VolumeExport, path: Path, language: Language) -> str:
         """Write the volume that is shown to a file in the background; the job's id."""
@@ -261,10 +264,27 @@ class Earthwork(QObject):
         project = self._document.project
         if project is None:
             return
-        VolumeStore(project.folder).remove_leftovers()
         self._read(project)
         self._on_drives_changed()
         self.show(self._volumes[-1].id if self._volumes else "")
+
+    def _on_document_step_coming(self, change: Change) -> None:
+        if change.files is not None and change.files.names_of(""):
+            self._let_go()
+
+    def _let_go(self) -> None:
+        """Let go of the map that is shown before its files move."""
+        self.show("")
+
+    def _on_volumes_changed(self) -> None:
+        """Show what came; where the volume that was shown is gone, the newest of the others."""
+        project = self._document.project
+        if project is None:
+            return
+        before = {one.id for one in self._volumes}
+        self._read(project)
+        new = [one.id for one in self._volumes if one.id not in before]
+        self.show((new or [one.id for one in self._volumes] or [""])[-1])
 
     def _on_document_closed(self) -> None:
         self._volumes = ()

@@ -19,16 +19,10 @@ from processing.methods.earthwork.maps.contours import (
 )
 from processing.methods.earthwork.maps.heat_map import change_limit
 from processing.methods.earthwork.volumes.volume_result import VolumeResult
-from processing.operations.project_volumes import MadeVolume, make_volume
-from processing.project.volumes.volume import (
-    ChosenSide,
-    KeptVolume,
-    SideKind,
-    VolumeRequest,
-)
+from processing.operations.project_volumes import MadeVolume, make_volume, words_of
+from processing.project.volumes.volume import KeptVolume, VolumeRequest
 from processing.project.volumes.volume_store import VolumeStore
 from processing.recording.drive import Drive
-from processing.tools.volume import VOLUME
 from widgets.shared.shown_volume import ContourOf, VolumeStyle
 
 _SIMPLER_SHARE, _SHORTEST_CELLS = 0.2, 8.0
@@ -57,10 +51,7 @@ def volume_work(
     def work(monitor: Monitor) -> MadeVolume:
         return make_volume(request, drives, crs, into, monitor)
 
-    title = Text("{tool}: {before} → {after}", "{tool}: {before} → {after}").filled(
-        tool=VOLUME.name, before=_name_of(request.before), after=_name_of(request.after)
-    )
-    return title, work
+    return words_of(request), work
 
 
 def map_work(store: VolumeStore, kept: KeptVolume) -> Callable[[], LoadedMap]:
@@ -96,7 +87,3 @@ def contours_of(change: ChangeGrid, look: VolumeStyle, monitor: Monitor) -> tupl
     ground = change.before if look.contours is ContourOf.BEFORE else change.after
     within = np.where(change.inside > 0, ground, np.float32(np.nan))
     return contour_lines(change.grid, within, request, monitor)
-
-
-def _name_of(side: ChosenSide) -> Text:
-    return Text("level", "標高") if side.kind is SideKind.LEVEL else Text.same(side.name)

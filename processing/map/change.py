@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from processing.map.feature import Feature
 from processing.map.filed_labels import FiledLabels
 from processing.map.label_change import LabelChange
+from processing.map.step_files import StepFiles
 
 
 @dataclass(frozen=True)
@@ -39,8 +40,16 @@ class ListedDrive:
 
 
 @dataclass(frozen=True)
+class SystemChange:
+    """The project's reference system before and after: ``EPSG:n``, or empty when unknown."""
+
+    before: str
+    after: str
+
+
+@dataclass(frozen=True)
 class Change:
-    """Features added, replaced and removed, points labelled, drives removed, in one step.
+    """Features, labels, drives and files of a project that become others in one step.
 
     A feature is named at most once in a change, and a point too.
 
@@ -49,7 +58,13 @@ class Change:
     filed : FiledLabels or None
         Labels of many points, in place of ``labels``.
     removed_drives, restored_drives : tuple of ListedDrive
-        Drives that leave the project, or come back; their folders stay until it is closed.
+        Drives that leave the project, and that come or come back. One that gets another folder is
+        in both. Folders of drives stay until the project is closed, and longer where a step that
+        was taken back could bring them again.
+    files : StepFiles or None
+        Columns of drives, lists of images, volumes.
+    system : SystemChange or None
+        What the first drive says of all coordinates.
     """
 
     added: tuple[Feature, ...] = ()
@@ -59,13 +74,21 @@ class Change:
     filed: FiledLabels | None = None
     removed_drives: tuple[ListedDrive, ...] = ()
     restored_drives: tuple[ListedDrive, ...] = ()
+    files: StepFiles | None = None
+    system: SystemChange | None = None
 
     @property
     def is_empty(self) -> bool:
         """Whether nothing changes."""
         is_labelling = self.labels or (self.filed is not None and self.filed.parts)
-        lists_drives = self.removed_drives or self.restored_drives
-        return not (self.added or self.replaced or self.removed or is_labelling or lists_drives)
+        is_on_map = self.added or self.replaced or self.removed
+        return not (is_on_map or is_labelling or self.drive_ids or self.files)
+
+    @property
+    def drive_ids(self) -> tuple[str, ...]:
+        """The ids of all drives that come, go or get another folder."""
+        listed = (*self.removed_drives, *self.restored_drives)
+        return tuple(dict.fromkeys(one.id for one in listed))
 
     @property
     def feature_ids(self) -> tuple[str, ...]:
@@ -86,4 +109,8 @@ class Change:
             filed=None if self.filed is None else self.filed.inverse(),
             removed_drives=self.restored_drives,
             restored_drives=self.removed_drives,
+            files=None if self.files is None else self.files.inverse(),
+            system=None
+            if self.system is None
+            else SystemChange(self.system.after, self.system.before),
         )

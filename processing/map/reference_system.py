@@ -71,17 +71,18 @@ def write_reference_system(connection: sqlite3.Connection, crs: str) -> None:
     Parameters
     ----------
     crs : str
-        Of :func:`reference_system`.
+        Of :func:`reference_system`; empty for an unknown one.
     """
-    import pyproj
-
-    system = pyproj.CRS.from_user_input(crs)
-    plan = system.sub_crs_list[0] if system.is_compound else system
     number = srs_number(crs)
-    connection.execute(
-        "INSERT OR REPLACE INTO gpkg_spatial_ref_sys VALUES (?, ?, 'EPSG', ?, ?, NULL)",
-        (system.name, number, number, plan.to_wkt("WKT1_GDAL")),
-    )
+    if crs:
+        import pyproj
+
+        system = pyproj.CRS.from_user_input(crs)
+        plan = system.sub_crs_list[0] if system.is_compound else system
+        connection.execute(
+            "INSERT OR REPLACE INTO gpkg_spatial_ref_sys VALUES (?, ?, 'EPSG', ?, ?, NULL)",
+            (system.name, number, number, plan.to_wkt("WKT1_GDAL")),
+        )
     for table in ("gpkg_contents", "gpkg_geometry_columns"):
         connection.execute(
             f"UPDATE {table} SET srs_id = ? WHERE table_name = 'features'",  # noqa: S608 - constants

@@ -12,11 +12,12 @@ from processing.core.monitor import Monitor
 from processing.core.owned_files import make_marked, remove_folder
 from processing.core.safe_write import refuse_inputs
 from processing.methods.ground.stored_surface import FILE_NAME as SURFACE
-from processing.methods.ground.stored_surface import StoredSurface, keep_surface
+from processing.methods.ground.stored_surface import StoredSurface, copy_surface
 from processing.project.results.found_classes import found_classes
 from processing.project.results.found_features import FoundFeatures, found_features
 from processing.project.results.run_findings import adopt_finding, write_finding
 from processing.project.results.surface_files import delivered_files, surface_file_of, write_surface
+from processing.project.store.exchanged_files import NewStepFiles
 from processing.recording.drive import Drive
 from processing.tools.runner import RunRequest, drives_of, run, run_together, tool_of
 from processing.tools.tool import CandidateResult, FinishedColumns
@@ -43,8 +44,13 @@ class FinishedRun:
     kept: Path | None = None
     drive: str = ""
 
-    def keep_with(self, drive_of: Callable[[str], Drive]) -> None:
+    def keep_with(self, drive_of: Callable[[str], Drive], files: NewStepFiles) -> None:
         """Keep with its drives what the run said of their points, and the surface it found.
+
+        Parameters
+        ----------
+        files : NewStepFiles
+            Gets the surface, which takes the place of an older one.
 
         Raises
         ------
@@ -53,14 +59,13 @@ class FinishedRun:
         if self.found is None or self.kept is None:
             return
         try:
-            drives = tuple(drive_of(id_) for id_ in self.found.run.drives)
-            for drive in drives:
+            surface = self.kept / SURFACE
+            for drive in (drive_of(id_) for id_ in self.found.run.drives):
                 said = self.kept / drive.id
                 if said.is_file():
                     adopt_finding(drive, self.found.run.tool, self.found.run.id, said)
-            surface = self.kept / SURFACE
-            if surface.is_file():
-                keep_surface(surface, drives)
+                if surface.is_file():
+                    copy_surface(surface, files.expect(SURFACE, drive.id))
         finally:
             remove_folder(self.kept)
 

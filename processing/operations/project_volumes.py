@@ -12,11 +12,13 @@ import shapely
 from numpy.typing import NDArray
 from shapely.geometry.base import BaseGeometry
 
-from processing.core.errors import Unsuitable
+from processing.core.errors import Unsuitable, report_as_user_error
 from processing.core.monitor import Monitor, PartMonitor, parts_of
+from processing.core.owned_files import unmark
 from processing.core.parameters import fill_parameters
 from processing.core.text import Text
 from processing.formats.surfaces.design import read_design
+from processing.map.change import Change
 from processing.methods.earthwork.geometry.volume_scope import VolumeScope
 from processing.methods.earthwork.surfaces.epoch_ground import ground_of_drives
 from processing.methods.earthwork.surfaces.sides import Level, Side
@@ -29,11 +31,12 @@ from processing.project.volumes.volume import (
     VolumeRequest,
     new_volume,
 )
-from processing.project.volumes.volume_store import VolumeStore, write_volume
+from processing.project.volumes.volume_store import volume_name, write_volume
 from processing.recording.drive import Drive
 from processing.tools.volume import VOLUME
 
 _READ_SHARE = 0.3
+_REMOVAL = Text("Remove {volume}", "{volume} を削除")
 
 
 @dataclass(frozen=True)
@@ -74,16 +77,47 @@ def make_volume(
     return MadeVolume(kept, into)
 
 
-def store_volume(project: Project, made: MadeVolume) -> KeptVolume:
-    """Let a project keep a volume.
+def store_volume(project: Project, made: MadeVolume) -> Change:
+    """Let a project keep a volume, as one step that can be undone.
+
+    Raises
+    ------
+    NoSpace, InUse, MissingInput
+        It keeps what it had.
+    """
+    files = project.new_step_files()
+    with report_as_user_error(made.folder):
+        unmark(made.folder)
+    files.give(made.folder, volume_name(made.kept.id))
+    change = Change(files=files.files())
+    project.features.apply(words_of(made.kept.request), change)
+    return change
+
+
+def remove_volume(project: Project, kept: KeptVolume) -> Change:
+    """Let a project forget a volume, as one step that can be undone.
 
     Raises
     ------
     NoSpace, InUse
-        It keeps what it had.
+        It is still there.
     """
-    VolumeStore(project.folder).add(made.kept, made.folder)
-    return made.kept
+    files = project.new_step_files()
+    files.take_away(volume_name(kept.id))
+    change = Change(files=files.files())
+    project.features.apply(_REMOVAL.filled(volume=words_of(kept.request)), change)
+    return change
+
+
+def words_of(request: VolumeRequest) -> Text:
+    """What a comparison is called: the tool, and both grounds."""
+    return Text("{tool}: {before} → {after}", "{tool}: {before} → {after}").filled(
+        tool=VOLUME.name, before=_name_of(request.before), after=_name_of(request.after)
+    )
+
+
+def _name_of(side: ChosenSide) -> Text:
+    return Text("level", "標高") if side.kind is SideKind.LEVEL else Text.same(side.name)
 
 
 def sides_reader(

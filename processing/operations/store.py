@@ -7,7 +7,7 @@ The project's thread does it; what takes time was done before, by
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from processing.core.text import Text
 from processing.map.change import Change
@@ -19,6 +19,8 @@ from processing.project.results.found_classes import classes_now
 from processing.project.results.found_features import FoundFeatures
 from processing.project.review.decisions import change_status, label_of_many
 from processing.project.store.runs import Run
+from processing.recording.columns.columns import column_path
+from processing.recording.drive import Drive
 from processing.tools.tool import FinishedColumns
 
 _COLUMNS = Text("{name}: {columns}", "{name}: {columns}")
@@ -44,22 +46,46 @@ class StoredRun:
 
 
 def store_run(project: Project, done: FinishedRun) -> StoredRun:
-    """Put what a run gave into a project: candidates and labels as one step that can be undone.
+    """Put what a run gave into a project: candidates, labels, columns as one step to be undone.
 
-    Candidates of earlier runs that nobody decided on are replaced, what was decided stays. What is
-    kept beside labels, and columns, comes to lie with the drives.
+    Candidates of earlier runs that nobody decided on are replaced, what was decided stays. Columns
+    and the surface of the ground that a drive had before are kept with the step.
 
     Raises
     ------
     NoSpace, InUse, BadFile
         The map is as it was.
     """
+    files = project.new_step_files()
     if done.found is not None:
-        done.keep_with(project.drive)
-        return _store_found(project, done.found)
-    if done.columns is None:
-        raise TypeError(done)
-    return _store_columns(project, done.drive, done.columns)
+        done.keep_with(project.drive, files)
+        change = replace(done.found.change, files=files.files())
+        return _store_found(project, replace(done.found, change=change))
+    drive, columns = _columns_of(project, done)
+    if columns.count != drive.count:
+        message = f"columns of {columns.count} points for a drive of {drive.count}"
+        raise ValueError(message)
+    for name in columns.names:
+        file = column_path(columns.folder, name)
+        files.give(file, file.name, drive.id)
+    columns.remove()
+    summary = _summary(drive, columns)
+    change = Change(files=files.files())
+    project.features.apply(summary, change)
+    return StoredRun(summary, change)
+
+
+def store_prepared(project: Project, done: FinishedRun) -> StoredRun:
+    """Put columns with their drive that nobody asked for: there is nothing to take back.
+
+    Raises
+    ------
+    NoSpace, InUse
+        A column can't be replaced; it and those behind it are as they were.
+    """
+    drive, columns = _columns_of(project, done)
+    columns.hand_over(drive.columns)
+    return StoredRun(_summary(drive, columns), Change())
 
 
 def accept_above(project: Project, stored: Iterable[StoredRun], least: float) -> int:
@@ -96,8 +122,11 @@ def _store_found(project: Project, found: FoundFeatures) -> StoredRun:
     return StoredRun(new.run.summary, new.change, new.run)
 
 
-def _store_columns(project: Project, drive_id: str, columns: FinishedColumns) -> StoredRun:
-    drive = project.drive(drive_id)
-    columns.hand_over(drive.columns)
-    summary = _COLUMNS.filled(name=drive.info.name, columns=", ".join(columns.names))
-    return StoredRun(summary, Change())
+def _columns_of(project: Project, done: FinishedRun) -> tuple[Drive, FinishedColumns]:
+    if done.columns is None:
+        raise TypeError(done)
+    return project.drive(done.drive), done.columns
+
+
+def _summary(drive: Drive, columns: FinishedColumns) -> Text:
+    return _COLUMNS.filled(name=drive.info.name, columns=", ".join(columns.names))

@@ -26,7 +26,6 @@ from processing.project.importing.trajectory_choice import (
 from processing.project.importing.unfinished_imports import import_folder
 from processing.project.project import Project
 from processing.recording.camera_images.image_list import ImageList
-from processing.recording.camera_images.image_store import write_images
 from processing.recording.columns.ordering import sample_column
 from processing.recording.drive import SCAN, Drive
 
@@ -143,18 +142,14 @@ def home_of(project: Project) -> Home:
 
 
 def take_over(project: Project, brought: Additions) -> tuple[Drive, ...]:
-    """Let a project have what files brought; gives the drives that are new or others now.
+    """Let a project have what files brought, as one step; gives drives that are new or others.
 
     Raises
     ------
     UserError
-        As :meth:`Project.complete_drives` and :meth:`Project.adopt_drives`.
+        As :meth:`Project.take_in`.
     """
-    changed = {drive.id: drive for drive in project.complete_drives(brought.completed)}
-    for id_, images in brought.images.items():
-        write_images(project.drive(id_).folder, images)
-        changed[id_] = project.reopen_drives((id_,))[0]
-    return (*project.adopt_drives(brought.folders), *changed.values())
+    return project.take_in(brought.folders, brought.completed, brought.images)
 
 
 def lacks_trajectory(drive: Drive) -> bool:

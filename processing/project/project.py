@@ -3,37 +3,37 @@
 from __future__ import annotations
 
 import sqlite3
-from collections.abc import Iterable, Sequence
-from contextlib import ExitStack
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import ExitStack, contextmanager, suppress
+from dataclasses import replace
 from pathlib import Path
 from uuid import uuid4
 
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.core.errors import MissingInput, report_as_user_error
+from processing.core.errors import MissingInput, UserError, report_as_user_error
 from processing.core.owned_files import remove_folder
 from processing.core.text import Text
 from processing.map.catalogue import Catalogue
 from processing.map.catalogue_change import CatalogueComparison, compare
 from processing.map.catalogue_file import read_catalogue
 from processing.map.catalogue_writing import write_catalogue
-from processing.map.change import ListedDrive
+from processing.map.change import Change, ListedDrive, SystemChange
 from processing.map.filed_labels import LABEL_STEPS
 from processing.map.reference_system import (
     CRS,
     other_system,
     reference_system,
-    srs_number,
-    write_reference_system,
 )
+from processing.map.step_files import STEP_FILES, StepFiles
 from processing.project.importing.drive_completion import CompletedDrive, drive_changed
 from processing.project.importing.unfinished_imports import TEMPORARY, unfinished_imports
 from processing.project.sources.source_files import HOMES, SourceFiles
 from processing.project.store.catalogue_adoption import CatalogueFile
 from processing.project.store.database import Database
-from processing.project.store.database_errors import damaged
 from processing.project.store.drive_folders import DRIVES, DriveFolders
+from processing.project.store.exchanged_files import ExchangedFiles, NewStepFiles
 from processing.project.store.feature_store import FeatureStore
 from processing.project.store.history import History
 from processing.project.store.label_filing import remove_unlisted
@@ -52,13 +52,16 @@ from processing.project.store.project_lock import LOCK_FILES, ProjectLock
 from processing.project.store.project_settings import ProjectSettings, write_setting
 from processing.project.store.runs import Runs
 from processing.project.volumes.volume_store import VOLUMES
+from processing.recording.camera_images.image_list import ImageList
+from processing.recording.camera_images.image_store import IMAGES, write_images
 from processing.recording.drive import Drive
 from resources import path_of
 
 _DATABASE = "project.gpkg"
-_FOLDERS = (DRIVES, TEMPORARY, LABEL_STEPS)
+_FOLDERS = (DRIVES, TEMPORARY, LABEL_STEPS, STEP_FILES)
 _FILES = (*database_files(_DATABASE), *database_files(UNFINISHED), *LOCK_FILES)
 _OWN = (*_FOLDERS, VOLUMES, *_FILES)
+_MOST_NAMES = 3
 
 
 def is_project(path: Path) -> bool:
@@ -92,28 +95,34 @@ class Project:
                 self.settings = ProjectSettings(self._database)
                 self.history = History(self._database, self.settings)
                 labels = LabelLayer(self.drive)
+                self._files = ExchangedFiles(folder, self.drive)
                 self._folders = DriveFolders(folder, self._database, self.settings)
                 self._drives = OpenDrives(self._folders)
                 self.features = FeatureStore(
                     self._database,
                     self.history,
                     self.catalogue,
-                    self._srs_number(),
+                    self.settings,
                     labels=labels,
                     drives=self._drives,
+                    files=self._files,
                 )
                 self.runs = Runs(self._database)
                 self._origin = stored_origin(self.settings, self._database.path)
             self._drives.open(self._folders.ids)
             self.sources = SourceFiles(folder, self.settings, writing=writing)
-            self.sources.use_known(self.drives)
-            labels.follow(self.history.pending(), writing=writing)
+            self._drives.tell_opened(self.sources.use_known)
+            pending = self.history.pending()
+            if writing and pending.files is not None:
+                self._files.follow(pending.files)
+                self._drives.follow_files(pending.files)
+            labels.follow(pending, writing=writing)
             if writing:
                 remove_unlisted(folder / LABEL_STEPS, self.history.label_folders())
                 self._folders.remove_leftovers()
-                self._folders.remove_leaving(self.history)
+                self._remove_unwanted()
                 self._catalogue.correct_layers(self.features, self._database)
-                stack.callback(self._folders.remove_leaving, self.history)
+                stack.callback(self._remove_unwanted)
             self._closing = stack.pop_all()
 
     @staticmethod
@@ -247,6 +256,10 @@ class Project:
         """A new name for a folder of an import; what is left there goes at the next opening."""
         return self._folders.temporary()
 
+    def new_step_files(self) -> NewStepFiles:
+        """For files of a step that takes others' places, those of drives or the project's own."""
+        return self._files.new()
+
     def adopt_drive(self, folder: Path) -> Drive:
         """Make a finished temporary drive folder part of the project.
 
@@ -261,58 +274,65 @@ class Project:
 
     def adopt_drives(self, folders: tuple[Path, ...]) -> tuple[Drive, ...]:
         """As :meth:`adopt_drive` for several, all or none; ``BadFile`` for a damaged one."""
-        new = [Drive(folder) for folder in folders]
-        if not new:
-            return ()
-        crs = self._crs_with(new)
-        origin = self._origin if self.drives else origin_of(new[0])
-        homes = self.sources.homes_with(drive.id for drive in new)
-        arriving = {drive.id: folder for drive, folder in zip(new, folders, strict=True)}
-        with self._folders.adopting(arriving) as connection:
-            write_setting(connection, ORIGIN, origin.tolist())
-            write_setting(connection, HOMES, homes)
-            if crs != self.crs:
-                self._write_crs(connection, crs)
-        self._origin = origin
-        self.settings.took(ORIGIN, origin.tolist())
-        self.settings.took(HOMES, homes)
-        if crs != self.crs:
-            self._took_crs(crs)
-        return self._drives.open(drive.id for drive in new)
+        return self.take_in(folders)
 
-    def complete_drives(self, completed: Sequence[CompletedDrive]) -> tuple[Drive, ...]:
-        """Let drives be as they were completed, all of them or none; map and labels stay theirs.
+    def take_in(
+        self,
+        folders: tuple[Path, ...],
+        completed: Sequence[CompletedDrive] = (),
+        images: Mapping[str, ImageList] | None = None,
+    ) -> tuple[Drive, ...]:
+        """Take new drives in, and what completes others, as one step that can be undone.
 
-        Where points have another order now, what was done before can't be undone any longer.
+        Map and labels of completed drives stay theirs.
+
+        Parameters
+        ----------
+        folders : tuple of Path
+            Finished temporary folders of new drives.
+        images : mapping of str to ImageList
+            By drive: all camera images that it has from now on.
+
+        Returns
+        -------
+        tuple of Drive
+            New ones, then those that are others now.
 
         Raises
         ------
         OutOfRange
-            A drive is gone, or what is known of its points changed since: nothing was changed.
+            A new drive's reference system is not the project's; one that was completed is gone, or
+            what is known of its points changed since.
         NoSpace, InUse, BadFile
             Nothing was changed.
         """
-        if not completed:
-            return ()
+        images = images or {}
+        new = [Drive(folder) for folder in folders]
         for one in completed:
             if one.id not in self._folders.ids or not one.fits(self.drive(one.id)):
                 raise drive_changed(one.name)
-        positions = {one.id: where for one in completed if (where := one.positions()) is not None}
-        with self._folders.replacing({one.id: one.folder for one in completed}) as connection:
-            moved = self.features.rewrite_points(connection, positions)
-            standing = self.history.begin_anew(connection) if positions else None
-        self.features.took_points(moved)
-        if standing is not None:
-            self.history.ended_undo(standing, standing.position)
+        others = dict.fromkeys([*(one.id for one in completed), *images])
+        if not (new or others):
+            return ()
+        crs = self._crs_with(new)
+        change = Change(
+            replaced=self.features.points_elsewhere(_positions(completed)),
+            removed_drives=tuple(self._folders.listed(one.id) for one in completed),
+            files=self._with_images(images, completed),
+            system=None if crs == self.crs else SystemChange(self.crs, crs),
+        )
+        label = _label_of(
+            [drive.info.name for drive in new], [self.drive(id_).info.name for id_ in others]
+        )
+        arriving = {drive.id: folder for drive, folder in zip(new, folders, strict=True)}
+        with (
+            self._folders.moving_in(arriving, {one.id: one.folder for one in completed}) as moved,
+            self._noted_places(new) as note,
+        ):
+            self.features.apply(label, replace(change, restored_drives=moved), also=note)
         for one in completed:
             one.remove_rest()
-        return self.reopen_drives(one.id for one in completed)
-
-    def reopen_drives(self, ids: Iterable[str]) -> tuple[Drive, ...]:
-        """Open drives anew whose folders have changed."""
-        drives = self._drives.open(ids)
-        self.sources.use_known(drives)
-        return drives
+        return tuple(self.drive(id_) for id_ in (*arriving, *others))
 
     def set_crs(self, crs: str) -> None:
         """Say what reference system all coordinates of the project are in.
@@ -325,12 +345,17 @@ class Project:
             The project is as it was.
         """
         code = reference_system(crs)
+        if code == self.crs:
+            return
         for drive in self.drives:
             if drive.info.crs not in ("", code):
                 raise other_system(drive.info.name, drive.info.crs, code)
         with self._database.transaction() as connection:
-            self._write_crs(connection, code)
-        self._took_crs(code)
+            self.features.write_system(connection, code)
+            # A drive of another system that was taken back can't come again.
+            standing = self.history.end_redo(connection)
+        self.history.stands(standing)
+        self.features.took_system(code)
 
     def compare_catalogue(self, path: Path) -> CatalogueComparison:
         """What :meth:`adopt_catalogue` would change.
@@ -388,17 +413,50 @@ class Project:
             crs = crs or (reference_system(theirs) if theirs else "")
         return crs
 
-    def _write_crs(self, connection: sqlite3.Connection, crs: str) -> None:
-        write_reference_system(connection, crs)
-        write_setting(connection, CRS, crs)
-        self.features.rewrite_srs(connection, srs_number(crs))
+    @contextmanager
+    def _noted_places(self, new: Sequence[Drive]) -> Iterator[Callable[[sqlite3.Connection], None]]:
+        """What writes, and then follows, where drawing has its origin and drives have files."""
+        origin = self._origin if self.drives or not new else origin_of(new[0])
+        homes = self.sources.homes_with(drive.id for drive in new)
 
-    def _took_crs(self, crs: str) -> None:
-        self.settings.took(CRS, crs)
-        self.features.took_srs(srs_number(crs))
+        def note(connection: sqlite3.Connection) -> None:
+            write_setting(connection, ORIGIN, origin.tolist())
+            write_setting(connection, HOMES, homes)
 
-    def _srs_number(self) -> int:
-        try:
-            return srs_number(self.crs)
-        except ValueError as error:
-            raise damaged(self._database.path, f"zuka_settings.crs: {error}") from error
+        yield note
+        self._origin = origin
+        self.settings.took(ORIGIN, origin.tolist())
+        self.settings.took(HOMES, homes)
+
+    def _with_images(
+        self, images: Mapping[str, ImageList], completed: Sequence[CompletedDrive]
+    ) -> StepFiles | None:
+        """Lists of images: in the folder that a drive gets, or in place of the one that it has."""
+        folders, files = {one.id: one.folder for one in completed}, self.new_step_files()
+        for id_, taken in images.items():
+            write_images(folders.get(id_) or files.expect(IMAGES, id_).parent, taken)
+        return files.files()
+
+    def _remove_unwanted(self) -> None:
+        """Remove what no step of the history can bring back or do again."""
+        self._folders.remove_leaving(self.history)
+        # What is damaged stays until it is used, which tells.
+        with suppress(UserError):
+            self._files.remove_unlisted(self.history.file_folders())
+
+
+def _positions(completed: Sequence[CompletedDrive]) -> dict[str, NDArray[np.int64]]:
+    """By drive, where its points are now; without those whose points are where they were."""
+    return {one.id: where for one in completed if (where := one.positions()) is not None}
+
+
+def _label_of(new: Sequence[str], others: Sequence[str]) -> Text:
+    """What the undo menu calls drives that came, or got what they lacked."""
+    names = [*new, *others]
+    listed = ", ".join(names[:_MOST_NAMES])
+    words = (
+        Text("Import {names}", "{names} のインポート")
+        if new
+        else Text("Add to {names}", "{names} への追加")
+    )
+    return words.filled(names=listed if len(names) <= _MOST_NAMES else f"{listed} …")

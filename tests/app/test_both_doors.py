@@ -241,7 +241,8 @@ def test_a_volume_between_two_epochs_has_the_same_figures(window: Document, tmp_
     made = make_volume(
         request, project.drives, project.crs, project.temporary_folder(), SilentMonitor()
     )
-    kept = store_volume(project, made)
+    store_volume(project, made)
+    kept = made.kept
     output = tmp_path / "volume.json"
     earlier, later = (VolumeSide(folder, drives=one.side.drives) for one in (before, after))
     write_operation(tmp_path / "volume.toml", VolumeOperation(earlier, later, output, parameters))

@@ -109,6 +109,10 @@ def test_a_trajectory_that_is_dropped_completes_the_drive_and_the_map_stays(surv
     assert surveyor.position_of(rests.point).xyz == position.xyz
     assert (labels_of(surveyor.drive, np.arange(400)) == 5).sum() == 200
     assert document.undo()
+    assert surveyor.drive.trajectory is None
+    assert document.feature("line") == line
+    assert (labels_of(surveyor.drive, np.arange(400)) == 5).sum() == 200
+    assert document.undo()
     assert document.feature("line") is None
     assert (labels_of(surveyor.drive, np.arange(400)) == 5).sum() == 0
 
@@ -135,11 +139,16 @@ def test_a_drive_that_was_shown_from_above_gets_rows_and_the_map_stays_on_its_po
     now = [vertex.measured for vertex in document.feature("line").vertices]
     assert now != rests
     assert [surveyor.position_of(one.point).xyz for one in now if one is not None] == positions
-    assert document.undo_stack.undo_label is None
-    assert not document.undo()
     moved = document.feature("line")
     assert document.apply(LABEL, Change(removed=(moved,)))
     assert document.undo()
+    assert document.undo()
+    assert settings.image_kind is ImageKind.TOP_VIEW
+    assert [vertex.measured for vertex in document.feature("line").vertices] == rests
+    assert [surveyor.position_of(one.point).xyz for one in rests] == positions
+    assert document.redo()
+    assert settings.image_kind in surveyor.drive.image_kinds
+    assert document.feature("line") == moved
 
 
 def test_what_a_tool_finds_on_a_drive_that_was_removed_meanwhile_is_dropped(surveyor, delivery):
@@ -174,6 +183,10 @@ def test_images_come_later_too(surveyor, delivery):
     assert drive.images is not None
     count = len(drive.images)
     _import(surveyor, delivery / "images.csv")
+    assert len(document.drives()[0].images) == count
+    assert document.undo()
+    assert document.drives()[0].images is None
+    assert document.redo()
     assert len(document.drives()[0].images) == count
 
 

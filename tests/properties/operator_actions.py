@@ -156,7 +156,7 @@ def hold_vertex(operator: Operator, choice: random.Random) -> None:
     operator.move(spot + QPoint(20, 5), button=Qt.MouseButton.LeftButton)
     choice.choice(
         (
-            lambda: operator.trigger("undo"),
+            operator.undo,
             lambda: operator.trigger("redo"),
             lambda: operator.key(Qt.Key.Key_Escape),
             lambda: operator.key(Qt.Key.Key_Delete),
@@ -217,7 +217,7 @@ def _is_full(operator: Operator) -> bool:
 
 def step_back(operator: Operator, choice: random.Random) -> None:
     for _ in range(choice.randint(1, 4)):
-        operator.trigger("undo")
+        operator.undo()
     for _ in range(choice.randint(0, 4)):
         operator.trigger("redo")
 

@@ -120,6 +120,12 @@ class Operator:
         """Do what a menu entry or its key does, where it can be done."""
         self.parts.window.actions_by_id[action].trigger()
 
+    def undo(self) -> None:
+        """Take a step back, but not the import: without its street there is nothing to work on."""
+        project = self.parts.document.project
+        if project is not None and project.history.position > 1:
+            self.trigger("undo")
+
     def key(self, key: Qt.Key, modifiers: Qt.KeyboardModifier = FREE) -> None:
         QTest.keyClick(self.view, key, modifiers)
 

@@ -107,7 +107,8 @@ class Session:
         before, position = self.stored()
         document = self.operator.parts.document
         steps = 0
-        while steps < 5 and document.undo():
+        # Without its street the operator has nothing to work on.
+        while steps < 5 and position - steps > 1 and document.undo():
             steps += 1
         assert self.stored()[1] == position - steps
         for _ in range(steps):

@@ -15,7 +15,8 @@ class MapChanges(QObject):
     features_changed = Signal(object)  # tuple[str, ...]: ids added, replaced or removed
     candidates_found = Signal(str, str)  # ids of a tool and of its run: its candidates are there
     drives_changed = Signal()  # drives added, or a project opened or closed
-    drive_columns_changed = Signal(str)  # drive id: a tool's result columns were added
+    drive_columns_changed = Signal(str)  # drive id: a tool's result columns are there, or gone
+    volumes_changed = Signal()  # a volume is kept now, or gone
     labels_changed = Signal(
         str, object
     )  # drive id; (n,) int64: points with other labels, none: many

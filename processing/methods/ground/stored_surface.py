@@ -316,28 +316,18 @@ def ground_surface_of(drive: Drive) -> StoredSurface | None:
     return StoredSurface(path) if path.is_file() else None
 
 
-def keep_surface(path: Path, drives: tuple[Drive, ...]) -> None:
-    """Let drives on the same disk keep a surface in place of an older one; ``path`` stays.
+def copy_surface(path: Path, target: Path) -> None:
+    """Let a new file be a surface too; one copy on the disk serves all drives of a recording.
 
     Raises
     ------
     NoSpace, InUse
-        Drives before the one that failed have the new surface.
     """
-    for drive in drives:
-        target = drive.folder / FILE_NAME
-        temporary = target.with_suffix(".part")
-        with report_as_user_error(target):
-            try:
-                temporary.unlink(missing_ok=True)
-                try:
-                    # One copy on the disk serves all drives of a recording.
-                    os.link(path, temporary)
-                except OSError:
-                    shutil.copyfile(path, temporary)
-                temporary.replace(target)
-            finally:
-                temporary.unlink(missing_ok=True)
+    with report_as_user_error(target):
+        try:
+            os.link(path, target)
+        except OSError:
+            shutil.copyfile(path, target)
 
 
 def _damaged(path: Path, byte: int) -> BadFile:

@@ -32,15 +32,15 @@ class DriveFolders:
     Before folders are moved in, the database notes which, and where from: what a killed program
     moved in without recording it goes back by that note, and no other folder is ever touched.
 
-    A folder that a drive no longer has stays where it is, since undo may want it. The database
-    notes that it leaves, and it goes when the project is closed, or opened after a kill.
+    A folder that a drive no longer has stays where it is, since undo or redo may want it. The
+    database notes that it leaves, and it goes when the project is closed, or opened after a kill.
     """
 
     def __init__(self, folder: Path, database: Database, settings: ProjectSettings) -> None:
         self._folder = folder
         self._database = database
         self._settings = settings
-        self._leaving_soon: dict[str, int] = {}
+        self._soon: dict[str, JsonValue] = {}
         self._positions: dict[str, int] = {}
         self._read()
 
@@ -58,6 +58,10 @@ class DriveFolders:
         """A drive's folder."""
         return self._folder / DRIVES / self._name_of(id)
 
+    def holds(self, name: str) -> bool:
+        """Whether there is a folder of a drive of this name."""
+        return _is_name(name) and (self._folder / DRIVES / name).is_dir()
+
     def listed(self, id: str) -> ListedDrive:  # noqa: A002 - the word of the trade
         """A drive as it is listed; KeyError when there is none of that id."""
         return ListedDrive(id, self._positions[id], self._name_of(id))
@@ -67,143 +71,129 @@ class DriveFolders:
         return self._folder / TEMPORARY / uuid4().hex
 
     @contextmanager
-    def adopting(self, folders: Mapping[str, Path]) -> Iterator[sqlite3.Connection]:
-        """Move folders in and record them, in one transaction with the body.
+    def moving_in(
+        self, arriving: Mapping[str, Path], others: Mapping[str, Path]
+    ) -> Iterator[tuple[ListedDrive, ...]]:
+        """Move folders to where drives have theirs; the body records them, or they go back.
 
         Parameters
         ----------
-        folders : mapping of str to Path
-            Finished temporary folders by drive id.
+        arriving, others : mapping of str to Path
+            Finished temporary folders by the ids of new drives, and of drives of the project that
+            get another folder.
+
+        Yields
+        ------
+        tuple of ListedDrive
+            New drives and those with other folders, as a step restores them.
 
         Raises
         ------
         ValueError
-            The project has a drive of that id.
+            The project has a drive of the id of a new one.
         NoSpace, InUse
-            The folders are where they were.
+            The folders are where they were, and the drives have those that they had.
         """
-        known = [id_ for id_ in folders if id_ in self.taken or self.path_of(id_).exists()]
+        known = [id_ for id_ in arriving if id_ in self.taken or self.path_of(id_).exists()]
         if known:
             message = f"the project has these drives: {known}"
             raise ValueError(message)
-        self._settings.put(_ARRIVING, {id_: one.parent.name for id_, one in folders.items()})
+        names = {id_: self._free_name(id_) for id_ in others}
+        first, leaving = max(self._positions.values(), default=-1) + 1, self._leaving()
+        listed = [ListedDrive(id_, first + at, id_) for at, id_ in enumerate(arriving)]
+        listed += [ListedDrive(id_, self._positions[id_], name) for id_, name in names.items()]
+        # A kill before the transaction leaves folders that no drive has: they are noted first.
+        if others:
+            self._settings.put(_LEAVING, [*leaving, *names.values()])
+        if arriving:
+            notes = {id_: one.parent.name for id_, one in arriving.items()}
+            self._settings.put(_ARRIVING, {**notes})
         moved: list[tuple[Path, Path]] = []
         try:
-            for id_, folder in folders.items():
-                target = self.path_of(id_)
+            for one in listed:
+                folder = others[one.id] if one.id in others else arriving[one.id]
+                target = self._folder / DRIVES / one.folder
                 with report_as_user_error(target):
                     target.parent.mkdir(exist_ok=True)
                     folder.rename(target)
                 moved.append((folder, target))
-            with self._database.transaction() as connection:
-                first = max(self._positions.values(), default=-1) + 1
-                positions = range(first, first + len(folders))
-                connection.executemany(_INSERT, zip(folders, positions, strict=True))
-                write_setting(connection, _ARRIVING, [])
-                yield connection
+            yield tuple(listed)
         except BaseException:
             self._move_back(moved)
+            with suppress(UserError):
+                self._settings.put(_LEAVING, [*leaving])
             raise
-        self._settings.took(_ARRIVING, [])
-        self._read()
-        for parent in {folder.parent for folder in folders.values()}:
+        for parent in {folder.parent for folder in arriving.values()}:
             # The import's own folder, once the last drive is gone from it.
             if (parent / PLAN).exists():
                 remove_import(parent)
             remove_emptied(parent)
 
-    @contextmanager
-    def replacing(self, folders: Mapping[str, Path]) -> Iterator[sqlite3.Connection]:
-        """Let drives have other folders from now on, in one transaction with the body.
-
-        Parameters
-        ----------
-        folders : mapping of str to Path
-            Finished temporary folders by the id of a drive of the project.
-
-        Raises
-        ------
-        NoSpace, InUse
-            The folders are where they were, and the drives have those that they had.
-        """
-        names = {id_: self._free_name(id_) for id_ in folders}
-        old, leaving = {self._name_of(id_) for id_ in folders}, self._leaving()
-        # A kill before the transaction leaves a folder that no drive has: it is noted first.
-        self._settings.put(_LEAVING, {**leaving, **dict.fromkeys(names.values(), 0)})
-        moved: list[tuple[Path, Path]] = []
-        try:
-            for id_, folder in folders.items():
-                target = self._folder / DRIVES / names[id_]
-                with report_as_user_error(target):
-                    folder.rename(target)
-                moved.append((folder, target))
-            with self._database.transaction() as connection:
-                reported = {**self._table(_NAMES), **names}
-                write_setting(connection, _NAMES, reported)
-                write_setting(connection, _LEAVING, {**leaving, **dict.fromkeys(old, 0)})
-                yield connection
-        except BaseException:
-            self._move_back(moved)
-            with suppress(UserError):
-                self._settings.put(_LEAVING, {**leaving})
-            raise
-        self._settings.took(_NAMES, reported)
-        self._settings.took(_LEAVING, {**leaving, **dict.fromkeys(old, 0)})
-
-    def write(self, connection: sqlite3.Connection, change: Change, position: int) -> None:
-        """Write which drives there are after a change, in the caller's transaction.
-
-        Parameters
-        ----------
-        position : int
-            Of the change in the history; what leaves is wanted as long as it may be undone.
-        """
-        if not (change.removed_drives or change.restored_drives):
+    def write(self, connection: sqlite3.Connection, change: Change) -> None:
+        """Write which drives there are after a change, in the caller's transaction."""
+        if not change.drive_ids:
             return
-        leaving = {
-            **self._leaving(),
-            **dict.fromkeys((one.folder for one in change.removed_drives), position),
-        }
+        gone = [one.folder for one in change.removed_drives]
+        here = {one.folder for one in change.restored_drives}
+        names = self._table(_NAMES)
         for one in change.restored_drives:
-            leaving.pop(one.folder, None)
+            names.pop(one.id, None)
+            if one.folder != one.id:
+                names[one.id] = one.folder
         connection.executemany(
             "DELETE FROM zuka_drives WHERE id = ?", [(one.id,) for one in change.removed_drives]
         )
         connection.executemany(_INSERT, [(one.id, one.position) for one in change.restored_drives])
-        write_setting(connection, _LEAVING, {**leaving})
-        self._leaving_soon = leaving
+        leaving = [name for name in dict.fromkeys((*self._leaving(), *gone)) if name not in here]
+        self._soon = {_NAMES: names, _LEAVING: [*leaving], _ARRIVING: []}
+        for name, value in self._soon.items():
+            write_setting(connection, name, value)
 
     def follow(self) -> None:
         """The transaction of :meth:`write` is through."""
-        self._settings.took(_LEAVING, {**self._leaving_soon})
+        for name, value in self._soon.items():
+            self._settings.took(name, value)
         self._read()
 
     def remove_leaving(self, history: History) -> None:
-        """Remove the folders that no drive has any longer; undo can't bring them back then."""
+        """Remove folders that no drive has any longer; undo can't bring them back then.
+
+        Those of drives whose coming was taken back stay as long as it can be done again.
+        """
         leaving = self._leaving()
         if not leaving:
             return
-        last = max(leaving.values())
-        # On a full disk they stay until the next time.
+        # On a full disk, or where a step is damaged, they stay until the next time.
         with suppress(UserError):
-            if last:
+            steps = history.drive_steps()
+            undone = [change for place, change in steps if place > history.position]
+            kept = {one.folder for change in undone for one in change.restored_drives}
+            going = [name for name in leaving if name not in kept]
+            wanting = [
+                place
+                for place, change in steps
+                if place <= history.position
+                and any(one.folder in going for one in change.removed_drives)
+            ]
+            if wanting:
+                last = max(wanting)
                 with self._database.transaction() as connection:
                     standing = history.end_undo(connection, last)
                 history.ended_undo(standing, last)
-            self._remove(leaving)
+            self._remove(going)
 
-    def _remove(self, leaving: Mapping[str, int]) -> None:
-        kept = {self._name_of(id_) for id_ in self.ids}
-        for name in leaving:
-            if name not in kept and _is_name(name):
+    def _remove(self, going: Sequence[str]) -> None:
+        used = {self._name_of(id_) for id_ in self.ids}
+        for name in going:
+            if name not in used and _is_name(name):
                 remove_folder(self._folder / DRIVES / name, self._folder)
         # What a system holds on to goes the next time.
-        there = {
-            name: 0
-            for name in leaving
-            if name not in kept and _is_name(name) and (self._folder / DRIVES / name).exists()
-        }
-        self._settings.put(_LEAVING, {**there})
+        there: list[JsonValue] = [
+            name
+            for name in self._leaving()
+            if name not in used and _is_name(name) and (self._folder / DRIVES / name).exists()
+        ]
+        self._settings.put(_LEAVING, there)
 
     def remove_leftovers(self) -> None:
         """Remove what was never part of the project, but for imports that can go on."""
@@ -243,17 +233,14 @@ class DriveFolders:
         numbered = (f"{id_}.{number}" for number in count(2))
         return next(name for name in numbered if not (self._folder / DRIVES / name).exists())
 
-    def _leaving(self) -> dict[str, int]:
-        """Folders that no drive has, and the places in the history that want them."""
-        return {
-            name: position
-            for name, position in self._table(_LEAVING).items()
-            if isinstance(position, int)
-        }
+    def _leaving(self) -> list[str]:
+        """Folders that no drive has."""
+        stored = self._settings.get(_LEAVING)
+        return [one for one in stored if isinstance(one, str)] if isinstance(stored, list) else []
 
     def _table(self, name: str) -> dict[str, JsonValue]:
         stored = self._settings.get(name)
-        return stored if isinstance(stored, dict) else {}
+        return dict(stored) if isinstance(stored, dict) else {}
 
     def _move_back(self, moved: Sequence[tuple[Path, Path]]) -> None:
         for folder, target in reversed(moved):

@@ -8,9 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from processing.map.catalogue import Geometry
-from processing.map.change import Change, ListedDrive, Replacement
+from processing.map.change import Change, ListedDrive, Replacement, SystemChange
 from processing.map.feature import Feature, PointReference, Position, Provenance, Status, Vertex
-from processing.map.filed_labels import filed_of_plain, filed_to_plain
+from processing.map.filed_labels import LABEL_STEPS, filed_of_plain, filed_to_plain
+from processing.map.step_files import STEP_FILES, step_files_of_plain, step_files_to_plain
 from processing.project.store.geometry_blob import blob_of, positions_of
 
 COLUMNS = (
@@ -81,17 +82,19 @@ def change_to_json(change: Change) -> str:
             **({} if change.filed is None else {"filed": filed_to_plain(change.filed)}),
             **_plain_drives("removed_drives", change.removed_drives),
             **_plain_drives("restored_drives", change.restored_drives),
+            **({} if change.files is None else {"files": step_files_to_plain(change.files)}),
+            **({} if change.system is None else {"system": _plain_system(change.system)}),
         }
     )
 
 
-def change_from_json(text: str, label_steps: Path) -> Change:
+def change_from_json(text: str, project: Path) -> Change:
     """The change of :func:`change_to_json`.
 
     Parameters
     ----------
-    label_steps : Path
-        Where the project keeps labels of many points.
+    project : Path
+        Its folder, in which steps have folders of their own.
 
     Raises
     ------
@@ -103,10 +106,18 @@ def change_from_json(text: str, label_steps: Path) -> Change:
         added=tuple(_from_plain(one) for one in stored["added"]),
         replaced=tuple(Replacement(_from_plain(b), _from_plain(a)) for b, a in stored["replaced"]),
         removed=tuple(_from_plain(one) for one in stored["removed"]),
-        filed=filed_of_plain(stored["filed"], label_steps) if "filed" in stored else None,
+        filed=filed_of_plain(stored["filed"], project / LABEL_STEPS) if "filed" in stored else None,
         removed_drives=_drives_from(stored.get("removed_drives", [])),
         restored_drives=_drives_from(stored.get("restored_drives", [])),
+        files=step_files_of_plain(stored["files"], project / STEP_FILES)
+        if "files" in stored
+        else None,
+        system=SystemChange(*map(str, stored["system"])) if "system" in stored else None,
     )
+
+
+def _plain_system(system: SystemChange) -> list[str]:
+    return [system.before, system.after]
 
 
 def _plain_drives(name: str, drives: tuple[ListedDrive, ...]) -> dict[str, object]:

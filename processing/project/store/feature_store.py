@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import gc
 import sqlite3
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,16 +13,19 @@ from numpy.typing import NDArray
 from processing.core.errors import UserError
 from processing.core.text import Text
 from processing.map.catalogue import Catalogue
-from processing.map.change import Change
+from processing.map.change import Change, Replacement
 from processing.map.feature import Feature, with_points_at
 from processing.map.filed_labels import FiledLabels
 from processing.map.map_extent import Bounds, extent_after, extent_of
+from processing.map.reference_system import CRS, srs_number, write_reference_system
 from processing.project.store.database import Database
 from processing.project.store.database_errors import changed_elsewhere, damaged
+from processing.project.store.exchanged_files import ExchangedFiles
 from processing.project.store.feature_rows import COLUMNS, feature_of, row_of
 from processing.project.store.history import History, HistoryPosition
 from processing.project.store.label_layer import LabelLayer
 from processing.project.store.open_drives import OpenDrives
+from processing.project.store.project_settings import ProjectSettings, write_setting
 from processing.project.store.runs import Run, write_run
 
 _NAMES = ", ".join(COLUMNS)
@@ -46,6 +49,8 @@ class FeatureStore:
         Written when the database has a change.
     drives : OpenDrives
         Of which steps may remove some.
+    files : ExchangedFiles
+        Moved when the database has a change.
 
     Raises
     ------
@@ -58,17 +63,20 @@ class FeatureStore:
         database: Database,
         history: History,
         catalogue: Catalogue,
-        srs_id: int,
+        settings: ProjectSettings,
         *,
         labels: LabelLayer,
         drives: OpenDrives,
+        files: ExchangedFiles,
     ) -> None:
         self._database = database
         self._history = history
         self._catalogue = catalogue
-        self._srs_id = srs_id
+        self._settings = settings
+        self._srs_id = self._stored_srs()
         self._labels = labels
         self._drives = drives
+        self._files = files
         self._features = self._stored()
         self._extent = self._stored_extent()
 
@@ -87,13 +95,22 @@ class FeatureStore:
         """Whether what a change replaces or removes is what is stored now."""
         return not self._misfits(change)
 
-    def apply(self, label: Text, change: Change, *, run: Run | None = None) -> Change:
+    def apply(
+        self,
+        label: Text,
+        change: Change,
+        *,
+        run: Run | None = None,
+        also: Callable[[sqlite3.Connection], None] | None = None,
+    ) -> Change:
         """Do a change and remember it in the history, in one transaction.
 
         Parameters
         ----------
         run : Run or None
             The run that the change comes from, stored with it.
+        also : callable or None
+            Writes in the same transaction what no undo takes back.
 
         Returns
         -------
@@ -115,6 +132,8 @@ class FeatureStore:
         with self._written(change) as connection:
             if run is not None:
                 write_run(connection, run)
+            if also is not None:
+                also(connection)
             standing = self._history.append(connection, label, change)
         self._follow(change, standing, 1)
         return change.inverse()
@@ -166,47 +185,39 @@ class FeatureStore:
         coming = self._history.coming()
         return None if coming is None else self._step(coming, 1, are_columns_made)
 
-    def rewrite_srs(self, connection: sqlite3.Connection, srs_id: int) -> None:
-        """Write all geometries with another reference system's number, in a transaction."""
-        rows = [(self._row(one, srs_id)[0], one.id) for one in self._features.values()]
-        connection.executemany("UPDATE features SET geom = ? WHERE id = ?", rows)
-
-    def took_srs(self, srs_id: int) -> None:
-        """The transaction of :meth:`rewrite_srs` is through."""
-        self._srs_id = srs_id
-
-    def rewrite_points(
-        self, connection: sqlite3.Connection, positions: Mapping[str, NDArray[np.int64]]
-    ) -> tuple[Feature, ...]:
-        """Let vertices rest on the points that they rested on, in a transaction.
+    def points_elsewhere(
+        self, positions: Mapping[str, NDArray[np.int64]]
+    ) -> tuple[Replacement, ...]:
+        """What becomes of features when points have other places.
 
         Parameters
         ----------
         positions : mapping of str to (n,) int64
-            By drive: where each of its points is now.
-
-        Returns
-        -------
-        tuple of Feature
-            For :meth:`took_points` once the transaction is through.
-
-        Raises
-        ------
-        BadFile
-            Another program has changed the features.
+            By drive: where each of its points is then.
         """
-        self._refuse_changed_elsewhere()
-        moved = tuple(
-            moved
+        return tuple(
+            Replacement(feature, moved)
             for feature in self._features.values()
             if (moved := with_points_at(feature, positions)) is not feature
         )
-        connection.executemany(_UPDATE, [(*self._row(f, self._srs_id), f.id) for f in moved])
-        return moved
 
-    def took_points(self, features: tuple[Feature, ...]) -> None:
-        """The transaction of :meth:`rewrite_points` is through."""
-        self._features.update((feature.id, feature) for feature in features)
+    def write_system(self, connection: sqlite3.Connection, crs: str) -> None:
+        """Write that all coordinates are in another reference system, in a transaction.
+
+        Parameters
+        ----------
+        crs : str
+            ``EPSG:n``; empty for an unknown one.
+        """
+        write_reference_system(connection, crs)
+        write_setting(connection, CRS, crs)
+        rows = [(self._row(one, srs_number(crs))[0], one.id) for one in self._features.values()]
+        connection.executemany("UPDATE features SET geom = ? WHERE id = ?", rows)
+
+    def took_system(self, crs: str) -> None:
+        """The transaction of :meth:`write_system` is through."""
+        self._settings.took(CRS, crs)
+        self._srs_id = srs_number(crs)
 
     def layers_fit(self) -> bool:
         """Whether the stored layers are those of the catalogue.
@@ -251,13 +262,26 @@ class FeatureStore:
         """Take over what the database has; where label files can't, it is taken back."""
         self._history.stands(standing)
         try:
-            self._labels.write(change.labels)
-            if change.filed is not None:
-                self._labels.adopt(change.filed)
+            self._write_files(change)
         except UserError:
             with self._written(change.inverse()) as connection:
                 standing = self._history.step(connection, -by)
             self._history.stands(standing)
+            raise
+
+    def _write_files(self, change: Change) -> None:
+        if change.files is not None:
+            self._files.exchange(change.files)
+            self._drives.follow_files(change.files)
+        try:
+            self._labels.write(change.labels)
+            if change.filed is not None:
+                self._labels.adopt(change.filed)
+        except UserError:
+            if change.files is not None:
+                with suppress(UserError):
+                    self._files.exchange(change.files.inverse())
+                self._drives.follow_files(change.files)
             raise
 
     def _misfits(self, change: Change) -> list[str]:
@@ -289,15 +313,25 @@ class FeatureStore:
         self._take_over(change)
 
     def _write(self, connection: sqlite3.Connection, change: Change) -> None:
+        crs = self._system_after(change)
+        srs_id = srs_number(crs)
+        if srs_id != self._srs_id:
+            self.write_system(connection, crs)
         connection.executemany(
             "DELETE FROM features WHERE id = ?", [(feature.id,) for feature in change.removed]
         )
-        connection.executemany(_INSERT, [self._row(f, self._srs_id) for f in change.added])
+        connection.executemany(_INSERT, [self._row(f, srs_id) for f in change.added])
         afters = [pair.after for pair in change.replaced]
-        connection.executemany(_UPDATE, [(*self._row(f, self._srs_id), f.id) for f in afters])
-        self._drives.write(connection, change, self._history.position + 1)
+        connection.executemany(_UPDATE, [(*self._row(f, srs_id), f.id) for f in afters])
+        self._drives.write(connection, change)
+
+    def _system_after(self, change: Change) -> str:
+        """What somebody said of the reference system since a step counts more than the step."""
+        crs, system = self._settings.text(CRS), change.system
+        return crs if system is None or system.before != crs else system.after
 
     def _take_over(self, change: Change) -> None:
+        self.took_system(self._system_after(change))
         for feature in change.removed:
             del self._features[feature.id]
         for pair in change.replaced:
@@ -320,6 +354,13 @@ class FeatureStore:
                     raise damaged(self._database.path, reason) from error
                 features[feature.id] = feature
         return features
+
+    def _stored_srs(self) -> int:
+        crs = self._settings.text(CRS)
+        try:
+            return srs_number(crs)
+        except ValueError as error:
+            raise damaged(self._database.path, f"zuka_settings.crs: {error}") from error
 
     def _stored_extent(self) -> Bounds | None:
         query = "SELECT min_x, min_y, max_x, max_y FROM gpkg_contents WHERE table_name = 'features'"

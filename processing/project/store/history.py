@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import sqlite3
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 from processing.core.text import Text
 from processing.map.change import Change
 from processing.map.feature import Feature
-from processing.map.filed_labels import LABEL_STEPS
 from processing.project.store.database import Database
 from processing.project.store.database_errors import damaged
 from processing.project.store.feature_rows import change_from_json, change_to_json
@@ -19,6 +19,11 @@ _POSITION = "history_position"
 _FIRST = "history_first"
 _FIRST_WITH = "SELECT place FROM zuka_history WHERE instr(change, ?) > 0 ORDER BY place LIMIT 1"
 _FILED = "SELECT place FROM zuka_history WHERE instr(change, '\"filed\":') > 0"
+_WITH_FILES = "SELECT place FROM zuka_history WHERE instr(change, '\"files\":') > 0"
+_WITH_DRIVES = (
+    "SELECT place FROM zuka_history WHERE (instr(change, '\"removed_drives\":') > 0"
+    " OR instr(change, '\"restored_drives\":') > 0)"
+)
 _LABEL = "SELECT label_en, label_ja FROM zuka_history WHERE place = ?"
 
 
@@ -44,7 +49,6 @@ class History:
 
     def __init__(self, database: Database, settings: ProjectSettings) -> None:
         self._database = database
-        self._label_steps = database.path.parent / LABEL_STEPS
         position = settings.whole(_POSITION)
         self._first = settings.whole(_FIRST)
         self._pending = settings.whole(PENDING)
@@ -98,8 +102,43 @@ class History:
 
     def has_filed(self, by: int) -> bool:
         """Whether the change that undo (−1) or redo (1) is about labels many points; at once."""
-        position = self.position + (0 if by < 0 else 1)
-        return bool(self._database.rows(f"{_FILED} AND place = ?", (position,)))
+        return self._is_among(_FILED, by)
+
+    def coming_move(self, by: int) -> Change | None:
+        """What undo (−1) or redo (1) would do, where it is about drives or files; None elsewhere.
+
+        Raises
+        ------
+        BadFile
+            It is damaged.
+        """
+        if not (self._is_among(_WITH_FILES, by) or self._is_among(_WITH_DRIVES, by)):
+            return None
+        if by > 0:
+            return self.coming()
+        last = self.last()
+        return None if last is None else last.inverse()
+
+    def drive_steps(self) -> tuple[tuple[int, Change], ...]:
+        """The steps that can be taken back or done again and are about drives, with their places.
+
+        Raises
+        ------
+        BadFile
+            One is damaged.
+        """
+        return tuple(self._changes(f"{_WITH_DRIVES} AND place > ?"))
+
+    def file_folders(self) -> frozenset[str]:
+        """Names of the folders of files that steps want which can be taken back or done again.
+
+        Raises
+        ------
+        BadFile
+            One is damaged.
+        """
+        changes = (change for _, change in self._changes(f"{_WITH_FILES} AND place > ?"))
+        return frozenset(one.files.folder.name for one in changes if one.files is not None)
 
     def pending(self) -> Change:
         """The step that was done last before the project was opened, where it was about labels.
@@ -187,15 +226,11 @@ class History:
         write_setting(connection, _FIRST, first)
         return _standing_at(connection, self.position, first)
 
-    def begin_anew(self, connection: sqlite3.Connection) -> HistoryPosition:
-        """Write that points have other places now, in the caller's transaction.
-
-        Older steps name points by the places that they had: none is taken back or done again.
-        """
+    def end_redo(self, connection: sqlite3.Connection) -> HistoryPosition:
+        """Write that nothing that was taken back is done again, in the caller's transaction."""
         connection.execute("DELETE FROM zuka_history WHERE place > ?", (self.position,))
         connection.execute("DELETE FROM zuka_history_labels WHERE place > ?", (self.position,))
-        write_pending(connection, 0)
-        return self.end_undo(connection, self.position)
+        return _standing_at(connection, self.position, self._first)
 
     def ended_undo(self, standing: HistoryPosition, position: int) -> None:
         """The transaction of :meth:`end_undo` is through."""
@@ -206,13 +241,24 @@ class History:
         """The transaction that gave this is through."""
         self._standing = standing
 
+    def _is_among(self, query: str, by: int) -> bool:
+        position = self.position + (0 if by < 0 else 1)
+        return bool(self._database.rows(f"{query} AND place = ?", (position,)))
+
+    def _changes(self, query: str) -> Iterator[tuple[int, Change]]:
+        for (position,) in self._database.rows(query, (self._first,)):
+            change = self._change(int(str(position)))
+            if change is not None:
+                yield int(str(position)), change
+
     def _change(self, position: int) -> Change | None:
         rows = self._database.rows("SELECT change FROM zuka_history WHERE place = ?", (position,))
         try:
             if not rows:
                 return None
             labels = labels_at(self._database, position)
-            return replace(change_from_json(str(rows[0][0]), self._label_steps), labels=labels)
+            found = change_from_json(str(rows[0][0]), self._database.path.parent)
+            return replace(found, labels=labels)
         except (ValueError, KeyError, TypeError, IndexError) as error:
             raise damaged(self._database.path, f"zuka_history.place {position}: {error}") from error
 

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import sqlite3
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
 from processing.map.change import Change
+from processing.map.step_files import StepFiles
 from processing.project.store.drive_folders import DriveFolders
+from processing.recording.camera_images.image_store import IMAGES
 from processing.recording.columns.mapped_pages import MappedPages
 from processing.recording.drive import Drive
 
@@ -25,6 +27,7 @@ class OpenDrives:
         self._pages = MappedPages()
         self._drives: dict[str, Drive] = {}
         self._removed: dict[str, Drive] = {}
+        self._on_open: Callable[[Iterable[Drive]], None] | None = None
 
     @property
     def all(self) -> tuple[Drive, ...]:
@@ -44,32 +47,48 @@ class OpenDrives:
         """
         opened = [Drive(self.folders.path_of(id_), self._pages) for id_ in ids]
         self._drives.update((drive.id, drive) for drive in opened)
+        if self._on_open is not None:
+            self._on_open(opened)
         return tuple(opened)
 
+    def tell_opened(self, to: Callable[[Iterable[Drive]], None]) -> None:
+        """Have a function called with drives that are opened from now on, and with those open."""
+        self._on_open = to
+        to(self.all)
+
+    def follow_files(self, files: StepFiles) -> None:
+        """Files of drives are others now; a list of images is read when a drive is opened."""
+        self.open(
+            id_ for id_ in files.drives if IMAGES in files.names_of(id_) and id_ in self._drives
+        )
+
     def misfits(self, change: Change) -> list[str]:
-        """Drives that a change removes and that aren't there, or restores and that are."""
+        """Drives that a change removes and that aren't there, or restores and that can't be."""
+        going = {one.id for one in change.removed_drives}
         return [
-            *(one.id for one in change.removed_drives if one.id not in self._drives),
-            *(one.id for one in change.restored_drives if one.id not in self._removed),
+            *(id_ for id_ in going if id_ not in self._drives),
+            *(
+                one.id
+                for one in change.restored_drives
+                if (one.id in self._drives and one.id not in going)
+                or not self.folders.holds(one.folder)
+            ),
         ]
 
-    def write(self, connection: sqlite3.Connection, change: Change, position: int) -> None:
-        """Write which drives there are after a change, in the caller's transaction.
-
-        Parameters
-        ----------
-        position : int
-            Of the change in the history.
-        """
-        self.folders.write(connection, change, position)
+    def write(self, connection: sqlite3.Connection, change: Change) -> None:
+        """Write which drives there are after a change, in the caller's transaction."""
+        self.folders.write(connection, change)
 
     def follow(self, change: Change) -> None:
         """The transaction of :meth:`write` is through."""
-        if not (change.removed_drives or change.restored_drives):
+        if not change.drive_ids:
             return
         self.folders.follow()
         for one in change.removed_drives:
-            self._removed[one.id] = self._drives.pop(one.id)
+            self._removed[one.folder] = self._drives.pop(one.id)
         for one in change.restored_drives:
-            self._drives[one.id] = self._removed.pop(one.id)
+            if one.folder in self._removed:
+                self._drives[one.id] = self._removed.pop(one.folder)
+            else:
+                self.open((one.id,))
         self._drives = {id_: self._drives[id_] for id_ in self.folders.ids}

@@ -1,7 +1,8 @@
 """The volumes of a project, each with its map.
 
-Each has a folder of its own below ``results/volumes``, which takes its place by one rename: it is
-there whole or not at all. Its numbers are read when they are listed, its map only when it is shown.
+Each has a folder of its own below ``results/volumes``, which comes and goes by one rename, with a
+step of the history: it is there whole or not at all. Its numbers are read when they are listed,
+its map only when it is shown.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from processing.core.errors import BadFile, MissingInput, report_as_user_error
-from processing.core.owned_files import holds_only, make_marked, refuse_link, remove_folder, unmark
+from processing.core.owned_files import make_marked, remove_folder
 from processing.methods.earthwork.maps.change_grid import ChangeGrid
 from processing.methods.earthwork.volumes.volume_result import VolumeResult
 from processing.methods.ground.filters.cells import CellGrid
@@ -41,8 +42,13 @@ _ARRAYS = {
 }
 
 
+def volume_name(id_: str) -> str:
+    """Where a volume lies in its project's folder, with slashes."""
+    return f"{VOLUMES}/{id_}"
+
+
 def write_volume(kept: KeptVolume, result: VolumeResult, folder: Path) -> None:
-    """Write a volume into a new folder, which :meth:`VolumeStore.add` takes in.
+    """Write a volume into a new folder, which a step of the project takes in.
 
     Raises
     ------
@@ -89,19 +95,6 @@ class VolumeStore:
                 found.append(kept_of(_read_facts(folder), folder))
         return tuple(sorted(found, key=lambda one: (one.made, one.id)))
 
-    def add(self, kept: KeptVolume, folder: Path) -> None:
-        """Take in a written folder on the project's own disk.
-
-        Raises
-        ------
-        NoSpace, MissingInput, BadFile
-            The folder stays where it is.
-        """
-        with report_as_user_error(folder):
-            self._home.mkdir(parents=True, exist_ok=True)
-            folder.rename(self._home / kept.id)
-            unmark(self._home / kept.id)
-
     def read_map(self, id_: str) -> ChangeGrid:
         """The map of a volume; its arrays stay on the disk until they are looked at.
 
@@ -139,30 +132,6 @@ class VolumeStore:
             line,
             between,
         )
-
-    def remove(self, id_: str) -> None:
-        """Forget a volume for good; there is none of that id afterwards.
-
-        Raises
-        ------
-        NoSpace, InUse
-            It is still there.
-        """
-        folder = self._home / id_
-        if Path(id_).name != id_ or not folder.is_dir():
-            return
-        refuse_link(folder)
-        with report_as_user_error(folder):
-            # Without its facts it is none any more, whatever else a system keeps open.
-            (folder / _FACTS).unlink(missing_ok=True)
-        remove_folder(folder, self._home.parent.parent)
-
-    def remove_leftovers(self) -> None:
-        """Remove what a killed program was removing; what it didn't write there stays."""
-        known = {_SECTIONS, *(f"{name}.npy" for name in _ARRAYS)}
-        for folder in tuple(self._home.iterdir()) if self._home.is_dir() else ():
-            if folder.is_dir() and holds_only(folder, known.__contains__):
-                remove_folder(folder, self._home.parent.parent)
 
 
 def _flush(file: int) -> None:

@@ -11,13 +11,14 @@ from processing.core.owned_files import new_file
 from processing.core.text import Text
 from processing.recording.camera_images.image_list import CameraImage, ImageList
 
-_FILE_NAME = "images.json"
+IMAGES = "images.json"
+"""File of a drive's folder."""
 
 
 def write_images(folder: Path, images: ImageList) -> None:
     """Note a drive's images in its folder, whole or not at all."""
     noted = [{**dataclasses.asdict(image), "path": str(image.path.absolute())} for image in images]
-    path = folder / _FILE_NAME
+    path = folder / IMAGES
     temporary = path.with_suffix(".part")
     with report_as_user_error(path):
         text = json.dumps(noted, ensure_ascii=False)
@@ -35,7 +36,7 @@ def read_images(folder: Path) -> ImageList | None:
     BadFile
         The note is damaged.
     """
-    path = folder / _FILE_NAME
+    path = folder / IMAGES
     if not path.is_file():
         return None
     with report_as_user_error(path):

@@ -198,7 +198,9 @@ def test_undo_after_the_job_has_ended_but_before_its_end_is_heard_takes_it_back_
     desk.rest()
     assert not desk.labels.any()
     assert desk.step_files == []
-    assert desk.document.undo_stack.undo_label is None
+    label = desk.document.undo_stack.undo_label
+    assert label is not None
+    assert label.en.startswith("Import")
 
 
 def test_an_undo_is_given_up_where_something_is_painted_meanwhile(desk: LabelSession) -> None:

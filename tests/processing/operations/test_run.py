@@ -95,6 +95,8 @@ def test_each_drive_has_a_run_and_each_run_a_step_of_its_own(folder: Path) -> No
     for left in (3, 0):
         assert undo_step(UndoOperation(folder), SilentMonitor()).label is not None
         assert len(statuses(folder)) == left
+    imported = undo_step(UndoOperation(folder), SilentMonitor())
+    assert [one.en for one in imported.words] == ["Undone: Import left, right"]
     assert undo_step(UndoOperation(folder), SilentMonitor()).label is None
     with closing(Project.open(folder, writing=False)) as opened:
         assert len(opened.runs.all()) == 2  # the tool did run

@@ -144,7 +144,7 @@ def test_a_kill_leaves_the_drive_in_or_out(project, is_undone):
 
 
 def test_a_removed_drive_can_be_imported_again_before_the_project_is_closed(project, streets):
-    first = project.drives[0].id
+    first, second = (one.id for one in project.drives)
     _remove(project, 0)
     asked = replace(streets, inputs=streets.inputs[:1])
     folders = import_drives(
@@ -153,8 +153,13 @@ def test_a_removed_drive_can_be_imported_again_before_the_project_is_closed(proj
     (drive,) = project.adopt_drives(folders)
     assert drive.id != first
     assert project.features.undo() is not None
-    assert len(project.drives) == 3
+    assert len(project.drives) == 1
+    assert project.features.undo() is not None
+    assert len(project.drives) == 2
+    assert project.features.redo() is not None
+    assert project.features.redo() is not None
+    assert [one.id for one in project.drives] == [second, drive.id]
     folder: Path = project.folder
     project.close()
     with closing(Project.open(folder)) as again:
-        assert len(again.drives) == 3
+        assert len(again.drives) == 2

@@ -10,7 +10,7 @@ from contextlib import closing
 import numpy as np
 
 from processing.project.project import Project
-from tests.processing.project.labelled import all_labels, labelled_project
+from tests.processing.project.labelled import PAINT, all_labels, labelled_project
 
 # The process may write no file longer than the limit: as on a full disk.
 ON_A_FULL_DISK = """
@@ -64,6 +64,6 @@ def test_on_a_full_disk_labels_stay_as_they_are_and_work_goes_on_after(tmp_path)
         labels = all_labels(project.drives[0])
         np.testing.assert_array_equal(labels, np.load(kept))
         assert (labels[:50] == 67).all()
-        while project.features.undo():
-            pass
+        while project.history.undo_label == PAINT:
+            assert project.features.undo()
         assert not all_labels(project.drives[0]).any()

@@ -80,7 +80,7 @@ def test_rows_and_pulses_are_those_of_an_import_with_the_trajectory(
     project, delivery, with_trajectory
 ):
     before = project.drives[0]
-    (drive,) = project.complete_drives([_completed(project, delivery)])
+    (drive,) = project.take_in((), [_completed(project, delivery)])
     assert drive.id == before.id
     assert drive.info.name == "通り"
     assert drive.info.rows_by == "trajectory"
@@ -112,7 +112,7 @@ def test_what_was_drawn_and_labelled_stays_on_its_points(project, delivery):
     truth.parent.mkdir(parents=True)
     (drive.columns["intensity"] % 7).astype("u1").tofile(truth)
 
-    (completed,) = project.complete_drives([_completed(project, delivery)])
+    (completed,) = project.take_in((), [_completed(project, delivery)])
     feature = project.features.get("line")
     assert feature is not None
     for vertex in feature.vertices:
@@ -135,17 +135,62 @@ def test_what_was_drawn_and_labelled_stays_on_its_points(project, delivery):
         assert len(list((folder / "drives").iterdir())) == 1
 
 
-def test_steps_on_points_that_moved_are_not_taken_back_and_later_ones_are(project, delivery):
-    drive = project.drives[0]
-    has_rows = drive.revolutions is not None
-    project.features.apply(LABEL, Change(added=(_line_on(drive, [7, 4000]),)))
-    project.complete_drives([_completed(project, delivery)])
-    assert project.history.can_undo is has_rows
-    later = replace(_line_on(project.drives[0], [9, 10]), id="later")
-    project.features.apply(LABEL, Change(added=(later,)))
-    assert project.features.undo() is not None
-    assert project.features.get("later") is None
-    assert (project.features.undo() is not None) is has_rows
+def test_a_completion_is_taken_back_and_done_again_among_other_steps(project, delivery):
+    before = project.drives[0]
+    was, line = before.info, _line_on(before, [7, 4000])
+    project.features.apply(LABEL, Change(added=(line,)))
+    labels = label_changes(before.id, np.arange(50), np.zeros(50, np.uint8), 5)
+    project.features.apply(LABEL, Change(labels=labels))
+    (drive,) = project.take_in((), [_completed(project, delivery)])
+    moved = project.features.get("line")
+    project.features.apply(LABEL, Change(added=(replace(_line_on(drive, [9, 10]), id="later"),)))
+    for _ in range(2):
+        assert project.features.undo() is not None
+        assert project.history.undo_label == Text("Add to 通り", "通り への追加")
+        assert project.features.undo() is not None
+        (drive,) = project.drives
+        assert drive.info == was
+        assert project.features.get("line") == line
+        assert (labels_of(drive, np.arange(50)) == 5).all()
+        # What was done on the points as they were is taken back and done again.
+        assert project.features.undo() is not None
+        assert not labels_of(drive, np.arange(50)).any()
+        for _ in range(3):
+            assert project.features.redo() is not None
+        (drive,) = project.drives
+        assert drive.info.rows_by == "trajectory"
+        assert project.features.get("line") == moved
+        assert project.features.get("later") is not None
+        assert (labels_of(drive, np.arange(drive.count)) == 5).sum() == 50
+
+
+@pytest.mark.parametrize("is_undone", [False, True])
+@pytest.mark.parametrize("is_killed", [False, True])
+def test_a_completion_outlives_the_closed_project(project, delivery, is_undone, is_killed):
+    folder = project.folder
+    project.features.apply(LABEL, Change(added=(_line_on(project.drives[0], [7, 4000]),)))
+    was, line = project.drives[0].info, project.features.get("line")
+    (drive,) = project.take_in((), [_completed(project, delivery)])
+    info, moved = drive.info, project.features.get("line")
+    if is_undone:
+        project.features.undo()
+    if is_killed:
+        copy = folder.with_name("killed.zuka")
+        shutil.copytree(folder, copy, ignore=shutil.ignore_patterns("lock*"))
+        folder = copy
+    else:
+        project.close()
+    with closing(Project.open(folder)) as again:
+        assert again.drives[0].info == (was if is_undone else info)
+        assert again.features.get("line") == (line if is_undone else moved)
+        if not is_undone:
+            # The folder that the drive had is gone, and with it what was done on its points.
+            assert not again.history.can_undo
+            assert [one.name for one in (folder / "drives").iterdir()] == [f"{drive.id}.2"]
+            return
+        assert again.features.redo() is not None
+        assert again.drives[0].info == info
+        assert again.features.get("line") == moved
 
 
 def test_labels_that_were_set_meanwhile_are_not_lost(project, delivery):
@@ -154,9 +199,9 @@ def test_labels_that_were_set_meanwhile_are_not_lost(project, delivery):
     labels = label_changes(drive.id, np.arange(50), np.zeros(50, np.uint8), 5)
     project.features.apply(LABEL, Change(labels=labels))
     with pytest.raises(OutOfRange, match="changed"):
-        project.complete_drives([completed])
+        project.take_in((), [completed])
     again = carry_results_again(completed, drive, SilentMonitor())
-    (drive,) = project.complete_drives([again])
+    (drive,) = project.take_in((), [again])
     assert (labels_of(drive, np.arange(drive.count)) == 5).sum() == 50
 
 
@@ -176,7 +221,7 @@ def test_a_kill_before_the_drive_is_taken_over_leaves_it_as_it_was(project, deli
     folder, drive = project.folder, project.drives[0]
     completed = _completed(project, delivery)
     copy = folder.with_name("killed.zuka")
-    moving = project._folders.replacing({drive.id: completed.folder})
+    moving = project._folders.moving_in({}, {drive.id: completed.folder})
     moving.__enter__()
     # As a kill leaves it: the folder is moved in, and the database knows nothing of it.
     shutil.copytree(folder, copy, ignore=shutil.ignore_patterns("lock*"))

@@ -22,10 +22,11 @@ from processing.project.evaluation.truth_store import TruthStore
 from processing.project.importing.importing import ImportRequest, import_drives
 from processing.project.importing.unfinished_imports import remove_import, remove_litter
 from processing.project.project import Project
+from processing.project.store.exchanged_files import ExchangedFiles
 from processing.project.store.label_filing import remove_unlisted
 from processing.project.store.project_lock import ProjectLock
 from processing.project.store.reading_connection import connect
-from processing.project.volumes.volume_store import VolumeStore
+from processing.project.volumes.volume_store import volume_name
 from processing.recording.camera_images.calibration import CameraOffset
 from processing.recording.camera_images.offset_store import write_offsets
 from processing.recording.columns.replacing import finish_replacing, new_columns
@@ -44,6 +45,8 @@ FOLDERS = (
     "drives/{drive}/whole",
     "label_steps",
     "label_steps/0123",
+    "step_files",
+    "step_files/0123",
     "results",
     "results/volumes",
     "results/volumes/0123",
@@ -167,10 +170,16 @@ def test_a_database_does_not_name_drives_outside_of_the_project(project: Path, n
         Project.open(project)
 
 
+def _files(project: Path) -> ExchangedFiles:
+    return ExchangedFiles(project, {}.__getitem__)
+
+
 def _volumes_forgotten(project: Path) -> None:
-    store = VolumeStore(project)
-    store.remove_leftovers()
-    store.remove("0123")
+    step = _files(project).new()
+    step.take_away(volume_name("0123"))
+    files = step.files()
+    assert files is not None
+    _files(project).exchange(files)
 
 
 REMOVALS: Mapping[str, tuple[str, Callable[[Path], object]]] = {
@@ -184,6 +193,8 @@ REMOVALS: Mapping[str, tuple[str, Callable[[Path], object]]] = {
         "label_steps/0123",
         lambda project: remove_unlisted(project / "label_steps", ("0123",)),
     ),
+    "files": ("step_files", lambda project: _files(project).remove_unlisted(())),
+    "files of a step": ("step_files/0123", lambda project: _files(project).remove_unlisted(())),
     "volumes": ("results/volumes", _volumes_forgotten),
     "a volume": ("results/volumes/0123", _volumes_forgotten),
     "a folder": ("tmp", lambda project: remove_folder(project / "tmp" / "inside", project)),
@@ -257,7 +268,13 @@ def test_facts_on_tiles_are_not_written_through_a_link(
     assert (tmp_path / "tile_bounds_scan.npy").is_file()
 
 
-OTHERS = ("tmp/photos", "tmp/import-2024", "label_steps/notes", "results/volumes/mine")
+OTHERS = (
+    "tmp/photos",
+    "tmp/import-2024",
+    "label_steps/notes",
+    "step_files/notes",
+    "results/volumes/mine",
+)
 
 
 @pytest.mark.parametrize("position", OTHERS)
@@ -267,7 +284,6 @@ def test_what_somebody_put_into_a_project_stays(project: Path, position: str) ->
     (project / "tmp").mkdir(exist_ok=True)
     (project / "tmp" / "mine.txt").write_text("mine")
     with closing(Project.open(project)) as opened:
-        VolumeStore(project).remove_leftovers()
         mine = opened.drives[0].folder / "truths" / "mine"
         mine.mkdir(parents=True)
         (mine / "mine.txt").write_text("mine")

@@ -1,9 +1,10 @@
-"""Volumes kept with a project: whole or not at all, listed without their maps, removed for good."""
+"""Volumes kept with a project: whole or not at all, listed without their maps."""
 
 from __future__ import annotations
 
 import subprocess
 import sys
+from contextlib import closing
 from dataclasses import replace
 from datetime import UTC, date, datetime
 from pathlib import Path
@@ -19,6 +20,8 @@ from processing.methods.earthwork.maps.change_grid import ChangeGrid
 from processing.methods.earthwork.sections.drawing_parts import DrawnSection, SectionedLine
 from processing.methods.earthwork.volumes.volume_result import Registration, VolumeResult, Volumes
 from processing.methods.ground.filters.cells import CellGrid
+from processing.operations.project_volumes import MadeVolume, remove_volume, store_volume
+from processing.project.project import Project
 from processing.project.volumes.volume import (
     ChosenSide,
     KeptVolume,
@@ -61,35 +64,48 @@ def _request() -> VolumeRequest:
     )
 
 
-def _kept(project: Path, made: datetime = MADE) -> KeptVolume:
-    result = _result()
-    kept = new_volume(_request(), result, crs="EPSG:6677", version=2, made=made)
-    folder = project / "tmp" / kept.id
-    write_volume(kept, result, folder)
-    VolumeStore(project).add(kept, folder)
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """An empty project's."""
+    folder = tmp_path / "site.zuka"
+    Project.create(folder, "EPSG:6677").close()
+    return folder
+
+
+def keep(folder: Path, kept: KeptVolume, result: VolumeResult) -> KeptVolume:
+    """Have a project keep a volume."""
+    made = folder / "tmp" / kept.id
+    with closing(Project.open(folder)) as project:
+        write_volume(kept, result, made)
+        store_volume(project, MadeVolume(kept, made))
     return kept
 
 
-def test_a_volume_is_read_again_as_it_was_kept(tmp_path: Path) -> None:
-    kept = _kept(tmp_path)
-    assert VolumeStore(tmp_path).all() == (kept,)
-    change, expected = VolumeStore(tmp_path).read_map(kept.id), _change()
+def _kept(folder: Path, made: datetime = MADE) -> KeptVolume:
+    result = _result()
+    kept = new_volume(_request(), result, crs="EPSG:6677", version=2, made=made)
+    return keep(folder, kept, result)
+
+
+def test_a_volume_is_read_again_as_it_was_kept(folder: Path) -> None:
+    kept = _kept(folder)
+    assert VolumeStore(folder).all() == (kept,)
+    change, expected = VolumeStore(folder).read_map(kept.id), _change()
     for name in ("before", "after", "is_measured", "inside"):
         np.testing.assert_array_equal(getattr(change, name), getattr(expected, name))
     np.testing.assert_array_equal(change.grid.origin, expected.grid.origin)
     assert (change.grid.size_m, change.grid.rows, change.grid.columns) == (0.5, 3, 4)
-    result = VolumeStore(tmp_path).read_result(kept)
+    result = VolumeStore(folder).read_result(kept)
     assert (result.volumes, result.registration) == (_result().volumes, SHIFT)
     assert (result.line, result.between) == (None, ())
 
 
-def test_a_volume_without_registration_and_lines_is_read_again(tmp_path: Path) -> None:
+def test_a_volume_without_registration_and_lines_is_read_again(folder: Path) -> None:
     result = _result(None)
     request = VolumeRequest(ChosenSide(SideKind.LEVEL, height_m=4.25), BEFORE, {})
     kept = new_volume(request, result, crs="", version=1, made=MADE)
-    write_volume(kept, result, tmp_path / "made")
-    VolumeStore(tmp_path).add(kept, tmp_path / "made")
-    assert VolumeStore(tmp_path).all() == (kept,)
+    keep(folder, kept, result)
+    assert VolumeStore(folder).all() == (kept,)
 
 
 def _section(station_m: float, count: int, inside: NDArray[np.bool_] | None) -> DrawnSection:
@@ -100,15 +116,14 @@ def _section(station_m: float, count: int, inside: NDArray[np.bool_] | None) -> 
     return DrawnSection(station_m, name, offsets, offsets * 0.2, after, 1.5, 0.25, inside)
 
 
-def test_sections_are_read_again_with_the_earth_between_them(tmp_path: Path) -> None:
+def test_sections_are_read_again_with_the_earth_between_them(folder: Path) -> None:
     xy = np.array([[0.0, 0.0], [20.0, 1 / 3]])
     sections = _section(0.0, 5, np.arange(4) > 0), _section(10.0, 9, None)
     line = SectionedLine("中心線", xy, 2.5, sections)
     result = replace(_result(), method="end-area", line=line, between=((1.5, np.nan),))
     kept = new_volume(_request(), result, crs="", version=1, made=MADE)
-    write_volume(kept, result, tmp_path / "made")
-    store = VolumeStore(tmp_path)
-    store.add(kept, tmp_path / "made")
+    keep(folder, kept, result)
+    store = VolumeStore(folder)
     found = store.read_result(kept)
     assert found.line is not None
     np.testing.assert_array_equal(found.line.xy, xy)
@@ -120,24 +135,24 @@ def test_sections_are_read_again_with_the_earth_between_them(tmp_path: Path) -> 
             np.testing.assert_array_equal(getattr(section, name), getattr(expected, name))
     np.testing.assert_array_equal(found.line.sections[0].is_inside, sections[0].is_inside)
     assert found.line.sections[1].is_inside is None
-    path = tmp_path / "results" / "volumes" / kept.id / "sections.npz"
+    path = folder / "results" / "volumes" / kept.id / "sections.npz"
     path.write_bytes(path.read_bytes()[:-30])
     with pytest.raises(BadFile):
         store.read_result(kept)
 
 
-def test_the_first_one_is_listed_first(tmp_path: Path) -> None:
-    later = _kept(tmp_path, datetime(2026, 6, 1, tzinfo=UTC))
-    earlier = _kept(tmp_path)
-    assert VolumeStore(tmp_path).all() == (earlier, later)
+def test_the_first_one_is_listed_first(folder: Path) -> None:
+    later = _kept(folder, datetime(2026, 6, 1, tzinfo=UTC))
+    earlier = _kept(folder)
+    assert VolumeStore(folder).all() == (earlier, later)
 
 
-def test_what_was_not_taken_in_is_not_there(tmp_path: Path) -> None:
+def test_what_was_not_taken_in_is_not_there(folder: Path) -> None:
     kept = new_volume(_request(), _result(), crs="", version=1, made=MADE)
-    write_volume(kept, _result(), tmp_path / "tmp" / kept.id)
-    assert VolumeStore(tmp_path).all() == ()
+    write_volume(kept, _result(), folder / "tmp" / kept.id)
+    assert VolumeStore(folder).all() == ()
     with pytest.raises(MissingInput):
-        VolumeStore(tmp_path).read_map(kept.id)
+        VolumeStore(folder).read_map(kept.id)
 
 
 def test_writing_that_fails_leaves_no_folder(tmp_path: Path) -> None:
@@ -148,64 +163,62 @@ def test_writing_that_fails_leaves_no_folder(tmp_path: Path) -> None:
     assert not (tmp_path / "made").exists()
 
 
-def test_a_removed_volume_is_gone_and_others_stay(tmp_path: Path) -> None:
-    removed, kept = _kept(tmp_path), _kept(tmp_path)
-    store = VolumeStore(tmp_path)
-    store.remove(removed.id)
-    store.remove(removed.id)
-    store.remove("../../tmp")
-    assert store.all() == (kept,)
-    assert (tmp_path / "tmp").is_dir()
-
-
-def test_what_a_kill_left_of_a_removal_goes_at_the_next_opening(tmp_path: Path) -> None:
-    kept = _kept(tmp_path)
-    folder = tmp_path / "results" / "volumes" / kept.id
-    (folder / "volume.json").unlink()
-    store = VolumeStore(tmp_path)
-    assert store.all() == ()
-    store.remove_leftovers()
-    assert not folder.exists()
+def test_a_removed_volume_is_gone_and_others_stay_until_undo_brings_it_back(
+    folder: Path,
+) -> None:
+    removed, kept = _kept(folder), _kept(folder)
+    with closing(Project.open(folder)) as project:
+        remove_volume(project, removed)
+        assert VolumeStore(folder).all() == (kept,)
+    with closing(Project.open(folder)) as project:
+        assert project.history.undo_label is not None
+        assert project.history.undo_label.en.startswith("Remove Volume")
+        assert project.features.undo() is not None
+    assert {one.id for one in VolumeStore(folder).all()} == {removed.id, kept.id}
+    assert VolumeStore(folder).read_result(removed).volumes == _result().volumes
 
 
 @pytest.mark.parametrize("text", ["", "[]", "{", '{"made": 3}', "\x00\x00"])
-def test_damaged_facts_are_left_out_of_the_list(tmp_path: Path, text: str) -> None:
-    damaged, kept = _kept(tmp_path), _kept(tmp_path)
-    home = tmp_path / "results" / "volumes"
+def test_damaged_facts_are_left_out_of_the_list(folder: Path, text: str) -> None:
+    damaged, kept = _kept(folder), _kept(folder)
+    home = folder / "results" / "volumes"
     (home / damaged.id / "volume.json").write_text(text, encoding="utf-8")
-    assert VolumeStore(tmp_path).all() == (kept,)
+    assert VolumeStore(folder).all() == (kept,)
     with pytest.raises(BadFile):
-        VolumeStore(tmp_path).read_map(damaged.id)
+        VolumeStore(folder).read_map(damaged.id)
 
 
 @pytest.mark.parametrize("name", ["before.npy", "inside.npy"])
-def test_a_damaged_map_is_said_in_a_sentence(tmp_path: Path, name: str) -> None:
-    kept = _kept(tmp_path)
-    path = tmp_path / "results" / "volumes" / kept.id / name
+def test_a_damaged_map_is_said_in_a_sentence(folder: Path, name: str) -> None:
+    kept = _kept(folder)
+    path = folder / "results" / "volumes" / kept.id / name
     whole = path.read_bytes()
     for broken in (b"", whole[:20], whole[:-3], np.lib.format.magic(1, 0)):
         path.write_bytes(broken)
         with pytest.raises(BadFile):
-            VolumeStore(tmp_path).read_map(kept.id)
+            VolumeStore(folder).read_map(kept.id)
     path.unlink()
     with pytest.raises(MissingInput):
-        VolumeStore(tmp_path).read_map(kept.id)
+        VolumeStore(folder).read_map(kept.id)
 
 
 _WRITES_ON = """
 import sys
 from datetime import UTC, datetime
 from pathlib import Path
+from processing.operations.project_volumes import MadeVolume, store_volume
+from processing.project.project import Project
 from processing.project.volumes.volume import new_volume
-from processing.project.volumes.volume_store import VolumeStore, write_volume
+from processing.project.volumes.volume_store import write_volume
 from tests.processing.project.volumes.test_volume_store import large_result, request_of_a_site
 
-project = Path(sys.argv[1])
+folder = Path(sys.argv[1])
+project = Project.open(folder)
 result = large_result()
 while True:
     kept = new_volume(request_of_a_site(), result, crs="", version=1, made=datetime.now(UTC))
-    write_volume(kept, result, project / "tmp" / kept.id)
-    VolumeStore(project).add(kept, project / "tmp" / kept.id)
+    write_volume(kept, result, folder / "tmp" / kept.id)
+    store_volume(project, MadeVolume(kept, folder / "tmp" / kept.id))
     print(kept.id, flush=True)
 """
 
@@ -226,15 +239,14 @@ def large_result() -> VolumeResult:
 
 
 @pytest.mark.parametrize("count", [1, 2, 3])
-def test_a_kill_while_volumes_are_written_leaves_only_whole_ones(
-    tmp_path: Path, count: int
-) -> None:
-    command = [sys.executable, "-c", _WRITES_ON, str(tmp_path)]
+def test_a_kill_while_volumes_are_written_leaves_only_whole_ones(folder: Path, count: int) -> None:
+    command = [sys.executable, "-c", _WRITES_ON, str(folder)]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
         assert process.stdout is not None
         written = [process.stdout.readline().strip() for _ in range(count)]
         process.kill()
-    found = VolumeStore(tmp_path).all()
+    Project.open(folder).close()
+    found = VolumeStore(folder).all()
     assert set(written) <= {kept.id for kept in found}
     for kept in found:
-        assert VolumeStore(tmp_path).read_result(kept).change.change_m.shape == (1500, 1500)
+        assert VolumeStore(folder).read_result(kept).change.change_m.shape == (1500, 1500)
