@@ -90,7 +90,9 @@ class Document(QObject):
         self._bundled_catalogue = read_catalogue(path_of("catalogue/level500.toml"))
         self._job_results = JobResultApplier(jobs, self)
         self._job_results.refused.connect(self.refused)
-        self._label_steps = LabelSteps(self._job_results, self.undo_stack, self._change_history, self)
+        self._label_steps = LabelSteps(
+            self._job_results, self.undo_stack, self._change_history, self
+        )
         self._label_steps.step_coming.connect(self.step_coming)
         self._runs = RunResultApplier(
             self._job_results, self._label_steps, self._store_finished, self._store_prepared
