@@ -17,7 +17,7 @@ _VECTORS = "processing.formats.vectors"
 _SURFACES = "processing.formats.surfaces"
 _DRAWINGS = "processing.formats.drawings"
 _LEDGERS = "processing.formats.ledgers.ledger_csv"
-_LAS = f"{_POINTS}.las:read_chunks"
+_LAS = f"{_POINTS}.las.las:read_chunks"
 _RESULTS = f"{_POINTS}.las_results:write_results"
 _TRUTH = f"{_POINTS}.point_codes:read_truth"
 _LINES = f"{_VECTORS}.line_files:read_lines"
@@ -73,7 +73,7 @@ _POINT_FORMATS = (
         "text",
         Text("Text", "テキスト"),
         (".pts", ".xyz", ".txt", ".csv"),
-        reads={Content.POINTS: f"{_POINTS}.text_points:open_text_points", Content.CLASSES: _TRUTH},
+        reads={Content.POINTS: f"{_POINTS}.text.text_points:open_text_points", Content.CLASSES: _TRUTH},
     ),
     Format(
         "pulses",
