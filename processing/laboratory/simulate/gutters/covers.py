@@ -23,6 +23,9 @@ from processing.laboratory.simulate.gutters.runs import CoverPosition, CoverStyl
 from processing.laboratory.simulate.scene.mesh import Floats
 from processing.laboratory.simulate.street.plan import LEFT
 
+_CHIP_M, _CLEAR_M = (0.02, 0.06), 0.01
+"""Length of a broken edge across the gutter; what is left of a lid's end beside it at least."""
+
 _HIDDEN_M = 0.003  # a cell under so much dirt does not show
 
 
@@ -120,11 +123,11 @@ def corners_of(covers: CoverPlacement, number: int, long_m: float, wide_m: float
 
 
 def holes_of(
-    habit: CoverStyle, wide_m: float, position: CoverPosition, *, is_other: bool
+    habit: CoverStyle, wide_m: float, position: CoverPosition, *, is_other: bool, is_blind: bool
 ) -> HoleRow:
-    """The holes of a cover; a lid of another mould (`is_other`) has a single one."""
+    """The holes of a cover; a lid of another mould (`is_other`) has a single one, a blind none."""
     kind = habit.kind
-    if position.what == "grating":
+    if position.what == "grating" or is_blind:
         return HoleRow(0, 0.0, 0.0, ())
     half = kind.hole_wide_m / 2
     if kind.holes == 1 or is_other:
@@ -135,9 +138,15 @@ def holes_of(
 
 
 def cover_pieces(
-    random: Generator, habit: CoverStyle, channel: Channel, position: CoverPosition, holes: HoleRow
+    random: Generator,
+    gutter: tuple[CoverStyle, Channel],
+    position: CoverPosition,
+    holes: HoleRow,
+    *,
+    is_chipped: bool,
 ) -> CoverShape:
     """The shape of a lid or a grating."""
+    habit, channel = gutter
     wide = channel.opening_m - 2 * habit.gap_m
     if position.what == "grating":
         # Bars as in makers' tables: 5–8 mm wide every 20–33 mm, fine ones (細目) every 15 mm.
@@ -145,10 +154,24 @@ def cover_pieces(
         pitch = float(random.choice([0.015, random.uniform(0.02, 0.033)], p=[0.15, 0.85]))
         high = min(channel.thick_m, float(random.uniform(0.03, 0.06)))
         return grating_pieces(Grating(position.long_m, wide, high, max(pitch, 2 * bar), bar))
-    depth = holes.long_m / 2 - 0.001
+    depth = max(holes.long_m, habit.kind.hole_long_m) / 2 - 0.001
     is_cut = min(abs(position.long_m - one) for one in habit.lengths_m) > 1e-6
     depths = (depth, 0.0 if is_cut else depth)
-    return lid_pieces(Lid(position.long_m, wide, channel.thick_m - 0.005, holes.notches, depths))
+    notches = _with_chip(random, holes.notches, wide) if is_chipped else holes.notches
+    depths = depths if notches else (0.0, 0.0)
+    return lid_pieces(Lid(position.long_m, wide, channel.thick_m - 0.005, notches, depths))
+
+
+def _with_chip(
+    random: Generator, notches: tuple[tuple[float, float], ...], wide_m: float
+) -> tuple[tuple[float, float], ...]:
+    """Holes of a lid and a place where its end has broken away, where one is free of holes."""
+    long = float(random.uniform(*_CHIP_M))
+    low = float(random.uniform(-wide_m / 2 + _CLEAR_M, wide_m / 2 - _CLEAR_M - long))
+    chip = low, low + long
+    if any(chip[0] < right + _CLEAR_M and left - _CLEAR_M < chip[1] for left, right in notches):
+        return notches
+    return tuple(sorted((*notches, chip)))
 
 
 def uncovered_share(

@@ -52,6 +52,9 @@ _CAST_M = 0.02  # a wider rest of a run is closed by concrete
 _BEND_STEP_M = 2.0
 _REPLACED_SHARE = 0.04
 _BASIN_DEEPER_M = 0.15
+_BLIND_SHARE, _CHIPPED_SHARE, _CHIPS = 0.12, 0.3, 4
+"""Of the lids of a gutter as worn as any: those without holes, which replaced broken ones; those
+with an end that is broken away, in so many shapes."""
 
 
 @dataclass(frozen=True)
@@ -229,10 +232,23 @@ def _add_covers(
             rows.append(None)
             continue
         is_new, is_other = made[number] < (_REPLACED_SHARE, 0.3)
-        holes = holes_of(gutter.habit, gutter.wide_m, position, is_other=bool(is_new and is_other))
-        key = (position.what, round(position.long_m, 6), holes.count)
+        # Of all lids alike, whether one is blind or chipped says what is left of its own number.
+        rest = float(made[number, 1])
+        holes = holes_of(
+            gutter.habit,
+            gutter.wide_m,
+            position,
+            is_other=bool(is_new and is_other),
+            is_blind=not is_new and rest > 1.0 - _BLIND_SHARE * gutter.habit.wear,
+        )
+        is_chipped = not is_new and rest < _CHIPPED_SHARE * gutter.habit.wear**2
+        chip = int(rest * 1e6) % _CHIPS if is_chipped else -1
+        key = (position.what, round(position.long_m, 6), holes.count, chip)
         if key not in shapes:
-            shapes[key] = cover_pieces(random, gutter.habit, gutter.channel, position, holes)
+            own = chance(number, "chip", int(rest * 1e6)) if is_chipped else random
+            shapes[key] = cover_pieces(
+                own, (gutter.habit, gutter.channel), position, holes, is_chipped=is_chipped
+            )
         shape = shapes[key]
         material = Material.CONCRETE if is_new else gutter.worn
         instance = built.thing(position.what)
