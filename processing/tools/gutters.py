@@ -69,17 +69,6 @@ class GutterParameters:
         ),
         picture="vehicle/reach",
     )
-    height_m: float = length(
-        2.65,
-        low=0.5,
-        high=5.0,
-        name=Text("Scanner above the road", "スキャナ高"),
-        explanation=Text(
-            "Height of the scanner above the road, within 1.5 m (MMS height of the thesis).",
-            "路面からのスキャナの高さ（±1.5mの範囲で合えば十分です）。",
-        ),
-        picture="vehicle/height",
-    )
     aside_m: float = length(
         0.02,
         low=0.005,
@@ -222,7 +211,6 @@ def notch_parameters(parameters: GutterParameters) -> NotchParameters:
     return replace(
         NotchParameters(),
         reach_m=parameters.reach_m,
-        height_m=parameters.height_m,
         aside_m=parameters.aside_m,
         down_m=parameters.down_m,
     )

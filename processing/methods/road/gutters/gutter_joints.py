@@ -97,6 +97,26 @@ wrong. By trial."""
 _ROUNDING_M = 1e-6
 """Guard: the widest joint itself is among those that are tried."""
 
+_CELL_M, _BAND_CELLS = 0.025, 1
+"""Notches so near to each other across a gutter are of one opening or one groove: a spacing of
+points, to either side."""
+
+_OPENING_M = 0.04
+"""An opening's notches lie so near to each other along the gutter (s of Takahashi 2022, Table
+7-3)."""
+
+_NO_OTHER_M = 0.34
+"""No other joint is nearer, for the shortest lid is 0.5 m: what is open there too makes an opening
+worth the less of a joint."""
+
+_BAND_REACH_M, _SHORTEST_M = 1.5, 0.5
+"""So far to each side a band is asked how open it is, three joints of the shortest lids: more than
+their openings is a groove. What is open k times as often as joints are is worth 1/k² of one, near
+the logarithm of the likelihoods."""
+
+_LEAST_SUM = 1e-9
+"""Guard of a division."""
+
 _LEAST_JOINTS = 3
 """Of a row: two covers (as `_LEAST_COVERS` of `gutter_runs`)."""
 
@@ -113,6 +133,61 @@ def lengths_of(usual_m: Sequence[float], others_m: Sequence[float] = ()) -> dict
     """
     usual = dict.fromkeys(usual_m, float(np.log(len(usual_m))))
     return usual | dict.fromkeys(others_m, _OTHER_LENGTH_COST)
+
+
+@dataclass(frozen=True)
+class RowNotches:
+    """Notches on a gutter.
+
+    Attributes
+    ----------
+    along_m : (n,) float64
+        Places along its axis.
+    covers : (n,) float64
+        How sure it is that each is an opening of covers: less where it is open all along the
+        gutter at the same place across, as the groove beside the lids is, or a curb's foot.
+    alone : (n,) float64
+        Share of what is open about it, at the same place across, that is of its own opening: 1 at
+        a hole, less in gratings and grooves.
+    """
+
+    along_m: _Floats
+    covers: _Floats
+    alone: _Floats
+
+    @property
+    def joints(self) -> _Floats:
+        """(n,) how sure it is that each is of a joint."""
+        return self.covers * self.alone
+
+    @staticmethod
+    def of(along_m: _Floats, across_m: _Floats, strength: _Floats) -> RowNotches:
+        """From places along and across, and strengths.
+
+        What is open in the same band is asked on the emptier side of each notch: a grating to one
+        side of a joint, or the end of a groove, says nothing of the other side.
+        """
+        if along_m.size == 0:
+            return RowNotches(along_m, strength, strength)
+        bins = np.floor((along_m - along_m.min()) / _OPENING_M).astype(np.int64)
+        cells = np.floor((across_m - across_m.min()) / _CELL_M).astype(np.int64)
+        reach, near = round(_BAND_REACH_M / _OPENING_M), round(_NO_OTHER_M / _OPENING_M)
+        at = bins + reach + 1
+        open_at = np.zeros((int(bins.max()) + 2 * reach + 3, int(cells.max()) + 1))
+        np.add.at(open_at, (at, cells), strength)
+        band = uniform_filter1d(open_at, 2 * _BAND_CELLS + 1, axis=1, mode="constant")
+        summed = np.vstack([np.zeros((1, band.shape[1])), np.cumsum(band, axis=0)])
+
+        def between(first: _Integers, last: _Integers) -> _Floats:
+            total: _Floats = summed[last, cells] - summed[first, cells]
+            return total
+
+        own = between(at - 1, at + 2)
+        sides = np.minimum(between(at - 1 - reach, at - 1), between(at + 2, at + 2 + reach))
+        most = own * (_BAND_REACH_M / _SHORTEST_M)
+        of_covers = np.minimum(most / np.maximum(sides, _LEAST_SUM), 1.0) ** 2
+        about = np.maximum(between(at - near, at + 1 + near), own)
+        return RowNotches(along_m, strength * of_covers, own / np.maximum(about, _LEAST_SUM))
 
 
 @dataclass(frozen=True)
@@ -153,14 +228,13 @@ class JointRow:
 
 
 def joint_row(
-    notches: tuple[_Floats, _Floats], lids: Mapping[float, float], end_m: float, most_missed: int
+    notches: RowNotches, lids: Mapping[float, float], end_m: float, most_missed: int
 ) -> JointRow | None:
     """The covers along a gutter, by the places of its notches.
 
     Parameters
     ----------
-    notches : (n,) float64 and (n,) float64
-        Places of the notches on the gutter, m along its axis, and their strengths.
+    notches : RowNotches
     lids : mapping of float
         What lids of each length cost: see `lengths_of`.
     end_m : float
@@ -182,9 +256,7 @@ def joint_row(
     )
 
 
-def joint_worth(
-    notches: tuple[_Floats, _Floats], lids: Mapping[float, float], end_m: float
-) -> float:
+def joint_worth(notches: RowNotches, lids: Mapping[float, float], end_m: float) -> float:
     """The value of the best row, roughly: for comparison with other lids' (see `joint_row`)."""
     (value, before, _), _, _ = _best(notches, lids, end_m, _ROUGHLY_M)
     last = int(value.argmax())
@@ -193,21 +265,23 @@ def joint_worth(
 
 
 def _best(
-    notches: tuple[_Floats, _Floats], lids: Mapping[float, float], end_m: float, position_m: float
+    notches: RowNotches, lids: Mapping[float, float], end_m: float, position_m: float
 ) -> tuple[BestRows, _Integers, _Floats]:
     """For each place the best row that ends there; what steps between joints cover, how long."""
-    along_m, strength = notches
     count = int(end_m / position_m) + 1
-    at = np.round(along_m / position_m).astype(np.int64)
+    at = np.round(notches.along_m / position_m).astype(np.int64)
     is_in = (at >= 0) & (at < count)
-    hits = np.bincount(at[is_in], strength[is_in], minlength=count).astype(np.float64)
+    joints, hits = (
+        np.bincount(at[is_in], one[is_in], minlength=count).astype(np.float64)
+        for one in (notches.joints, notches.covers)
+    )
     steps, costs, kinds, lengths = _covers(lids, position_m)
     occupied = maximum_filter1d(np.minimum(hits, 1.0), 2 * round(_OCCUPIED_M / position_m) + 1)
     worth = position_m / _POSITION_M
     summed = np.concatenate([[0.0], np.cumsum(occupied * _OCCUPIED_WORTH * worth)])
     best = BestRows(np.empty(count), np.empty(count, np.int64), np.empty(count, np.int64))
     joints_kernel(
-        _evidence(hits, position_m),
+        _evidence(joints, position_m),
         steps,
         costs,
         GapCost(round(_LEAST_GAP_M / position_m), round(_MOST_GAP_M / position_m), _GAP_COST),
@@ -259,7 +333,7 @@ def _trace(best: BestRows) -> tuple[_Integers, _Integers]:
 
 
 def _row(
-    notches: tuple[_Floats, _Floats],
+    notches: RowNotches,
     joints_m: _Floats,
     covers: tuple[_Integers, _Floats],
     worth: tuple[float, int],
@@ -278,12 +352,11 @@ def _row(
     return JointRow(starts, ends, what, pairs, is_unseen, value).chosen(kept)
 
 
-def _measure(notches: tuple[_Floats, _Floats], joints_m: _Floats) -> tuple[_Floats, _Integers]:
+def _measure(notches: RowNotches, joints_m: _Floats) -> tuple[_Floats, _Integers]:
     """Mean place of the notches at each joint, and how many strong ones they are."""
     measured, seen = joints_m.copy(), np.zeros(joints_m.size, np.int64)
-    along, strengths = notches
-    order = np.argsort(along, kind="stable")
-    positions, strength = along[order], strengths[order]
+    order = np.argsort(notches.along_m, kind="stable")
+    positions, strength = notches.along_m[order], notches.joints[order]
     first = np.searchsorted(positions, joints_m - _SEEN_M)
     last = np.searchsorted(positions, joints_m + _SEEN_M)
     for number, (low, high) in enumerate(zip(first, last, strict=True)):

@@ -34,6 +34,7 @@ from processing.methods.road.gutters.notches import (
     NotchParameters,
     join_notches,
 )
+from processing.methods.road.gutters.road_below import RowsOfBlock, road_below
 from processing.recording.drive import Drive
 from processing.recording.passes import Pass, passes_of
 from processing.recording.revolutions.revolutions import Revolutions
@@ -52,15 +53,6 @@ new."""
 
 _BEYOND_ANY_PASS = 1e9
 """Steps of `_LEAST_ADVANCE_M`: 10,000 km."""
-
-_NEAR_M = 3.0
-"""So near to the vehicle's path ground is road: a lane and its edge."""
-
-_SAMPLED_ROWS = 40
-"""Rows of a block whose noise is measured: some thousand points."""
-
-_LEAST_NOISE_M, _MOST_NOISE_M = 0.0005, 0.02
-"""Bounds of noise: that of the best phase scanners; what would hide every hole. By trial."""
 
 _ROOM, _LEAST_ROOM = 8, 64
 """Points for one notch that is kept, and room for notches at least; beyond it the kernel notes no
@@ -97,10 +89,6 @@ _SPACINGS_OF_RIMS, _TOO_LONG, _HALF, _LEAST_FIT = 2.0, 1.5, 0.5, 0.05
 """An opening is seen so many spacings wider than it is. The strength is multiplied with the square
 of 1.5 − half of how many times as long as a hole it is, 1 for a hole's own length, at least the
 last. By trial."""
-
-_OF_MEDIAN, _OF_SECOND_DIFFERENCE = 0.6745, 6.0
-"""Normal noise: median of its absolute value in standard deviations; variance of its second
-difference in variances (1 + 4 + 1)."""
 
 _LEAST_M, _LEAST_COSINE = 1e-9, 1e-6
 """Guards of divisions."""
@@ -162,7 +150,7 @@ def notches_about(drive: Drive, position: Floats, parameters: NotchParameters) -
     return join_notches(parts)
 
 
-_OF_SWEEPS = ("rows", "times", "pass_number", "stations", "advances", "starts", "stops", "below")
+_OF_SWEEPS = ("rows", "times", "pass_number", "stations", "advances", "starts", "stops")
 
 
 class _Sweeps:
@@ -188,7 +176,6 @@ class _Sweeps:
         self.times, self.pass_number, self.stations = times[kept], number[kept], stations[kept]
         self.starts = np.searchsorted(pulse, folds[kept] - half)
         self.stops = np.searchsorted(pulse, folds[kept] + half)
-        self.below = np.searchsorted(pulse, folds[kept])
 
     @property
     def count(self) -> int:
@@ -248,12 +235,13 @@ def _found_in(
     pulse = np.asarray(drive.columns["pulse"][start:end], np.int64)
     stations = sweeps.stations[first:stop]
     positions = own_pass.positions_at(stations) - own_pass.origin
-    below = np.clip(sweeps.below[first:stop] - start, 1, len(xyz) - 2)
-    height_m = _height_above_road(xyz, below, positions, parameters)
-    positions[:, 2] -= height_m
     spans = np.column_stack([sweeps.starts[first:stop], sweeps.stops[first:stop]]) - start
+    road = road_below(RowsOfBlock(xyz, pulse, spans, stations), own_pass)
+    if road is None:
+        return
+    positions[:, 2] -= road.height_m
     rights = own_pass.rights_at(stations)
-    noise = _noise(xyz, pulse, spans, positions)
+    noise = road.noise_m
     limits = _limits(parameters, noise)
     room = max(len(xyz) // _ROOM, _LEAST_ROOM)
     found, origin = np.empty((room, FOUND)), np.empty((room, 3), np.int64)
@@ -263,7 +251,7 @@ def _found_in(
     between = xyz[origin[:, 2], :2] - xyz[origin[:, 1], :2]
     length = np.maximum(np.hypot(between[:, 0], between[:, 1]), _LEAST_M)
     spacing = length / np.maximum(origin[:, 2] - origin[:, 1] + found[:, LOST_PULSES], 1)
-    beyond = _beyond(found, positions[origin[:, 0]], spacing, parameters)
+    beyond = _beyond(found, positions[origin[:, 0]], spacing, parameters.down_m / road.height_m)
     placed = found[:, : SURFACE_Z + 1] + own_pass.origin
     placed[:, :2] += beyond
     station, across = own_pass.stations_of(placed, time)
@@ -277,6 +265,7 @@ def _found_in(
         time_s=time,
         depth_m=found[:, DEPTH],
         width_m=found[:, WIDTH],
+        spacing_m=spacing,
         pattern=found[:, PATTERN].astype(np.uint8),
         strength=_strength(found, noise, along, spacing),
         row=sweeps.rows[first:stop][origin[:, 0]],
@@ -286,7 +275,7 @@ def _found_in(
         pass_number=np.full(count, own_pass.number, np.int64),
         direction=between / length[:, None],
         area_m2=found[:, WIDTH] * apart,
-        raised_m=placed[:, 2] - own_pass.positions_at(beside)[:, 2] + height_m,
+        raised_m=placed[:, 2] - own_pass.positions_at(beside)[:, 2] + road.height_m,
     )
     yield whole.chosen(is_known)
 
@@ -304,48 +293,15 @@ def _limits(parameters: NotchParameters, noise: float) -> Limits:
     )
 
 
-def _beyond(found: Floats, vehicle: Floats, spacing: Floats, parameters: NotchParameters) -> Floats:
+def _beyond(found: Floats, vehicle: Floats, spacing: Floats, blind: float) -> Floats:
     """(n, 2) how far the middles of openings lie beyond where they were seen, m.
 
     A beam that enters a hole near its far rim meets the wall less than z_t below the surface and
     isn't told from it: of an opening that one or two points are in, the near part is seen.
     """
     beam = found[:, :2] - vehicle[:, :2]
-    blind = parameters.down_m / parameters.height_m * beam
     is_missed = (found[:, WIDTH] < _SEEN_WHOLE * spacing) & (found[:, DEPTH] > 0.0)
-    return np.asarray(np.where(is_missed[:, None], blind / 2, 0.0), np.float64)
-
-
-def _height_above_road(
-    xyz: Floats, below: Integers, positions: Floats, parameters: NotchParameters
-) -> float:
-    """How far the trajectory is above the road: measured below the scanner where there are points.
-
-    A trajectory may be that of the scanner, the antenna or the wheels.
-    """
-    aside = np.hypot(*(xyz[below, :2] - positions[:, :2]).T)
-    heights = (positions[:, 2] - xyz[below, 2])[aside <= _NEAR_M]
-    return float(np.median(heights)) if heights.size else parameters.height_m
-
-
-def _noise(xyz: Floats, pulse: Integers, spans: Integers, positions: Floats) -> float:
-    """Height noise of the road, m: half the second differences of a few rows near the vehicle."""
-    values = []
-    for sweep in range(0, len(positions), max(1, len(positions) // _SAMPLED_ROWS)):
-        part = xyz[slice(*spans[sweep])]
-        if len(part) < 3:
-            continue
-        number = pulse[slice(*spans[sweep])]
-        second = part[2:, 2] - 2 * part[1:-1, 2] + part[:-2, 2]
-        aside = np.hypot(*(part[1:-1, :2] - positions[sweep, :2]).T)
-        is_road = (aside <= _NEAR_M) & (number[2:] - number[:-2] == 2)
-        values.append(np.abs(second[is_road]))
-    every = np.concatenate([np.empty(0), *values])
-    if not every.size:
-        return _LEAST_NOISE_M
-    # The second difference of white noise has √6 times its spread.
-    spread = float(np.median(every)) / (_OF_MEDIAN * np.sqrt(_OF_SECOND_DIFFERENCE))
-    return float(np.clip(spread, _LEAST_NOISE_M, _MOST_NOISE_M))
+    return np.asarray(np.where(is_missed[:, None], blind * beam / 2, 0.0), np.float64)
 
 
 def _strength(found: Floats, noise: float, along: Floats, spacing: Floats) -> Floats:

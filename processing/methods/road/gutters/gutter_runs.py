@@ -15,6 +15,7 @@ from processing.methods.road.gutters.gutter_holes import HoleFit, JointNotches, 
 from processing.methods.road.gutters.gutter_joints import (
     LID,
     JointRow,
+    RowNotches,
     joint_row,
     joint_worth,
     lengths_of,
@@ -211,8 +212,9 @@ def _change(run: GutterRun, notches: Notches) -> float | None:
     """
     row = run.row
     near = _about(run.axis, notches)
-    along, _, is_on = _on_lids(run.axis, near, None)
-    worth = _worths(along, is_on & (near.strength >= _STRONG), row)
+    along, across, is_on = _on_lids(run.axis, near, None)
+    on_row = _row_notches(along, across, near, is_on)
+    worth = _worths(along, _alone(on_row, is_on, near), row)
     counting = np.flatnonzero(worth)
     if (worth > 0).sum() < 2 * _LEAST_OF_TYPE:
         return None
@@ -267,26 +269,27 @@ def _run_of(line: GutterLine, notches: Notches, most_missed: int) -> GutterRun |
     holes: HoleFit | None = None
     for _ in range(_ROUNDS):
         along, across, is_on = _on_lids(axis, near, holes)
-        row = joint_row((along[is_on], near.strength[is_on]), lids, axis.length_m, most_missed)
+        on_row = _row_notches(along, across, near, is_on)
+        row = joint_row(on_row, lids, axis.length_m, most_missed)
         if row is None or row.starts_m.size < _LEAST_COVERS:
             return None
-        worth = _worths(along, is_on & (near.strength >= _STRONG), row)
+        worth = _worths(along, _alone(on_row, is_on, near), row)
         at_joint = worth > 0.0
         if not at_joint.any():
             return None
         if holes is None:
-            axis = _moved(axis, along[at_joint], across[at_joint])
+            axis = _moved(axis, along[at_joint], across[at_joint], worth[at_joint])
         else:
             off = holes.type.off(across[at_joint])
             of_hole = np.abs(off) <= holes.type.hole_wide_m / 2 + _ASIDE_M
-            axis = _moved(axis, along[at_joint][of_hole], off[of_hole])
+            axis = _moved(axis, along[at_joint][of_hole], off[of_hole], worth[at_joint][of_hole])
         counts = worth != 0.0
         holes = hole_fit(_joint_notches(axis, near.chosen(counts), worth[counts]))
         axis = _aside(axis, holes.middle_m)
     if holes is None or holes.gain < _LEAST_GAIN:
         return None
     along, across, is_on = _on_lids(axis, near, holes)
-    row = joint_row((along[is_on], near.strength[is_on]), lids, axis.length_m, most_missed)
+    row = joint_row(_row_notches(along, across, near, is_on), lids, axis.length_m, most_missed)
     if row is None or row.starts_m.size < _LEAST_COVERS:
         return None
     is_on &= near.strength >= _STRONG
@@ -301,7 +304,9 @@ def _joint_notches(axis: GutterAxis, notches: Notches, worth: _Floats) -> JointN
     known = np.isfinite(across)
     at = np.clip((along[known] / STEP_M).astype(np.int64), 0, len(axis.outwards) - 1)
     square = np.abs((notches.direction[known] * axis.outwards[at]).sum(axis=1))
-    return JointNotches(across[known], notches.width_m[known] * square, square, worth[known])
+    # An opening is seen a spacing wider than it is, on average.
+    wide = np.maximum(notches.width_m - notches.spacing_m, 0.0)[known]
+    return JointNotches(across[known], wide * square, worth[known])
 
 
 def _on_lids(
@@ -315,14 +320,27 @@ def _on_lids(
     return along, across, is_on
 
 
+def _row_notches(
+    along: _Floats, across: _Floats, notches: Notches, which: NDArray[np.bool_]
+) -> RowNotches:
+    return RowNotches.of(along[which], across[which], notches.strength[which])
+
+
+def _alone(on_row: RowNotches, which: NDArray[np.bool_], notches: Notches) -> _Floats:
+    """How far each notch lies alone on a row of joints; 0 of weak ones and of those beside it."""
+    alone = np.zeros(notches.count)
+    alone[which] = on_row.joints / np.maximum(notches.strength[which], _WEAK)
+    return np.where(notches.strength >= _STRONG, alone, 0.0)
+
+
 def _lids_along(axis: GutterAxis, notches: Notches) -> dict[float, float] | None:
     """The lengths of lids that explain the notches best; None if no better than by chance.
 
     What chance does is asked of the same notches: rows of lengths that no lid has are fitted too.
     """
-    along, _, is_on = _on_lids(axis, notches, None)
-    those = along[is_on], notches.strength[is_on]
-    if those[1].sum() < _LEAST_WORTH:
+    along, across, is_on = _on_lids(axis, notches, None)
+    those = _row_notches(along, across, notches, is_on)
+    if those.joints.sum() < _LEAST_WORTH:
         return None
 
     def worth(lids: dict[float, float]) -> float:
@@ -351,29 +369,36 @@ def _is_at_joint(along: _Floats, row: JointRow) -> NDArray[np.bool_]:
     return np.asarray(away < _JOINT_M)
 
 
-def _worths(along: _Floats, strong: NDArray[np.bool_], row: JointRow) -> _Floats:
-    """What each notch counts: 1 at joints; those on lids take away what chance adds there."""
+def _worths(along: _Floats, alone: _Floats, row: JointRow) -> _Floats:
+    """What each notch counts, as far as it lies alone: at joints 1, between them what chance takes.
+
+    The latter are negative, as many as are expected at joints by chance.
+    """
+    strong = alone > 0.0
     worth = np.zeros(strong.size)
-    worth[strong] = _is_at_joint(along[strong], row)
+    worth[strong] = alone[strong] * _is_at_joint(along[strong], row)
     is_lid = row.what == LID
     starts, ends = row.starts_m[is_lid], row.ends_m[is_lid]
     if starts.size:
         one = np.clip(np.searchsorted(starts, along, "right") - 1, 0, starts.size - 1)
         between = strong & (worth == 0.0) & (along > starts[one]) & (along < ends[one])
         free_m = float((ends - starts).sum()) - 2 * _JOINT_M * starts.size
-        worth[between] = -2 * _JOINT_M * starts.size / max(free_m, _JOINT_M)
+        share = 2 * _JOINT_M * starts.size / max(free_m, _JOINT_M)
+        worth[between] = -share * alone[between]
     return worth
 
 
-def _moved(axis: GutterAxis, along: _Floats, across: _Floats) -> GutterAxis:
+def _moved(axis: GutterAxis, along: _Floats, across: _Floats, worth: _Floats) -> GutterAxis:
     """The axis through the middle of the notches about every place of it: locally a line."""
     at = np.arange(len(axis.xyz), dtype=np.float64) * STEP_M
     bins = np.clip((along / STEP_M).round().astype(np.int64), 0, at.size - 1)
-    weight = np.bincount(bins, minlength=at.size).astype(np.float64)
+    weight = np.bincount(bins, worth, minlength=at.size).astype(np.float64)
     # So that many holes in one place do not outweigh those about it.
     one = 1.0 / np.maximum(weight, 1.0)
     share = np.minimum(weight, _MOST_AT_ONE_PLACE) * one
-    sums = [np.bincount(bins, across**power, minlength=at.size) * share for power in range(2)]
+    sums = [
+        np.bincount(bins, worth * across**power, minlength=at.size) * share for power in range(2)
+    ]
     density = max(float(sums[0].sum()) / axis.length_m, _LEAST_DENSITY)
     sigma = float(np.clip(_NOTCHES / density, _NARROWEST_WINDOW_M, _WIDEST_WINDOW_M))
     aside = _local_lines(at, sums[0], sums[1], sigma)

@@ -31,8 +31,8 @@ class NotchParameters:
 
     Attributes
     ----------
-    height_m, height_range_m : float
-        Scanner above the road and how far that may be off: MMS height, 2.65 ± 1.5 m.
+    height_range_m : float
+        How far above or below the road under the vehicle points are looked at: slopes, banks.
     bridge : int
         Consecutive points below the road that still belong to it.
     aside_m, down_m : float
@@ -49,7 +49,6 @@ class NotchParameters:
         noise exceeds once in 740 points.
     """
 
-    height_m: float = 2.65
     height_range_m: float = 1.5
     bridge: int = 5
     aside_m: float = 0.02
@@ -74,6 +73,8 @@ class Notches:
         How far the deepest point lies below the surface; 0 where only pulses are lost.
     width_m : (n,) float64
         Between the last point before and the first after the opening, along the row.
+    spacing_m : (n,) float64
+        Between points of the row there, as pulses come, lost ones counted.
     pattern : (n,) uint8
         Bits ``OPENING``, ``DENT``, ``LOST``, ``JOINT``.
     strength : (n,) float64
@@ -99,6 +100,7 @@ class Notches:
     time_s: NDArray[np.float64]
     depth_m: NDArray[np.float64]
     width_m: NDArray[np.float64]
+    spacing_m: NDArray[np.float64]
     pattern: NDArray[np.uint8]
     strength: NDArray[np.float64]
     row: NDArray[np.int64]
@@ -135,6 +137,7 @@ def join_notches(parts: list[Notches]) -> Notches:
             time_s=empty,
             depth_m=empty,
             width_m=empty,
+            spacing_m=empty,
             pattern=np.empty(0, np.uint8),
             strength=empty,
             row=none,

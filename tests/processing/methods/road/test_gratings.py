@@ -35,6 +35,7 @@ def notches_at(x: np.ndarray, across: np.ndarray, *, width_m: float = 0.03) -> N
         time_s=row / ROWS_PER_S,
         depth_m=np.full(count, 0.05),
         width_m=np.full(count, width_m),
+        spacing_m=np.full(count, 0.01),
         pattern=np.full(count, OPENING, np.uint8),
         strength=np.full(count, 0.9),
         row=row,

@@ -28,6 +28,7 @@ def notches_at(along: Floats, across: Floats, raised_m: float = 0.0) -> Notches:
         time_s=empty,
         depth_m=empty + 0.1,
         width_m=empty + 0.03,
+        spacing_m=empty + 0.01,
         pattern=np.full(count, OPENING, np.uint8),
         strength=empty + 0.9,
         row=np.arange(count),
@@ -65,9 +66,7 @@ def gutter(height_m: float = 0.0) -> GutterRun:
         40.0,
     )
     across = np.tile(HOLES_M, 20)
-    at_joints = JointNotches(
-        across, np.full(across.size, 0.07), np.full(across.size, 0.7), np.ones(across.size)
-    )
+    at_joints = JointNotches(across, np.full(across.size, 0.07), np.ones(across.size))
     return GutterRun(axis, row, hole_fit(at_joints), LID_M, 10.0)
 
 

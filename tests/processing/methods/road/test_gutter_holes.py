@@ -17,7 +17,7 @@ def seen_by_oblique_rows(one: LidType, count: int, groove: float) -> JointNotche
     joint = random.uniform(-one.width_m / 2, one.width_m / 2, count)
     is_groove = random.random(count) < groove
     across = np.where(is_groove, joint, holes) + 0.05
-    return JointNotches(across, np.full(count, 0.03), np.full(count, 0.7), np.ones(count))
+    return JointNotches(across, np.full(count, 0.03), np.ones(count))
 
 
 @pytest.mark.parametrize("one", [LID_TYPES[k] for k in (0, 1, 3, 4, 5)])
@@ -34,16 +34,16 @@ def test_the_lid_is_told_though_joints_are_open_beside_its_holes(
 def test_rows_square_to_the_gutter_see_how_wide_holes_are() -> None:
     random = np.random.default_rng(2)
     across = np.tile([-0.095, 0.095], 10) + random.normal(0, 0.015, 20)
-    fit = hole_fit(JointNotches(across, np.full(20, 0.11), np.ones(20), np.ones(20)))
+    fit = hole_fit(JointNotches(across, np.full(20, 0.10), np.ones(20)))
     assert fit.type.width_m == 0.38
     across = random.normal(0, 0.015, 20)
-    one = hole_fit(JointNotches(across, np.full(20, 0.19), np.ones(20), np.ones(20)))
+    one = hole_fit(JointNotches(across, np.full(20, 0.18), np.ones(20)))
     assert (one.type.holes, one.type.hole_wide_m) == (1, 0.18)
 
 
 def test_notches_anywhere_gain_nothing() -> None:
     across = np.linspace(-0.44, 0.44, 200)
-    notches = JointNotches(across, np.full(200, 0.03), np.full(200, 0.7), np.ones(200))
+    notches = JointNotches(across, np.full(200, 0.03), np.ones(200))
     assert hole_fit(notches).gain < 0.05
 
 
@@ -52,11 +52,11 @@ def test_a_groove_along_the_road_is_taken_off_what_is_seen_at_joints() -> None:
     random = np.random.default_rng(3)
     beside = random.normal(0.27, 0.01, 60 + 400)
     across = np.concatenate([lids.across_m, beside])
-    narrow, oblique = np.full(across.size, 0.03), np.full(across.size, 0.7)
-    at_joints = JointNotches(across[:120], narrow[:120], oblique[:120], np.ones(120))
+    narrow = np.full(across.size, 0.03)
+    at_joints = JointNotches(across[:120], narrow[:120], np.ones(120))
     worth = np.concatenate([np.ones(120), np.full(400, -60 / 400)])
     alone = hole_fit(lids)
-    taken_off = hole_fit(JointNotches(across, narrow, oblique, worth))
+    taken_off = hole_fit(JointNotches(across, narrow, worth))
     assert taken_off.type == alone.type
     assert taken_off.count == 60
     assert taken_off.gain > 0.9 * alone.gain > hole_fit(at_joints).gain + 0.3
