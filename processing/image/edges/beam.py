@@ -29,7 +29,7 @@ _LEAST_LENGTH = 1e-9
 
 
 @dataclass(frozen=True)
-class _Sweep:
+class Sweep:
     """One revolution in the frame in which its points are given.
 
     Attributes
@@ -84,7 +84,7 @@ def beam_at(
     pulses = np.asarray(drive.columns["pulse"][points], dtype=np.float64) - pulse
     xyz, trajectory = drive.xyz(points), drive.trajectory
     if trajectory is None:
-        sweep = _sweep_of(xyz - xyz[0], pulses, 2 * np.pi / revolutions.pulses_per_revolution)
+        sweep = sweep_of(xyz - xyz[0], pulses, 2 * np.pi / revolutions.pulses_per_revolution)
         return None if sweep is None else _as_positions(sweep.centre + xyz[0], sweep.direction(0.0))
     times = np.asarray(drive.columns["time"][points], dtype=np.float64)
     slope = np.polyfit(pulses, times - times[0], 1)
@@ -92,7 +92,7 @@ def beam_at(
     if not (trajectory.covers(times).all() and trajectory.covers(moment).all()):
         return None
     vehicle = trajectory.to_vehicle(xyz, times)
-    sweep = _sweep_of(vehicle, pulses, 2 * np.pi / revolutions.pulses_per_revolution)
+    sweep = sweep_of(vehicle, pulses, 2 * np.pi / revolutions.pulses_per_revolution)
     if sweep is None:
         return None
     turned = trajectory.rotations_at(moment)[0]
@@ -100,18 +100,33 @@ def beam_at(
     return _as_positions(origin, turned @ sweep.direction(0.0))
 
 
-def _sweep_of(xyz: Floats, pulses: Floats, rate: float) -> _Sweep | None:
-    """The sweep that explains points and their pulse numbers best, either way round."""
+def sweep_of(xyz: Floats, pulses: Floats, rate: float) -> Sweep | None:
+    """The sweep that explains points and their pulse numbers best, either way round.
+
+    Parameters
+    ----------
+    xyz : (n, 3) float64
+        Points of one revolution, m, in the frame in which the head does not move.
+    pulses : (n,) float64
+        Their pulse numbers.
+    rate : float
+        Radians a pulse.
+
+    Returns
+    -------
+    Sweep or None
+        None over too narrow an arc.
+    """
     middle = xyz.mean(axis=0)
     _, _, axes = np.linalg.svd(xyz - middle, full_matrices=False)
     flat = (xyz - middle) @ axes[:2].T
-    best: tuple[float, _Sweep] | None = None
+    best: tuple[float, Sweep] | None = None
     for sense in (rate, -rate):
         found = _turned_centre(flat, sense * pulses)
         if found is None:
             continue
         centre, phase, residual = found
-        sweep = _Sweep(middle + centre @ axes[:2], axes[:2], phase, sense)
+        sweep = Sweep(middle + centre @ axes[:2], axes[:2], phase, sense)
         if best is None or residual < best[0]:
             best = residual, sweep
     if best is None or np.ptp(pulses) * rate < np.radians(_FEWEST_DEGREES):

@@ -37,7 +37,7 @@ from processing.tools.gutters import GutterParameters, gutter_evidence
 _FACTS = {"lids": CoverFacts._fields, "gratings": GratingTerms._fields}
 _EXPECTED = {
     "lids": WeightPrior(
-        (-4.0, *CoverFacts(0.8, 1.0, 1.0, 0.5, -10.0, -0.5, -0.5, -0.5, -0.5, -2.0)),
+        (-4.0, *CoverFacts(1.0, 1.0, 1.0, 0.5, -10.0, -0.5, -0.5, -0.5, -0.5, -2.0)),
         (3.0, *CoverFacts(0.5, 0.7, 0.7, 0.4, 10.0, 0.5, 0.5, 0.5, 0.5, 1.5)),
     ),
     "gratings": WeightPrior(

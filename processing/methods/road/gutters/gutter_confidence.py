@@ -21,8 +21,11 @@ _FEW_HOLES = 8
 _FEW_POINTS = 10
 """With fewer points on its top a cover's plane is that of its neighbours."""
 
-_MOST_JOINTS, _MOST_RAISED_M = 60.0, 0.3
-"""A row of joints that is worth more, or one raised higher, is no surer."""
+_LEAST_OVER, _MOST_OVER, _MOST_RAISED_M = 1.0, 60.0, 0.3
+"""A row of joints that is worth less or more, or one raised higher, is no less sure or no surer."""
+
+_OTHER_LENGTH_M = 0.05
+"""Covers of one length differ by less: lids are made in steps of 10 cm and cut at ends."""
 
 _LEAST_CONTRAST, _MOST_CONTRAST = -1.0, 4.0
 """Bounds of both contrasts, as logarithms."""
@@ -39,8 +42,9 @@ class CoverFacts(NamedTuple):
 
     Attributes
     ----------
-    joints : float
-        Logarithm of what the notches are worth for the gutter's row of joints, up to 60.
+    over_chance : float
+        Logarithm of what the row of joints is worth more than any of lengths that no lid has, 1 to
+        60: by the same notches, so however dense or noisy a scanner is.
     holes : float
         How much likelier its holes' places across the gutter are than chance, −1 to 2: the mean
         logarithm per notch, the less the fewer notches there are.
@@ -50,10 +54,10 @@ class CoverFacts(NamedTuple):
         How much more than beside it.
     raised_m : float
         How far the gutter lies higher than roads and walks do, m, 0 to 0.3: hedges have gaps too.
-    one_hole : float
-        1 where lids of one hole fit best, which are rare: joints of curb stones are narrow too.
-    bridged : float
-        1 where nothing was seen at either.
+    unseen : float
+        How many of its own two joints nothing was seen of.
+    other_length : float
+        1 where it is not as long as most lids of its gutter.
     grating : float
         1 where the row of joints says that it is a grating.
     few_points : float
@@ -62,36 +66,36 @@ class CoverFacts(NamedTuple):
         Share of its points that lie below its top, 0 to 1: open gutters have steps too.
     """
 
-    joints: float
+    over_chance: float
     holes: float
     lids: float
     beside: float
     raised_m: float
-    one_hole: float
-    bridged: float
+    unseen: float
+    other_length: float
     grating: float
     few_points: float
     hollow: float
 
 
 WEIGHTS = CoverFacts(
-    joints=0.38,
-    holes=1.47,
-    lids=0.99,
-    beside=0.67,
-    raised_m=-13.83,
-    one_hole=-0.27,
-    bridged=-0.53,
-    grating=-0.52,
-    few_points=-0.50,
-    hollow=-1.98,
+    over_chance=0.80,
+    holes=0.70,
+    lids=0.32,
+    beside=0.58,
+    raised_m=-11.50,
+    unseen=-0.92,
+    other_length=-0.76,
+    grating=-0.66,
+    few_points=-0.52,
+    hollow=-1.97,
 )
 """What each fact is worth: see `processing.laboratory.road_training.gutter_training`, which also
 says how reliable they are. Of 32 streets left out one by one, 1,117 of 1,195 covers given 0.9 and
 more were right, 265 of 313 of those from 0.7, 44 of 58 of those from 0.5 and 20 of 99 of those
 below; of ten others 426 of 436, 101 of 104, 3 of 3 and 3 of 14."""
 
-CONSTANT = -6.03
+CONSTANT = -3.18
 """Log-odds of a cover of which nothing is known; fitted with `WEIGHTS`."""
 
 
@@ -109,19 +113,19 @@ def facts_of(
         Of each drive.
     """
     contrast = contrast_of(run, notches)
-    joints = math.log(min(max(run.row.value, 1.0), _MOST_JOINTS))
+    over = math.log(min(max(run.over_chance, _LEAST_OVER), _MOST_OVER))
     believed = run.holes.count / (run.holes.count + _FEW_HOLES)
     holes = believed * float(np.clip(run.holes.gain, _LEAST_GAIN, _MOST_GAIN))
-    of_run = _RunFacts(joints, holes, float(run.holes.type.holes == 1))
+    of_run = _RunFacts(over, holes, run.length_m)
     return [_facts(one, of_run, contrast, k) for k, one in enumerate(covers)]
 
 
 class _RunFacts(NamedTuple):
     """Facts that all covers of a gutter share: see `CoverFacts`."""
 
-    joints: float
+    over_chance: float
     holes: float
-    one_hole: float
+    length_m: float
 
 
 def _facts(cover: GutterCover, of_run: _RunFacts, contrast: Contrast, number: int) -> CoverFacts:
@@ -130,13 +134,13 @@ def _facts(cover: GutterCover, of_run: _RunFacts, contrast: Contrast, number: in
         for one in (contrast.lids, contrast.beside)
     )
     return CoverFacts(
-        of_run.joints,
+        of_run.over_chance,
         of_run.holes,
         lids,
         beside,
         min(contrast.raised_m, _MOST_RAISED_M),
-        of_run.one_hole,
-        float(cover.is_bridged),
+        float((np.array(cover.seen) == 0).sum()),
+        float(abs(cover.length_m - of_run.length_m) > _OTHER_LENGTH_M),
         float(cover.is_grating),
         float(cover.on_top < _FEW_POINTS),
         cover.below / max(cover.on_top + cover.below, 1),

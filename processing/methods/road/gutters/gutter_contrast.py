@@ -25,6 +25,9 @@ _JOINT_M = 0.03
 """To either side of a joint its holes lie: half of the longest of 5 cm (Takahashi 2022, Table 7-2),
 rounded up."""
 
+_RIM_M = 0.03
+"""Left out of the lids: the groove beside them is open all along (as in `gutter_lids`)."""
+
 _BESIDE_FROM_M, _BESIDE_TO_M = 0.05, 0.40
 """From the lids' edges: where the road beside begins and ends. By trial."""
 
@@ -82,12 +85,13 @@ def contrast_of(run: GutterRun, notches: Sequence[Notches]) -> Contrast:
     to_joint = np.minimum(np.abs(along - row.starts_m[which]), np.abs(along - row.ends_m[which]))
     is_on = (along > row.starts_m[which] - _JOINT_M) & (along < row.ends_m[which] + _JOINT_M)
     is_lid = row.what == LID
-    is_within, is_at = np.abs(across) <= half, to_joint <= _JOINT_M
+    inner = half - _RIM_M
+    is_within, is_at = np.abs(across) <= inner, to_joint <= _JOINT_M
     positions = (
-        (is_on & is_within & is_at, np.full(long.size, 2 * _JOINT_M * 2 * half)),
+        (is_on & is_within & is_at, np.full(long.size, 2 * _JOINT_M * 2 * inner)),
         (
             is_on & is_within & ~is_at & is_lid[which],
-            np.where(is_lid, (long - 2 * _JOINT_M) * 2 * half, 0.0),
+            np.where(is_lid, (long - 2 * _JOINT_M) * 2 * inner, 0.0),
         ),
         (
             is_on & (np.abs(across) >= half + _BESIDE_FROM_M),

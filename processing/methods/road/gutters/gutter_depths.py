@@ -8,6 +8,8 @@ tell.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -21,11 +23,26 @@ _Integers = NDArray[np.int64]
 # "By trial": chosen while the tool was made; no measurement of the single value is recorded.
 
 _DEPTHS_M = (0.015, 0.02, 0.025)
-_OF_LIDS = (0.45, 0.30, 0.12, 0.13)
 _OF_GROOVES = (0.60, 0.33, 0.05, 0.02)
-"""Shares of notches between these depths: at joints of lids, also where soil fills most holes and
-points are few; in grooves, which are some 12 mm deep at most, as noise makes them. Rounded from
-simulated streets; the counts are not recorded."""
+"""Shares of notches in grooves between these depths: they are some 12 mm deep at most, and noise
+and a worn edge add to it. By trial."""
+
+_TELLING_M = 0.02
+"""Where beams come in so flat that holes look no deeper than grooves, depth says nothing."""
+
+_FILLED = 0.4
+"""Share of notches at joints of lids that are no deeper than in grooves: soil in holes, and beams
+that met the joint beside them. By trial."""
+
+_LONG_M, _WIDE_M = 0.03, 0.10
+"""Of the smallest holes, along and across a gutter (Takahashi 2022, Table 7-2)."""
+
+_DEEP_SHARE = 0.1
+"""Of notches at least that are deeper than all classes, however small the smallest hole: there are
+larger ones. By trial."""
+
+_LEAST_COSINE = 1e-3
+"""Guard of a division."""
 
 _JOINT_M = 0.04
 """A joint is no wider, and a notch no farther from its joint: the widest that is met
@@ -39,21 +56,45 @@ against them, a fifth of it, so that filled holes say little either: logarithms.
 _CHANGE = 3.0
 """What it costs that lids end and blocks go on, as a logarithm: 20 to 1. By trial."""
 
-_GAIN_OF_GROOVES, _BY_CHOICE = 0.9, 3.0
-"""What each notch in grooves gained by holes' places at most (0.83 on 42 streets); what choosing
-the best of all types and places gains."""
+_BY_CHOICE = 3.0
+"""What choosing the best of all types and places of holes gains where there are none, a logarithm;
+and what holes' places say against lids at most, for a joint beside them is open too. By trial."""
 
 
-def are_deep(
-    row: JointRow, along_m: _Floats, depth_m: _Floats, holes: HoleFit
-) -> NDArray[np.bool_]:
+@dataclass(frozen=True)
+class JointDepths:
+    """Notches on a gutter: how deep they are, and how deep those of holes may be.
+
+    Attributes
+    ----------
+    along_m, depth_m : (n,) float64
+    possible_m : (n,) float64
+        How deep a beam comes in the smallest hole before it meets the wall: the flatter it comes
+        in, and the more along the gutter, the less.
+    """
+
+    along_m: _Floats
+    depth_m: _Floats
+    possible_m: _Floats
+
+    @staticmethod
+    def of(along_m: _Floats, depth_m: _Floats, square: _Floats, steepness: _Floats) -> JointDepths:
+        """From the sines between rows and gutter, and how steeply beams came down."""
+        cosine = np.sqrt(np.maximum(1.0 - square**2, 0.0))
+        chord = np.minimum(
+            _LONG_M / np.maximum(cosine, _LEAST_COSINE), _WIDE_M / np.maximum(square, _LEAST_COSINE)
+        )
+        return JointDepths(along_m, depth_m, chord * steepness)
+
+
+def are_deep(row: JointRow, notches: JointDepths, holes: HoleFit) -> NDArray[np.bool_]:
     """Which covers of a row have joints about them that are as deep as those of lids.
 
     Parameters
     ----------
     row : JointRow
-    along_m, depth_m : (n,) float64
-        Places along the gutter and depths of the notches on it.
+    notches : JointDepths
+        On the gutter.
     holes : HoleFit
         What those at joints say by their places across.
 
@@ -68,8 +109,8 @@ def are_deep(
     middles = (row.starts_m + row.ends_m) / 2
     if joints.size == 0:
         return np.ones(middles.size, np.bool_)
-    by_positions = (holes.gain - _GAIN_OF_GROOVES) * min(holes.count, joints.size) - _BY_CHOICE
-    is_lids = _part(_lid_odds_of(joints, along_m, depth_m) + max(by_positions, 0.0) / joints.size)
+    by_positions = max(holes.over_groove - _BY_CHOICE, -_BY_CHOICE)
+    is_lids = _part(_lid_odds_of(joints, notches) + by_positions / joints.size)
     found: NDArray[np.bool_] = is_lids[nearest_rising(joints, middles)]
     return found
 
@@ -89,11 +130,20 @@ def _part(odds: _Floats) -> NDArray[np.bool_]:
     return is_lids
 
 
-def _lid_odds_of(joints: _Floats, along_m: _Floats, depth_m: _Floats) -> _Floats:
+def _lid_odds_of(joints: _Floats, notches: JointDepths) -> _Floats:
     """How much likelier each joint is that of lids than a groove, as logarithms."""
-    nearest = nearest_rising(joints, along_m)
-    near = np.abs(along_m - joints[nearest]) < _JOINT_M
-    likelier = np.log(np.array(_OF_LIDS) / np.array(_OF_GROOVES))
-    worth = likelier[np.searchsorted(_DEPTHS_M, depth_m[near])]
+    nearest = nearest_rising(joints, notches.along_m)
+    near = np.abs(notches.along_m - joints[nearest]) < _JOINT_M
+    depth, possible = notches.depth_m[near], notches.possible_m[near]
+    # A beam goes in anywhere along a hole, so it comes to any depth up to the most alike often.
+    ends = np.array([0.0, *_DEPTHS_M, np.inf])
+    which = np.searchsorted(_DEPTHS_M, depth)
+    low, high = ends[which], np.minimum(ends[which + 1], possible)
+    in_holes = np.maximum(high - low, 0.0) / np.maximum(possible, _TELLING_M)
+    in_grooves = np.array(_OF_GROOVES)[which]
+    # Deeper than any groove is a hole, if one of the larger ones.
+    in_holes[which == len(_DEPTHS_M)] = np.maximum(in_holes, _DEEP_SHARE)[which == len(_DEPTHS_M)]
+    in_holes = np.where(possible < _TELLING_M, in_grooves, in_holes)
+    worth = np.log((_FILLED * in_grooves + (1.0 - _FILLED) * in_holes) / in_grooves)
     summed = np.bincount(nearest[near], worth, minlength=joints.size)
     return np.clip(summed, _LEAST, _MOST)

@@ -24,9 +24,14 @@ _USUAL_M = (0.02, 0.06, 0.11, 0.18)
 """Width that stands for each class."""
 
 _WIDER_M = 0.03
-"""An opening is seen at most so much wider than it is: a spacing of points to either side."""
+"""Openings are told apart by their width so far, for the last points on either side lie anywhere
+within a spacing of the rims."""
 
-_GROOVES = (0.0, 0.25, 0.5, 0.75)
+_JOINED = 0.3
+"""How likely an opening wider than a hole is, against one that fits: a row that runs along an open
+joint sees it and the holes as one. By trial."""
+
+_GROOVES = (0.0, 0.25, 0.5, 0.75, 1.0)
 """Shares of narrow openings that are the joint's beside the holes, of which the best is taken."""
 
 _SPREAD_M = 0.02
@@ -119,12 +124,16 @@ class HoleFit:
         Mean logarithm of the likelihood against chance, per notch.
     count : int
         Notches that it rests on.
+    over_groove : float
+        How much likelier the notches are with holes than in a groove that is open alike all
+        across, as they lie: a logarithm.
     """
 
     type: LidType
     middle_m: float
     gain: float
     count: int
+    over_groove: float
 
 
 def hole_fit(notches: JointNotches) -> HoleFit:
@@ -141,12 +150,19 @@ def hole_fit(notches: JointNotches) -> HoleFit:
         counts[kind] = np.histogram(
             notches.across_m[chosen], _EDGES_M, weights=notches.worth[chosen]
         )[0]
-    gains = np.tensordot(likelihood, counts, axes=2).max(axis=2)
-    gains += np.log([[one.share] for one in LID_TYPES])
+    of_shares = np.tensordot(likelihood, counts, axes=2)
+    gains = of_shares[:, :, :-1].max(axis=2) + np.log([[one.share] for one in LID_TYPES])
+    over_groove = float(gains.max() - of_shares[:, :, -1].max())
     gains /= max(1.0, float(counts.sum()))
     which, at = divmod(int(gains.argmax()), positions.size)
     gain = float(gains[which, at])
-    return HoleFit(LID_TYPES[which], float(positions[at]), gain, max(0, round(float(counts.sum()))))
+    return HoleFit(
+        LID_TYPES[which],
+        float(positions[at]),
+        gain,
+        max(0, round(float(counts.sum()))),
+        over_groove,
+    )
 
 
 @cache
@@ -160,15 +176,15 @@ def _fits() -> tuple[_Floats, _Floats]:
     middles = (_EDGES_M[1:] + _EDGES_M[:-1]) / 2
     shape = (len(LID_TYPES), positions.size, len(_GROOVES), len(_USUAL_M), middles.size)
     mix = np.zeros(shape)
+    shares = np.array(_GROOVES)[:, None]
     for number, one in enumerate(LID_TYPES):
         for at, position in enumerate(positions):
-            groove = _box(middles - position, one.width_m / 2)
-            for kind in range(len(_USUAL_M)):
-                if _USUAL_M[kind] <= one.hole_wide_m + _WIDER_M:
-                    mix[number, at, :, kind] = _holes(one, middles - position, kind)
-            share = np.array(_GROOVES)[:, None]
-            mix[number, at, :, 0] *= 1 - share
-            mix[number, at, :, 0] += share * groove
+            for kind, usual in enumerate(_USUAL_M):
+                joint = _box(middles - position, max(one.width_m - usual, _BIN_M) / 2)
+                holes = _JOINED * joint
+                if usual <= one.hole_wide_m + _WIDER_M:
+                    holes = _holes(one, middles - position, kind)
+                mix[number, at, :, kind] = (1 - shares) * holes + shares * joint
     mix = (1 - _CHANCE) * mix + _CHANCE / (2 * _REACH_M)
     return positions, np.log(mix * 2 * _REACH_M)
 

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from processing.core.monitor import Monitor
 from processing.core.worked_ahead import in_order
+from processing.methods.road.gutters.head_position import head_position
 from processing.methods.road.gutters.notch_kernels import (
     DEPTH,
     FOUND,
@@ -150,7 +151,9 @@ def notches_about(drive: Drive, position: Floats, parameters: NotchParameters) -
     return join_notches(parts)
 
 
-_OF_SWEEPS = ("rows", "times", "pass_number", "stations", "advances", "starts", "stops")
+_OF_SWEEPS = (
+    "rows", "times", "pass_number", "stations", "advances", "starts", "stops", "heads"
+)  # fmt: skip
 
 
 class _Sweeps:
@@ -172,6 +175,7 @@ class _Sweeps:
         kept = kept[_advancing(stations[kept], number[kept])]
         self.advances = _advances(stations[kept], number[kept])
         pulse = drive.columns["pulse"]
+        self.heads = _heads(drive, times[kept])
         self.rows = kept
         self.times, self.pass_number, self.stations = times[kept], number[kept], stations[kept]
         self.starts = np.searchsorted(pulse, folds[kept] - half)
@@ -251,7 +255,9 @@ def _found_in(
     between = xyz[origin[:, 2], :2] - xyz[origin[:, 1], :2]
     length = np.maximum(np.hypot(between[:, 0], between[:, 1]), _LEAST_M)
     spacing = length / np.maximum(origin[:, 2] - origin[:, 1] + found[:, LOST_PULSES], 1)
-    beyond = _beyond(found, positions[origin[:, 0]], spacing, parameters.down_m / road.height_m)
+    beam = found[:, : SURFACE_Z + 1] - (sweeps.heads[first:stop] - own_pass.origin)[origin[:, 0]]
+    steepness = np.maximum(-beam[:, 2], 0.0) / np.maximum(np.hypot(*beam[:, :2].T), _LEAST_M)
+    beyond = _beyond(found, beam, spacing, parameters.down_m)
     placed = found[:, : SURFACE_Z + 1] + own_pass.origin
     placed[:, :2] += beyond
     station, across = own_pass.stations_of(placed, time)
@@ -266,6 +272,7 @@ def _found_in(
         depth_m=found[:, DEPTH],
         width_m=found[:, WIDTH],
         spacing_m=spacing,
+        steepness=steepness,
         pattern=found[:, PATTERN].astype(np.uint8),
         strength=_strength(found, noise, along, spacing),
         row=sweeps.rows[first:stop][origin[:, 0]],
@@ -293,15 +300,25 @@ def _limits(parameters: NotchParameters, noise: float) -> Limits:
     )
 
 
-def _beyond(found: Floats, vehicle: Floats, spacing: Floats, blind: float) -> Floats:
+def _heads(drive: Drive, times: Floats) -> Floats:
+    """(s, 3) where the head was at times, m, project CRS."""
+    trajectory = drive.trajectory
+    if trajectory is None or not times.size:
+        return np.empty((times.size, 3))
+    at = head_position(drive)
+    found: Floats = trajectory.positions_at(times) + trajectory.rotations_at(times) @ at
+    return found
+
+
+def _beyond(found: Floats, beam: Floats, spacing: Floats, down_m: float) -> Floats:
     """(n, 2) how far the middles of openings lie beyond where they were seen, m.
 
     A beam that enters a hole near its far rim meets the wall less than z_t below the surface and
     isn't told from it: of an opening that one or two points are in, the near part is seen.
     """
-    beam = found[:, :2] - vehicle[:, :2]
+    blind = down_m / np.maximum(-beam[:, 2:], down_m) * beam[:, :2]
     is_missed = (found[:, WIDTH] < _SEEN_WHOLE * spacing) & (found[:, DEPTH] > 0.0)
-    return np.asarray(np.where(is_missed[:, None], blind * beam / 2, 0.0), np.float64)
+    return np.asarray(np.where(is_missed[:, None], blind / 2, 0.0), np.float64)
 
 
 def _strength(found: Floats, noise: float, along: Floats, spacing: Floats) -> Floats:

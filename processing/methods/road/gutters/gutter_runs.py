@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from processing.core.monitor import Monitor
 from processing.methods.road.gutters.gutter_axis import STEP_M, GutterAxis
-from processing.methods.road.gutters.gutter_depths import are_deep
+from processing.methods.road.gutters.gutter_depths import JointDepths, are_deep
 from processing.methods.road.gutters.gutter_holes import HoleFit, JointNotches, hole_fit
 from processing.methods.road.gutters.gutter_joints import (
     LID,
@@ -128,15 +128,16 @@ class GutterRun:
         What the holes say of its lids' width.
     length_m : float
         Of most of its lids.
-    regularity : float
-        See `GutterLine`.
+    over_chance : float
+        What its joints are worth more than the best row of lengths that no lid has, by the same
+        notches: a logarithm. So much is left of it wherever dents come often.
     """
 
     axis: GutterAxis
     row: JointRow
     holes: HoleFit
     length_m: float
-    regularity: float
+    over_chance: float
 
     @property
     def edges(self) -> tuple[float, float]:
@@ -289,24 +290,38 @@ def _run_of(line: GutterLine, notches: Notches, most_missed: int) -> GutterRun |
     if holes is None or holes.gain < _LEAST_GAIN:
         return None
     along, across, is_on = _on_lids(axis, near, holes)
-    row = joint_row(_row_notches(along, across, near, is_on), lids, axis.length_m, most_missed)
+    on_row = _row_notches(along, across, near, is_on)
+    row = joint_row(on_row, lids, axis.length_m, most_missed)
     if row is None or row.starts_m.size < _LEAST_COVERS:
         return None
     is_on &= near.strength >= _STRONG
-    row = row.chosen(are_deep(row, along[is_on], near.depth_m[is_on], holes))
+    depths = JointDepths.of(
+        along[is_on], near.depth_m[is_on], _square(axis, near)[is_on], near.steepness[is_on]
+    )
+    row = row.chosen(are_deep(row, depths, holes))
     if row.starts_m.size < _LEAST_COVERS:
         return None
-    return GutterRun(axis, row, holes, _length_of(row), line.regularity)
+    over_chance = joint_worth(on_row, lids, axis.length_m) - _by_chance(on_row, axis.length_m)
+    return GutterRun(axis, row, holes, _length_of(row), over_chance)
 
 
 def _joint_notches(axis: GutterAxis, notches: Notches, worth: _Floats) -> JointNotches:
-    along, across, _ = axis.coordinates_of(notches.xyz, _BAND_M)
+    _, across, _ = axis.coordinates_of(notches.xyz, _BAND_M)
     known = np.isfinite(across)
-    at = np.clip((along[known] / STEP_M).astype(np.int64), 0, len(axis.outwards) - 1)
-    square = np.abs((notches.direction[known] * axis.outwards[at]).sum(axis=1))
+    square = _square(axis, notches)[known]
     # An opening is seen a spacing wider than it is, on average.
     wide = np.maximum(notches.width_m - notches.spacing_m, 0.0)[known]
     return JointNotches(across[known], wide * square, worth[known])
+
+
+def _square(axis: GutterAxis, notches: Notches) -> _Floats:
+    """(n,) how much each row runs across the axis: 0 along it, 1 square to it; 0 far from it."""
+    along, _, _ = axis.coordinates_of(notches.xyz, _BAND_M)
+    known = np.isfinite(along)
+    at = np.clip((along[known] / STEP_M).astype(np.int64), 0, len(axis.outwards) - 1)
+    square = np.zeros(notches.count)
+    square[known] = np.abs((notches.direction[known] * axis.outwards[at]).sum(axis=1))
+    return square
 
 
 def _on_lids(
@@ -350,9 +365,14 @@ def _lids_along(axis: GutterAxis, notches: Notches) -> dict[float, float] | None
     best = max(worths)
     if best < _LEAST_WORTH:
         return None
-    if best < _SURE_WORTH and best < _MORE_WORTH + max(worth(one) for one in _BY_CHANCE):
+    if best < _SURE_WORTH and best < _MORE_WORTH + _by_chance(those, axis.length_m):
         return None
     return _LIDS[worths.index(best)]
+
+
+def _by_chance(notches: RowNotches, end_m: float) -> float:
+    """What the best row of lengths that no lid has is worth."""
+    return max(joint_worth(notches, one, end_m) for one in _BY_CHANCE)
 
 
 def _length_of(row: JointRow) -> float:

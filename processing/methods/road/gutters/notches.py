@@ -75,6 +75,8 @@ class Notches:
         Between the last point before and the first after the opening, along the row.
     spacing_m : (n,) float64
         Between points of the row there, as pulses come, lost ones counted.
+    steepness : (n,) float64
+        How far the beam came down per metre in plan: so deep it goes into a hole of a metre.
     pattern : (n,) uint8
         Bits ``OPENING``, ``DENT``, ``LOST``, ``JOINT``.
     strength : (n,) float64
@@ -101,6 +103,7 @@ class Notches:
     depth_m: NDArray[np.float64]
     width_m: NDArray[np.float64]
     spacing_m: NDArray[np.float64]
+    steepness: NDArray[np.float64]
     pattern: NDArray[np.uint8]
     strength: NDArray[np.float64]
     row: NDArray[np.int64]
@@ -138,6 +141,7 @@ def join_notches(parts: list[Notches]) -> Notches:
             depth_m=empty,
             width_m=empty,
             spacing_m=empty,
+            steepness=empty,
             pattern=np.empty(0, np.uint8),
             strength=empty,
             row=none,

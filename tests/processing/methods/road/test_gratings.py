@@ -36,6 +36,7 @@ def notches_at(x: np.ndarray, across: np.ndarray, *, width_m: float = 0.03) -> N
         depth_m=np.full(count, 0.05),
         width_m=np.full(count, width_m),
         spacing_m=np.full(count, 0.01),
+        steepness=np.full(count, 0.5),
         pattern=np.full(count, OPENING, np.uint8),
         strength=np.full(count, 0.9),
         row=row,

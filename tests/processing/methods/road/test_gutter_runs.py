@@ -58,6 +58,7 @@ def notches_at(one: Pass, along_m: Floats, across_m: Floats, strength: float = 0
         empty + 0.2,
         empty + 0.03,
         empty + 0.01,
+        empty + 2.0,
         np.full(at.size, OPENING, np.uint8),
         empty + strength,
         np.arange(at.size),
