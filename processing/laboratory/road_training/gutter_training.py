@@ -2,8 +2,9 @@
 
 ``python -m processing.laboratory.road_training.gutter_training``.
 
-Simulates streets of ``--seeds``, finds covers on them without leaving any out, and fits the weights
-of `processing.methods.road.gutters.gutter_confidence` and
+Simulates streets of ``--seeds``, each recorded by heads of any height, tilt and rate, finds covers
+on them without leaving any out, and fits the weights of
+`processing.methods.road.gutters.gutter_confidence` and
 `processing.methods.road.gutters.grating_confidence` to which of them are right; streets of
 ``--check`` are not learnt from. ``--deliveries`` are further streets to learn from, recorded
 before. Prints the weights and how many covers of each confidence are right: of streets learnt from
@@ -21,7 +22,7 @@ from processing.core.arrays import Floats
 from processing.core.monitor import SilentMonitor
 from processing.core.output_streams import write_every_character
 from processing.formats.vectors.mapped_shapes import read_mapped
-from processing.laboratory.accuracy.road.road_scenes import RoadScene
+from processing.laboratory.accuracy.road.road_scenes import RoadScene, mounted_scenes
 from processing.laboratory.road_training.learned_confidence import (
     LabelledThings,
     WeightPrior,
@@ -35,10 +36,11 @@ from processing.scoring.mapped_features import MappedFeature, MappedFile
 from processing.tools.gutters import GutterParameters, gutter_evidence
 
 _FACTS = {"lids": CoverFacts._fields, "gratings": GratingTerms._fields}
+_SEEDS = "2000-2023", "2100-2111"
 _EXPECTED = {
     "lids": WeightPrior(
-        (-4.0, *CoverFacts(1.0, 1.0, 1.0, 0.5, -10.0, -0.5, -0.5, -0.5, -0.5, -2.0)),
-        (3.0, *CoverFacts(0.5, 0.7, 0.7, 0.4, 10.0, 0.5, 0.5, 0.5, 0.5, 1.5)),
+        (-4.0, *CoverFacts(1.0, 1.0, 1.0, 0.5, -10.0, -0.5, -0.5, -0.5, -0.5, -10.0)),
+        (3.0, *CoverFacts(0.5, 0.7, 0.7, 0.4, 10.0, 0.5, 0.5, 0.5, 0.5, 5.0)),
     ),
     "gratings": WeightPrior(
         (-12.0, *GratingTerms(2.0, 0.5, 4.0, 2.0, 1.5, -10.0)),
@@ -98,7 +100,7 @@ def _which_are_right(
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """The command."""
-    asked = training_streets("gutter_training", arguments)
+    asked = training_streets("gutter_training", arguments, mounted_scenes, _SEEDS)
     known, check = known_covers(asked.learnt), known_covers(asked.check)
     for name, expected in _EXPECTED.items():
         told = learn_weights(_FACTS[name], expected, known[name], check[name])

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -23,18 +23,31 @@ class TrainingStreets:
     check: Iterator[RoadScene]
 
 
-def training_streets(module: str, arguments: Sequence[str] | None) -> TrainingStreets:
-    """What the command of a module of `processing.laboratory.road_training` was told."""
+def training_streets(
+    module: str,
+    arguments: Sequence[str] | None,
+    scenes: Callable[[Sequence[int], float], Iterator[RoadScene]] = simulated_scenes,
+    seeds: tuple[str, str] = ("500-529", "530-539"),
+) -> TrainingStreets:
+    """What the command of a module of `processing.laboratory.road_training` was told.
+
+    Parameters
+    ----------
+    scenes : callable
+        Makes streets of seeds and a length, m.
+    seeds : (str, str)
+        Of streets to learn from and to check with, if nothing else is asked.
+    """
     parser = argparse.ArgumentParser(prog=f"python -m processing.laboratory.road_training.{module}")
-    parser.add_argument("--seeds", default="500-529", help="streets to learn from")
-    parser.add_argument("--check", default="530-539", help="streets to check with")
+    parser.add_argument("--seeds", default=seeds[0], help="streets to learn from")
+    parser.add_argument("--check", default=seeds[1], help="streets to check with")
     parser.add_argument("--length", type=float, default=60.0, help="m of each")
     parser.add_argument("--deliveries", type=Path, nargs="*", default=[])
     asked = parser.parse_args(arguments)
-    simulated = simulated_scenes(_seeds(asked.seeds), asked.length)
+    simulated = scenes(_seeds(asked.seeds), asked.length)
     return TrainingStreets(
         itertools.chain(simulated, given_scenes(asked.deliveries)),
-        simulated_scenes(_seeds(asked.check), asked.length),
+        scenes(_seeds(asked.check), asked.length),
     )
 
 

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from processing.core.arrays import Floats
 from processing.core.monitor import SilentMonitor
 from processing.laboratory.simulate.requests import StreetRequest
+from processing.laboratory.simulate.scanning.any_mounting import any_sensor, write_sensor
 from processing.laboratory.simulate.streets import simulate_street
 from processing.project.importing.importing import ImportRequest, import_drives
 from processing.recording.drive import Drive
@@ -29,6 +30,7 @@ BOTH = "both"
 _CRS = "EPSG:6677"
 _STYLES = ("urban", "rural", "urban", "rural", "urban", "highway")
 _SENSORS = ("vq250", "vq450", "zf9012", "vmx2ha", "lynx")
+_URBAN_OF = 3  # every third street of any mounting is urban, the others have gutters oftener
 _TWICE_OF, _STOPS_OF = 4, 3  # every fourth street is driven twice, every third waits somewhere
 
 
@@ -123,6 +125,24 @@ def simulated_scenes(seeds: Sequence[int], length_m: float = LENGTH_M) -> Iterat
         with TemporaryDirectory(prefix="zuka-") as position:
             folder = Path(position) / "street"
             simulate_street(options, folder, SilentMonitor())
+            with opened_scene(name, folder) as scene:
+                yield scene
+
+
+def mounted_scenes(seeds: Sequence[int], length_m: float = LENGTH_M) -> Iterator[RoadScene]:
+    """Streets of seeds that are recorded by heads of any height, tilt, rate and noise each."""
+    for seed in seeds:
+        with TemporaryDirectory(prefix="zuka-") as position:
+            folder, own = Path(position) / "street", Path(position) / "sensor.toml"
+            sensor = any_sensor(seed)
+            write_sensor(sensor, own)
+            style = "rural" if seed % _URBAN_OF else "urban"
+            request = StreetRequest(
+                seed=seed, length_m=length_m, style=style, own_sensor=str(own), images=False
+            )
+            simulate_street(request, folder, SilentMonitor())
+            heads = "one head" if len(sensor.heads) == 1 else "two heads"
+            name = f"{style}, {heads}, {sensor.turns_per_s:.0f}/s × {sensor.pulses} {seed}"
             with opened_scene(name, folder) as scene:
                 yield scene
 

@@ -2,7 +2,7 @@
 
 The sensors of the catalogue are mounted in two ways. A method that is judged by them alone may hold
 a fact about those two for one about roads, so scenes for developing and judging draw from what is
-built: roof racks and masts from 1.5 to 3.5 m above the road, heads that look across, ahead or back.
+built: bonnets, roof racks and masts, heads that look across, ahead or back.
 """
 
 from __future__ import annotations
@@ -16,8 +16,9 @@ from processing.core.text import Text
 from processing.laboratory.simulate.scanning.sensors import Head, Sensor
 from processing.laboratory.simulate.scene.chance import chance
 
-_HEAD_HEIGHT_M = (1.5, 3.5)
-"""Of a head above the road: the bonnet of a car, the mast of a lorry."""
+_UP_M = (-0.1, 1.9)
+"""Of a head above the trajectory's reference point, which `simulated_passes` puts 1.7 to 2.0 m
+above the road: heads of 1.6 to 3.9 m, those of the bonnet of a car and of the mast of a lorry."""
 
 _TURNS_PER_S = (50.0, 250.0)
 """Line scanners of the last twenty years (resources/catalogue/sensors.toml)."""
@@ -34,20 +35,14 @@ _NOISE_M = (0.001, 0.008)
 _PHASE_SHARE, _ONE_HEAD_SHARE = 0.15, 0.5
 
 
-def any_sensor(seed: int, road_to_reference_m: float) -> Sensor:
-    """A sensor with its mounting, of a seed.
-
-    Parameters
-    ----------
-    road_to_reference_m : float
-        How far the trajectory's reference point is above the road.
-    """
+def any_sensor(seed: int) -> Sensor:
+    """A sensor with its mounting, of a seed."""
     random = chance(seed, "any mounting")
     turns = float(random.uniform(*_TURNS_PER_S))
     rate = float(np.exp(random.uniform(*np.log(_POINTS_PER_S))))
     pulses = int(np.clip(rate / turns, *_PULSES))
     is_phase = bool(random.random() < _PHASE_SHARE)
-    up = float(random.uniform(*_HEAD_HEIGHT_M)) - road_to_reference_m
+    up = float(random.uniform(*_UP_M))
     heads = _one_head(random, up) if random.random() < _ONE_HEAD_SHARE else _two_heads(random, up)
     return Sensor(
         id="any",

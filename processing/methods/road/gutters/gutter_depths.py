@@ -57,8 +57,12 @@ _CHANGE = 3.0
 """What it costs that lids end and blocks go on, as a logarithm: 20 to 1. By trial."""
 
 _BY_CHOICE = 3.0
-"""What choosing the best of all types and places of holes gains where there are none, a logarithm;
-and what holes' places say against lids at most, for a joint beside them is open too. By trial."""
+"""What choosing the best of all types and places of holes gains where there are none: a logarithm.
+By trial."""
+
+_WITHOUT_DEPTH = 0.5
+"""For lids where neither depths nor places tell: rows of joints that flat beams see are rather of
+holes, for grooves of 1 cm hardly show there. A logarithm, by trial."""
 
 
 @dataclass(frozen=True)
@@ -109,7 +113,7 @@ def are_deep(row: JointRow, notches: JointDepths, holes: HoleFit) -> NDArray[np.
     middles = (row.starts_m + row.ends_m) / 2
     if joints.size == 0:
         return np.ones(middles.size, np.bool_)
-    by_positions = max(holes.over_groove - _BY_CHOICE, -_BY_CHOICE)
+    by_positions = max(holes.over_groove - _BY_CHOICE, _WITHOUT_DEPTH)
     is_lids = _part(_lid_odds_of(joints, notches) + by_positions / joints.size)
     found: NDArray[np.bool_] = is_lids[nearest_rising(joints, middles)]
     return found

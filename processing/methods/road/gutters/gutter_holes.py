@@ -34,6 +34,10 @@ joint sees it and the holes as one. By trial."""
 _GROOVES = (0.0, 0.25, 0.5, 0.75, 1.0)
 """Shares of narrow openings that are the joint's beside the holes, of which the best is taken."""
 
+_STONES_M = (0.05, 0.12, 0.18, 0.25)
+"""How wide the joints of curb stones look: their tops are 15 to 20 cm wide (JIS A 5371), less where
+they are rounded or where a beam meets only the edge, more with the gutter block below."""
+
 _SPREAD_M = 0.02
 """Standard deviation of a notch's place across: a spacing of points and the axis' error. By
 trial."""
@@ -126,7 +130,7 @@ class HoleFit:
         Notches that it rests on.
     over_groove : float
         How much likelier the notches are with holes than in a groove that is open alike all
-        across, as they lie: a logarithm.
+        across lids or across curb stones, as they lie: a logarithm.
     """
 
     type: LidType
@@ -152,7 +156,8 @@ def hole_fit(notches: JointNotches) -> HoleFit:
         )[0]
     of_shares = np.tensordot(likelihood, counts, axes=2)
     gains = of_shares[:, :, :-1].max(axis=2) + np.log([[one.share] for one in LID_TYPES])
-    over_groove = float(gains.max() - of_shares[:, :, -1].max())
+    in_groove = max(of_shares[:, :, -1].max(), np.tensordot(_of_stones(), counts, axes=2).max())
+    over_groove = float(gains.max() - in_groove)
     gains /= max(1.0, float(counts.sum()))
     which, at = divmod(int(gains.argmax()), positions.size)
     gain = float(gains[which, at])
@@ -187,6 +192,22 @@ def _fits() -> tuple[_Floats, _Floats]:
                 mix[number, at, :, kind] = (1 - shares) * holes + shares * joint
     mix = (1 - _CHANCE) * mix + _CHANCE / (2 * _REACH_M)
     return positions, np.log(mix * 2 * _REACH_M)
+
+
+@cache
+def _of_stones() -> _Floats:
+    """(widths, k, classes, bins) as of :func:`_fits` for joints of curb stones at its places."""
+    middles = (_EDGES_M[1:] + _EDGES_M[:-1]) / 2
+    positions = np.arange(-_MOST_OFFSET_M, _MOST_OFFSET_M + _BIN_M / 100, _BIN_M)
+    density = [
+        [
+            [_box(middles - at, max(wide - usual, _BIN_M) / 2) for usual in _USUAL_M]
+            for at in positions
+        ]
+        for wide in _STONES_M
+    ]
+    mix = (1 - _CHANCE) * np.array(density) + _CHANCE / (2 * _REACH_M)
+    return np.asarray(np.log(mix * 2 * _REACH_M), np.float64)
 
 
 def _holes(one: LidType, across: _Floats, kind: int) -> _Floats:

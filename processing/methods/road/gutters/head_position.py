@@ -15,10 +15,10 @@ from processing.recording.drive import Drive
 
 Floats = NDArray[np.float64]
 
-_REVOLUTIONS = 24
+_REVOLUTIONS = 12
 """That are asked, all along the drive; their median counts, so that cars beside one don't."""
 
-_POINTS, _FEWEST = 600, 60
+_POINTS, _FEWEST = 300, 60
 """Of a revolution that are looked at, at most and at least."""
 
 _FARTHEST_M = 6.0

@@ -55,7 +55,7 @@ class NotchParameters:
     down_m: float = 0.01
     step_m: float = 0.10
     below_m: float = 0.10
-    reach_m: float = 13.0
+    reach_m: float = 8.0
     noise_factor: float = 3.0
 
 
