@@ -29,7 +29,7 @@ _LEAST_LENGTH = 1e-9
 
 
 @dataclass(frozen=True)
-class Sweep:
+class BeamSweep:
     """One revolution in the frame in which its points are given.
 
     Attributes
@@ -100,7 +100,7 @@ def beam_at(
     return _as_positions(origin, turned @ sweep.direction(0.0))
 
 
-def sweep_of(xyz: Floats, pulses: Floats, rate: float) -> Sweep | None:
+def sweep_of(xyz: Floats, pulses: Floats, rate: float) -> BeamSweep | None:
     """The sweep that explains points and their pulse numbers best, either way round.
 
     Parameters
@@ -114,19 +114,19 @@ def sweep_of(xyz: Floats, pulses: Floats, rate: float) -> Sweep | None:
 
     Returns
     -------
-    Sweep or None
+    BeamSweep or None
         None over too narrow an arc.
     """
     middle = xyz.mean(axis=0)
     _, _, axes = np.linalg.svd(xyz - middle, full_matrices=False)
     flat = (xyz - middle) @ axes[:2].T
-    best: tuple[float, Sweep] | None = None
+    best: tuple[float, BeamSweep] | None = None
     for sense in (rate, -rate):
         found = _turned_centre(flat, sense * pulses)
         if found is None:
             continue
         centre, phase, residual = found
-        sweep = Sweep(middle + centre @ axes[:2], axes[:2], phase, sense)
+        sweep = BeamSweep(middle + centre @ axes[:2], axes[:2], phase, sense)
         if best is None or residual < best[0]:
             best = residual, sweep
     if best is None or np.ptp(pulses) * rate < np.radians(_FEWEST_DEGREES):

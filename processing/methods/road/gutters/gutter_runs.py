@@ -296,7 +296,7 @@ def _run_of(line: GutterLine, notches: Notches, most_missed: int) -> GutterRun |
         return None
     is_on &= near.strength >= _STRONG
     depths = JointDepths.of(
-        along[is_on], near.depth_m[is_on], _square(axis, near)[is_on], near.steepness[is_on]
+        along[is_on], near.depth_m[is_on], _square(axis, along, near)[is_on], near.steepness[is_on]
     )
     row = row.chosen(are_deep(row, depths, holes))
     if row.starts_m.size < _LEAST_COVERS:
@@ -306,17 +306,16 @@ def _run_of(line: GutterLine, notches: Notches, most_missed: int) -> GutterRun |
 
 
 def _joint_notches(axis: GutterAxis, notches: Notches, worth: _Floats) -> JointNotches:
-    _, across, _ = axis.coordinates_of(notches.xyz, _BAND_M)
+    along, across, _ = axis.coordinates_of(notches.xyz, _BAND_M)
     known = np.isfinite(across)
-    square = _square(axis, notches)[known]
+    square = _square(axis, along, notches)[known]
     # An opening is seen a spacing wider than it is, on average.
     wide = np.maximum(notches.width_m - notches.spacing_m, 0.0)[known]
     return JointNotches(across[known], wide * square, worth[known])
 
 
-def _square(axis: GutterAxis, notches: Notches) -> _Floats:
+def _square(axis: GutterAxis, along: _Floats, notches: Notches) -> _Floats:
     """(n,) how much each row runs across the axis: 0 along it, 1 square to it; 0 far from it."""
-    along, _, _ = axis.coordinates_of(notches.xyz, _BAND_M)
     known = np.isfinite(along)
     at = np.clip((along[known] / STEP_M).astype(np.int64), 0, len(axis.outwards) - 1)
     square = np.zeros(notches.count)
