@@ -15,7 +15,7 @@ ANYWHERE = HoleFit(LID_TYPES[0], 0.0, 0.6, 100, 0.0)
 
 
 def row_of(count: int, grating: int = -1) -> JointRow:
-    starts = np.arange(count) * LID_M
+    starts = np.arange(count, dtype=np.float64) * LID_M
     what = np.where(np.arange(count) == grating, GRATING, LID)
     seen = np.ones((count, 2), np.int64)
     return JointRow(starts, starts + LID_M - 0.005, what, seen, np.zeros(count, np.bool_), 50.0)

@@ -29,7 +29,8 @@ def rows_of(way: Pass, ahead_m: float, noise_m: float) -> RowsOfBlock:
         # Files are written in millimetres.
         parts.append(np.column_stack([x, across, np.round(z, 3)]) - way.origin)
     ends = across.size * np.arange(ROWS + 1)
-    spans, stations = np.column_stack([ends[:-1], ends[1:]]), 10.0 + 0.1 * np.arange(ROWS)
+    spans = np.column_stack([ends[:-1], ends[1:]])
+    stations = 10.0 + 0.1 * np.arange(ROWS, dtype=np.float64)
     return RowsOfBlock(np.vstack(parts), np.arange(ends[-1]), spans, stations)
 
 
