@@ -56,13 +56,13 @@ against them, a fifth of it, so that filled holes say little either: logarithms.
 _CHANGE = 3.0
 """What it costs that lids end and blocks go on, as a logarithm: 20 to 1. By trial."""
 
-_BY_CHOICE = 3.0
-"""What choosing the best of all types and places of holes gains where there are none: a logarithm.
-By trial."""
+_BY_CHOICE = 12.0
+"""What choosing the best of all types and places of holes gains where there are none: at most 10 on
+a pavement of slabs, whose joints lie at the same spacing; a logarithm."""
 
-_WITHOUT_DEPTH = 0.5
-"""For lids where neither depths nor places tell: rows of joints that flat beams see are rather of
-holes, for grooves of 1 cm hardly show there. A logarithm, by trial."""
+_WITHOUT_DEPTH = 1.0
+"""Against lids where neither depths nor places tell: grooves between blocks are met oftener than
+gutters. A logarithm, by trial."""
 
 
 @dataclass(frozen=True)
@@ -113,7 +113,7 @@ def are_deep(row: JointRow, notches: JointDepths, holes: HoleFit) -> NDArray[np.
     middles = (row.starts_m + row.ends_m) / 2
     if joints.size == 0:
         return np.ones(middles.size, np.bool_)
-    by_positions = max(holes.over_groove - _BY_CHOICE, _WITHOUT_DEPTH)
+    by_positions = max(holes.over_groove - _BY_CHOICE, -_WITHOUT_DEPTH)
     is_lids = _part(_lid_odds_of(joints, notches) + by_positions / joints.size)
     found: NDArray[np.bool_] = is_lids[nearest_rising(joints, middles)]
     return found
@@ -145,9 +145,10 @@ def _lid_odds_of(joints: _Floats, notches: JointDepths) -> _Floats:
     low, high = ends[which], np.minimum(ends[which + 1], possible)
     in_holes = np.maximum(high - low, 0.0) / np.maximum(possible, _TELLING_M)
     in_grooves = np.array(_OF_GROOVES)[which]
-    # Deeper than any groove is a hole, if one of the larger ones.
-    in_holes[which == len(_DEPTHS_M)] = np.maximum(in_holes, _DEEP_SHARE)[which == len(_DEPTHS_M)]
     in_holes = np.where(possible < _TELLING_M, in_grooves, in_holes)
+    # Deeper than any groove is a hole, if one of the larger ones.
+    is_deepest = which == len(_DEPTHS_M)
+    in_holes[is_deepest] = np.maximum(in_holes[is_deepest], _DEEP_SHARE)
     worth = np.log((_FILLED * in_grooves + (1.0 - _FILLED) * in_holes) / in_grooves)
     summed = np.bincount(nearest[near], worth, minlength=joints.size)
     return np.clip(summed, _LEAST, _MOST)
