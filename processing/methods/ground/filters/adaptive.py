@@ -116,6 +116,7 @@ class GroundAssumptions:
     flank: float = 0.10
     steep: float = 0.8
     steep_small: float = 0.3
+    lowest_thing_m: float = 0.15
     rim_share: float = 0.45
     tolerances: Tolerances = field(default_factory=Tolerances)
 
@@ -200,7 +201,7 @@ def _ground_cells(
         flank=habits.flank,
         steep=habits.steep,
         rim_share=habits.rim_share,
-        small_steep=habits.steep_small,
+        small_steep=min(max(habits.lowest_thing_m / grid.size_m, habits.steep_small), habits.steep),
     )
     levels, standing = _lowest_ground(blocks, grid, shape)
     ground = np.isfinite(levels.lowest) & ~standing

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from processing.core.kernels import kernel
 from processing.methods.ground.filters.cell_positions import Blocks
 from processing.methods.ground.filters.cells import CellGrid
+from processing.methods.ground.filters.face_inclination import FaceRange, upright_faces
 from processing.methods.ground.filters.feet import SIDE_PARTS, attached_feet
 from processing.methods.ground.filters.morphology import steepness_of
 from processing.methods.ground.filters.walls import BIN_M, BINS, column_tops, faces
@@ -195,6 +196,14 @@ def ground_band(
     face_low = np.where(face, lowest - thick, np.where(is_level, np.inf, lowest))
     face_high = np.where(is_level, -np.inf, highest)
     face_high = np.where(face, np.maximum(upper + thick, face_high), face_high)
+    looked_at = FaceRange(
+        np.where(face_high > face_low, lowest + thick, np.inf).astype(np.float32),
+        np.where(face, upper, highest - thick).astype(np.float32),
+    )
+    upright = upright_faces(blocks, grid, looked_at)
+    # Beside a wall the ground between cells does not lie between their heights.
+    face_low = np.where(upright, np.where(ground, surface - thick, np.inf), face_low)
+    face_high = np.where(upright, np.where(ground, surface + above, -np.inf), face_high)
     return GroundBand(
         surface,
         thick,
