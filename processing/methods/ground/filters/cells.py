@@ -26,9 +26,11 @@ _POINTS_OF_COARSE = 50
 _SMALLEST_CELL_M, _LARGEST_CELL_M = 0.20, 10.0
 """What the data may choose, by trial."""
 
-_THIN_SHARE = 0.40
-"""Of the coarse parts, from the thinnest on: the one that shall have one point in a cell. By trial;
-the thinnest of all lie in shadow or at the edge."""
+_THIN_SHARE = 0.10
+"""Of the points, from the thinnest parts on: the part that shall have one point in a cell. Nine
+points of ten lie where cells hold more, however fast the density falls with the range. Of the area
+it is no measure: around one spinning scanner 40 % of it had a tenth of the points and cells of
+1.1 m, in which walls, vehicles and road lay together."""
 
 _SPACING_DECIMALS = 2
 """A chosen cell has whole centimetres, so that it can be said and set."""
@@ -153,7 +155,8 @@ def _spacing(
     for xyz in blocks():
         _count_kernel(np.ascontiguousarray(xyz), low, coarse_m, counts)
     held = np.sort(counts[counts > 0])
-    typical = max(float(held[int(_THIN_SHARE * (len(held) - 1))]), 1.0)
+    up_to = np.cumsum(held)
+    typical = max(float(held[np.searchsorted(up_to, _THIN_SHARE * up_to[-1])]), 1.0)
     return float(np.clip(coarse_m / np.sqrt(typical), _SMALLEST_CELL_M, _LARGEST_CELL_M))
 
 

@@ -35,7 +35,7 @@ _GAP_CELLS = 2.0
 """Measured cells farther apart than this have a gap between them, in which a side may be hidden:
 diagonal neighbours are 1.4 cells apart, and beyond one empty cell it is two."""
 
-_FINE_CELL_M = 0.5
+_FINE_CELL_M = 0.25
 """Cells up to this size show every side of a thing; larger ones come from clouds, as those from
 the air, in which sides are missing. By trial."""
 
