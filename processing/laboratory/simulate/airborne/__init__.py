@@ -1,0 +1,1 @@
+"""Terrain and flights that are hard for filters of airborne points, with their truth."""
