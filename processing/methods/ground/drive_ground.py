@@ -65,7 +65,7 @@ def adaptive_ground(
     """
     monitor.report(0.0, _LOOKING)
     grid = choose_cells(points.blocks, habits.grid_m, None)
-    tiles = plan_tiles(points.blocks, grid, _MARGIN_WIDTHS * habits.widest_m)
+    tiles = plan_tiles(points.blocks, grid, _MARGIN_WIDTHS * habits.widest_in(grid.size_m))
     habits = replace(habits, grid_m=grid.size_m)
     crs = next((drive.info.crs for drive in points.drives if drive.info.crs), "")
     finding = PartMonitor(monitor, _CHOOSING_SHARE, 1.0)
@@ -169,7 +169,8 @@ class _TileSearch:
 
         away = cv2.distanceTransform((~found.measured).view(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_5)
         heights = found.band.heights.copy()
-        heights[away * found.grid.size_m > self._habits.widest_m] = np.nan
+        size_m = found.grid.size_m
+        heights[away * size_m > self._habits.widest_in(size_m)] = np.nan
         return heights
 
 

@@ -1,4 +1,4 @@
-"""A landscape recorded from the air: first and last returns of crossing strips, with their truth."""
+"""A landscape recorded from the air: first and last returns of crossing strips, with truth."""
 
 from __future__ import annotations
 
@@ -64,9 +64,7 @@ def _strip(random: Generator, extent_m: float, spacing_m: float, turn: float) ->
     return xy[inside]
 
 
-def _returns(
-    land: Landscape, random: Generator, xy: Floats
-) -> tuple[Floats, NDArray[np.bool_]]:
+def _returns(land: Landscape, random: Generator, xy: Floats) -> tuple[Floats, NDArray[np.bool_]]:
     column, row = (xy / CELL_M).astype(int).T
     keep = ~land.water[row, column] | (random.random(len(xy)) < _OVER_WATER)
     xy, row, column = xy[keep], row[keep], column[keep]

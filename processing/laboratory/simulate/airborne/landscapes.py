@@ -185,7 +185,7 @@ def _town(random: Generator, extent_m: float) -> Landscape:
     off = _across(random, extent_m, 10.0)
     ground += np.clip((18.0 - np.abs(off)) * 0.6, 0.0, random.uniform(2.0, 5.0))
     land = Landscape.bare(ground)
-    for _ in range(int(extent_m**2 / 900)):
+    for _ in range(int(extent_m**2 / 1500)):
         _add_building(land, random, (10.0, 60.0), (3.0, 18.0))
     _add_bridge(land, random, float(ground.max()) - 0.3, random.uniform(8.0, 14.0))
     _add_trees(land, random, 0.1, 12.0)
@@ -196,9 +196,8 @@ def _town(random: Generator, extent_m: float) -> Landscape:
 def _station(random: Generator, extent_m: float) -> Landscape:
     ground = _rolling(random, extent_m, 0.6, 150.0)
     land = Landscape.bare(ground)
-    for _ in range(3):
-        _add_building(land, random, (60.0, 120.0), (6.0, 15.0))
-    for _ in range(int(extent_m**2 / 1500)):
+    _add_building(land, random, (60.0, 120.0), (6.0, 15.0))
+    for _ in range(int(extent_m**2 / 5000)):
         _add_building(land, random, (20.0, 90.0), (3.0, 6.0))
     _add_vehicles(land, random, int(extent_m**2 / 400))
     _add_trees(land, random, 0.05, 10.0)

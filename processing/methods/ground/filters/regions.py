@@ -171,6 +171,43 @@ def standing_cells(
     return standing
 
 
+def standing_segments(
+    heights: NDArray[np.float32], ground: NDArray[np.bool_], size_m: float, shape: ObjectShape
+) -> NDArray[np.bool_]:
+    """Ground cells of smooth surfaces that stand above all around them: (rows, columns) bool.
+
+    Parameters
+    ----------
+    heights : (rows, columns) float32
+        Lowest heights, m.
+    ground : (rows, columns) bool
+        Cells held to be ground so far.
+
+    Notes
+    -----
+    Windows miss what is wider than they are, as a hall of 120 m, or what fits none of them. Here
+    the whole plan is parted where it rises by more than 45°; a part that is steep along three
+    quarters of its rim is a thing. What the border of the cloud cuts counts as level, so that the
+    ground itself, which a border surrounds, stays.
+
+    References
+    ----------
+    Sithole and Vosselman 2005, ISPRS Archives 36 (3/W19), p. 66-71: filtering by segments.
+    """
+    steep = np.full(ground.shape, shape.steep, np.float32)
+    segments = rim_shares(
+        np.ones(ground.shape, np.bool_),
+        heights,
+        FreeCells(ground, nearest_known(ground)),
+        size_m,
+        steep,
+        barrier=shape.barrier,
+        border=_BORDER_RIM,
+    )
+    found: NDArray[np.bool_] = ground & segments.at_least(_ALL_ROUND_SHARE)
+    return found
+
+
 def _things(
     raised: NDArray[np.bool_],
     heights: NDArray[np.float32],
@@ -257,7 +294,7 @@ def rim_shares(
     not steep says nothing: the side may be as steep, in the thing's own shadow.
     """
     free, nearest = cells
-    if not raised.any() or not (free & ~raised).any():
+    if not raised.any() or not free.any():
         return RimShares(np.zeros(raised.shape, np.int32), np.zeros(1))
     labels: NDArray[np.int32] = np.zeros(raised.shape, np.int32)
     if np.isfinite(barrier):
