@@ -12,8 +12,8 @@ from processing.methods.ground.filters.cell_positions import Blocks
 from processing.methods.ground.filters.cells import CellGrid
 
 _UPRIGHT_DEG = 85.0
-"""From here up a face is a wall and no ground. Built walls lean back by 1:0.1 (84°) at most, most of
-them less; the earth of three sites leaned 40 to 82°. The ground study draws the line at 80° (Sakurai
+"""From here up a face is a wall and no ground. Built walls lean back by 1:0.1 (84°) at most, most
+less; the earth of three sites leaned 40 to 82°. The ground study draws the line at 80° (Sakurai
 et al., section 3(2)a): there one cut face of those sites was lost, here none."""
 
 _UNIT_M = 1e-4
