@@ -16,6 +16,10 @@ from processing.core.arrays import Flags
 from processing.core.monitor import SilentMonitor
 from processing.formats.points.point_codes import read_result
 from processing.laboratory.accuracy.filters.filter_scenes import FilterScene
+from processing.laboratory.accuracy.filters.ground_peers import (
+    ground_by_dense_triangles,
+    ground_by_roller,
+)
 from processing.laboratory.accuracy.filters.peer_filters import (
     ground_by_cloth,
     ground_by_pcl,
@@ -95,14 +99,40 @@ def site_methods() -> tuple[FilterMethod, ...]:
     ]
     published = [_published_method(grid) for grid in _PUBLISHED_GRIDS_M]
     peers = _peers(_SITE_CLOTHS, _SITE_SMRFS, _SITE_MORPHOLOGIES)
-    return (_ADAPTIVE, *published, *lowest, *peers)
+    named = _named_by_the_study(_SITE_TRIANGLES, _SITE_ROLLERS)
+    return (_ADAPTIVE, *published, *lowest, *named, *peers)
+
+
+def study_methods(grids_m: tuple[float, ...], *, with_lowest: bool) -> tuple[FilterMethod, ...]:
+    """The adaptive method, the published one at some grids, and its baseline where asked for."""
+    lowest = [
+        FilterMethod("lowest points, strict", f"g = {grid:g} m", _our_ground(LOWEST, grid))
+        for grid in grids_m
+    ]
+    published = [_published_method(grid) for grid in grids_m]
+    return (_ADAPTIVE, *published, *(lowest if with_lowest else ()))
 
 
 def airborne_methods() -> tuple[FilterMethod, ...]:
     """The same for clouds with metres between points, where small cells hold no ground."""
     widest = _published_method(_PUBLISHED_GRIDS_M[-1])
     peers = _peers(_AIRBORNE_CLOTHS, _AIRBORNE_SMRFS, _AIRBORNE_MORPHOLOGIES)
-    return (_ADAPTIVE, widest, *peers)
+    named = _named_by_the_study(_AIRBORNE_TRIANGLES, _AIRBORNE_ROLLERS)
+    return (_ADAPTIVE, widest, *named, *peers)
+
+
+def _named_by_the_study(
+    triangles: MethodSettings, rollers: MethodSettings
+) -> Iterator[FilterMethod]:
+    """The densified TIN and the roller, each with its first settings and with the best."""
+    for name, codes_of, settings in (
+        ("PTD (Axelsson)", _dense_triangles, triangles),
+        ("roller", _roller, rollers),
+    ):
+        words = ", ".join(f"{value:g}" for value in settings[0])
+        yield FilterMethod(name, words, partial(codes_of, settings[0]), ours=False)
+        chosen = f"best of {len(settings)} by this truth"
+        yield FilterMethod(name, chosen, partial(_best, codes_of, settings), ours=False)
 
 
 def _peers(
@@ -151,6 +181,22 @@ _SITE_MORPHOLOGIES = tuple(
 _AIRBORNE_MORPHOLOGIES = tuple(
     _morphology(cell, slope, 0.5) for cell in (1.0, 2.0) for slope in (0.3, 0.7, 1.0)
 )
+
+
+_SITE_TRIANGLES = tuple(
+    (cell, angle, distance, _BAND_M)
+    for cell in (10.0, 5.0)
+    for angle, distance in ((6.0, 1.4), (20.0, 0.5))
+)
+_AIRBORNE_TRIANGLES = tuple(
+    (cell, angle, distance, 0.3)
+    for cell in (60.0, 30.0)
+    for angle, distance in ((6.0, 1.4), (15.0, 2.0))
+)
+"""Cell in m, angle in degrees, distance and band in m; first those that TerraScan proposes."""
+_SITE_ROLLERS = tuple((radius, 0.2, _BAND_M) for radius in (5.0, 2.0, 10.0))
+_AIRBORNE_ROLLERS = tuple((radius, 1.0, 0.5) for radius in (20.0, 10.0, 50.0))
+"""Radius, cell and band in m."""
 
 
 def as_delivered(scene: FilterScene, folder: Path) -> Path:
@@ -211,6 +257,16 @@ def _cloth(settings: tuple[float, int, float], scene: FilterScene, _: Path) -> C
 def _smrf(settings: tuple[float, float, float], scene: FilterScene, _: Path) -> Codes | None:
     found = ground_by_smrf(scene.local_xyz, *settings)
     return None if found is None else _ground(found)
+
+
+def _dense_triangles(
+    settings: tuple[float, float, float, float], scene: FilterScene, _: Path
+) -> Codes | None:
+    return _ground(ground_by_dense_triangles(scene.local_xyz, *settings))
+
+
+def _roller(settings: tuple[float, float, float], scene: FilterScene, _: Path) -> Codes | None:
+    return _ground(ground_by_roller(scene.local_xyz, *settings))
 
 
 def _pcl_ground(settings: tuple[str, ...], scene: FilterScene, folder: Path) -> Codes | None:

@@ -38,6 +38,24 @@ def _without(xyz: np.ndarray, low: tuple[float, float], high: tuple[float, float
     return xyz[~inside]
 
 
+_CUT_DEG = 75.0
+"""As firm earth is cut."""
+
+
+def _step(east: np.ndarray, east_m: float, height_m: float) -> np.ndarray:
+    """Heights of a step of cut earth, its top at ``east_m``."""
+    steep = np.tan(np.radians(_CUT_DEG))
+    return np.clip((east - east_m) * steep + height_m, 0.0, height_m)
+
+
+def _face(east_m: float, length_m: float, height_m: float, count: int, *, seed: int) -> np.ndarray:
+    """Points on the face of such a step."""
+    rng = np.random.default_rng(seed)
+    up = rng.uniform(0.0, height_m, count)
+    east = east_m - (height_m - up) / np.tan(np.radians(_CUT_DEG))
+    return np.column_stack([east, rng.uniform(0.0, length_m, count), up])
+
+
 def test_a_machine_on_a_slope_is_removed_and_the_slope_stays() -> None:
     ground = _without(_plane(30.0, 0.12, slope=0.3), (10.0, 10.0), (14.0, 12.5))
     machine = _box((10.0, 10.0, 3.3), (14.0, 12.5, 6.5))
@@ -54,15 +72,26 @@ def test_a_heap_at_the_slope_of_repose_is_ground() -> None:
 
 def test_a_step_of_two_metres_stays_with_its_face() -> None:
     xyz = _plane(30.0, 0.12)
-    xyz[:, 2] += np.where(xyz[:, 0] > 15.0, 2.0, 0.0)
-    rng = np.random.default_rng(3)
-    face = np.column_stack(
-        [np.full(6000, 15.0), rng.uniform(0.0, 29.0, 6000), rng.uniform(0.0, 2.0, 6000)]
-    )
+    xyz[:, 2] += _step(xyz[:, 0], 15.0, 2.0)
+    face = _face(15.0, 29.0, 2.0, 6000, seed=3)
     whole = np.vstack([xyz, face])
     is_ground = _found(whole).is_ground(whole)
     assert is_ground[: len(xyz)].mean() > 0.99
     assert is_ground[len(xyz) :].mean() > 0.9
+
+
+def test_a_retaining_wall_is_no_ground_and_the_ground_at_its_foot_and_top_is() -> None:
+    xyz = _plane(30.0, 0.12)
+    xyz[:, 2] += np.where(xyz[:, 0] > 15.0, 1.5, 0.0)
+    rng = np.random.default_rng(3)
+    wall = np.column_stack(
+        [np.full(6000, 15.0), rng.uniform(0.0, 29.0, 6000), rng.uniform(0.0, 1.5, 6000)]
+    )
+    wall[:, 0] += rng.normal(0.0, 0.01, 6000)
+    whole = np.vstack([xyz, wall])
+    is_ground = _found(whole).is_ground(whole)
+    assert is_ground[: len(xyz)].mean() > 0.98
+    assert is_ground[len(xyz) :].mean() < 0.25
 
 
 def test_points_under_the_ground_are_rejected_and_do_not_pull_it_down() -> None:
@@ -170,11 +199,8 @@ def test_a_machine_with_a_shadow_behind_it_is_removed() -> None:
 
 def test_a_step_seen_from_below_keeps_its_crest_with_the_ground_behind_in_shadow() -> None:
     xyz = _without(_plane(30.0, 0.12), (15.0, -1.0), (18.0, 31.0))
-    xyz[:, 2] += np.where(xyz[:, 0] > 15.0, 1.5, 0.0)
-    rng = np.random.default_rng(9)
-    face = np.column_stack(
-        [np.full(4000, 15.0), rng.uniform(0.0, 29.0, 4000), rng.uniform(0.0, 1.5, 4000)]
-    )
+    xyz[:, 2] += _step(xyz[:, 0], 15.0, 1.5)
+    face = _face(15.0, 29.0, 1.5, 4000, seed=9)
     whole = np.vstack([xyz, face])
     is_ground = _found(whole).is_ground(whole)
     assert is_ground[: len(xyz)].mean() > 0.99
@@ -183,11 +209,9 @@ def test_a_step_seen_from_below_keeps_its_crest_with_the_ground_behind_in_shadow
 
 def test_a_fence_that_ends_at_a_wall_is_no_part_of_the_wall() -> None:
     ground = _plane(30.0, 0.08)
-    ground[:, 2] += np.where(ground[:, 0] > 15.0, 3.0, 0.0)
+    ground[:, 2] += _step(ground[:, 0], 15.0, 3.0)
     rng = np.random.default_rng(10)
-    face = np.column_stack(
-        [np.full(12000, 15.0), rng.uniform(0.0, 29.0, 12000), rng.uniform(0.0, 3.0, 12000)]
-    )
+    face = _face(15.0, 29.0, 3.0, 12000, seed=13)
     fence = np.column_stack(
         [rng.uniform(9.0, 15.0, 4000), np.full(4000, 15.0), rng.uniform(0.0, 1.5, 4000)]
     )
@@ -200,11 +224,9 @@ def test_a_fence_that_ends_at_a_wall_is_no_part_of_the_wall() -> None:
 
 def test_a_fence_askew_that_touches_a_long_wall_is_no_part_of_the_wall() -> None:
     ground = _plane(40.0, 0.08)
-    ground[:, 2] += np.where(ground[:, 0] > 30.0, 3.0, 0.0)
+    ground[:, 2] += _step(ground[:, 0], 30.0, 3.0)
     rng = np.random.default_rng(12)
-    face = np.column_stack(
-        [np.full(16000, 30.0), rng.uniform(0.0, 39.9, 16000), rng.uniform(0.0, 3.0, 16000)]
-    )
+    face = _face(30.0, 39.9, 3.0, 16000, seed=14)
     along = rng.uniform(0.0, 1.0, 30000)
     fence = np.column_stack(
         [5.0 + 25.0 * along, 10.0 + 15.0 * along, rng.uniform(0.05, 2.9, 30000)]
@@ -291,3 +313,45 @@ def test_a_stray_point_over_dense_ground_takes_none_of_it_away() -> None:
     is_ground = _found(whole).is_ground(whole)
     assert is_ground[: len(ground)].mean() > 0.99
     assert not is_ground[len(ground) :].any()
+
+
+def _sparse(extent_m: float, spacing_m: float, seed: int) -> np.ndarray:
+    """Positions as from the air, about ``spacing_m`` apart, at height 0."""
+    along = np.arange(0.0, extent_m, spacing_m)
+    xy = np.stack(np.meshgrid(along, along), axis=-1).reshape(-1, 2)
+    xy += np.random.default_rng(seed).uniform(-0.4, 0.4, xy.shape) * spacing_m
+    return np.column_stack([xy, np.zeros(len(xy))])
+
+
+def test_from_the_air_the_crests_of_a_quarry_stay() -> None:
+    xyz = _sparse(200.0, 3.0, 21)
+    for edge in (50.0, 100.0, 150.0):
+        xyz[:, 2] += np.clip(2.0 * (xyz[:, 0] - edge), 0.0, 8.0)
+    assert _found(xyz).is_ground(xyz).mean() > 0.97
+
+
+def test_from_the_air_a_hall_wider_than_any_window_goes() -> None:
+    xyz = _sparse(240.0, 1.5, 22)
+    hall = np.all(np.abs(xyz[:, :2] - 120.0) < 60.0, axis=1)
+    xyz[hall, 2] += 10.0
+    is_ground = _found(xyz).is_ground(xyz)
+    assert is_ground[~hall].mean() > 0.99
+    assert is_ground[hall].mean() < 0.01
+
+
+def test_from_the_air_shrubs_on_a_steep_slope_go() -> None:
+    xyz = _sparse(150.0, 2.0, 23)
+    xyz[:, 2] = 0.6 * xyz[:, 0] + np.random.default_rng(24).normal(0.0, 0.05, len(xyz))
+    shrubs = np.zeros(len(xyz), np.bool_)
+    shrubs[::37] = True
+    xyz[shrubs, 2] += 2.2
+    is_ground = _found(xyz).is_ground(xyz)
+    assert is_ground[~shrubs].mean() > 0.98
+    assert is_ground[shrubs].mean() < 0.1
+
+
+def test_cells_are_as_fine_as_where_most_points_lie() -> None:
+    rng = np.random.default_rng(25)
+    near = np.column_stack([rng.uniform(40.0, 60.0, (20_000, 2)), np.zeros(20_000)])
+    far = np.column_stack([rng.uniform(0.0, 100.0, (1_500, 2)), np.zeros(1_500)])
+    assert _found(np.vstack([near, far])).grid.size_m < 0.4
