@@ -75,7 +75,8 @@ def _rolling(random: Generator, extent_m: float, height_m: float, wave_m: float)
         turn, wave = random.uniform(0, np.pi), wave_m * 2 ** random.uniform(-1, 1)
         along = east * np.cos(turn) + north * np.sin(turn)
         relief += np.sin(2 * np.pi * along / wave + random.uniform(0, 6.3)) * wave / wave_m
-    return relief * height_m / np.sqrt(10)
+    heights: Floats = relief * height_m / np.sqrt(10)
+    return heights
 
 
 def _across(random: Generator, extent_m: float, bend_m: float) -> Floats:
@@ -84,7 +85,8 @@ def _across(random: Generator, extent_m: float, bend_m: float) -> Floats:
     turn = random.uniform(0, 2 * np.pi)
     off = (east - extent_m / 2) * np.cos(turn) + (north - extent_m / 2) * np.sin(turn)
     along = (north - extent_m / 2) * np.cos(turn) - (east - extent_m / 2) * np.sin(turn)
-    return off + bend_m * np.sin(2 * np.pi * along / extent_m + random.uniform(0, 6.3))
+    bent: Floats = off + bend_m * np.sin(2 * np.pi * along / extent_m + random.uniform(0, 6.3))
+    return bent
 
 
 def _steps(off: Floats, random: Generator, *, run_m: float, face_m: float, slope: float) -> Floats:
