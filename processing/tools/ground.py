@@ -55,8 +55,8 @@ class GroundParameters:
         name=Text("Method", "方法"),
         explanation=Text(
             "Adaptive chooses its cells by the density of the points, keeps slopes and "
-            "steps, and removes walls, machines, plants and buildings of any size. The other two are "
-            "there to compare with.",
+            "steps, and removes walls, machines, plants and buildings of any size. The other two "
+            "are there to compare with.",
             "「自動調整」は点密度から格子を決め、法面・段差を残し、擁壁・建設機械・草木・建物を"
             "大きさによらず除きます。ほかの2つは比較用です。",
         ),
