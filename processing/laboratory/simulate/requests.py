@@ -143,6 +143,7 @@ class SiteRequest:
             ParameterChoice("levee", Text("Levee", "堤防")),
             ParameterChoice("cutting", Text("Road cutting and embankment", "道路の切土・盛土")),
             ParameterChoice("pad", Text("Building land", "宅地造成")),
+            ParameterChoice("hillside", Text("Road through hills", "丘陵地の道路")),
         ),
         name=_STYLE,
     )

@@ -93,13 +93,17 @@ def _candidates(random: Generator, layout: SiteLayout) -> Floats:
     for number in range(_CANDIDATES * 20):
         x, y = random.uniform(0.04, 0.96) * east, random.uniform(0.04, 0.96) * north
         over = random.uniform(1.45, 1.85)
-        is_dry = layout.ground.material[int(y / heights.res), int(x / heights.res)] != int(
-            Material.WATER
-        )
+        node = int(y / heights.res), int(x / heights.res)
+        is_dry = layout.ground.material[node] != int(Material.WATER)
         # Where nothing is level, the last tries take what there is.
         steepest = _STEEPEST if number < _CANDIDATES * 15 else 10.0
         is_level = np.hypot(*heights.slope(x, y, 1.0)) < steepest
-        if is_dry and is_level and layout.is_free(x, y, _CLEAR_M):
+        if (
+            is_dry
+            and is_level
+            and layout.ground.is_reached[node]
+            and layout.is_free(x, y, _CLEAR_M)
+        ):
             found.append([x, y, float(heights.height(x, y)) + over])
         if len(found) == _CANDIDATES:
             break

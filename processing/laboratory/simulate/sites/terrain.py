@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -37,6 +37,8 @@ StopCheck = Callable[[], None]
 Bytes = NDArray[np.uint8]
 PlanPoint = tuple[float, float]
 
+_EDGE_M = 2.0  # over which a strip of work ends
+
 
 @dataclass(frozen=True)
 class SiteGround:
@@ -47,10 +49,13 @@ class SiteGround:
     heights : HeightGrid
     material : (rows, columns) uint8
         Of the cell whose lower left node it is; the last row and column belong to no cell.
+    is_reached : (rows, columns) bool
+        Nodes where a tripod is set up if there is room.
     """
 
     heights: HeightGrid
     material: Bytes
+    is_reached: Mask
 
     def triangle_materials(self) -> Bytes:
         """As :meth:`HeightGrid.shape` orders the triangles."""
@@ -77,7 +82,7 @@ def terrain_of(seed: int, style: str, length_m: float, check: StopCheck) -> Site
 
     Parameters
     ----------
-    style : {"levee", "cutting", "pad"}
+    style : {"levee", "cutting", "pad", "hillside"}
     length_m : float
         Of the site's longer side.
     check : callable
@@ -92,7 +97,7 @@ def terrain_of(seed: int, style: str, length_m: float, check: StopCheck) -> Site
     check()
     plan = PLANS[style](random, lie)
     lowest = random.uniform(1.0, 60.0) - min(float(plan.natural.min()), float(plan.design.min()))
-    plan = Plan(plan.natural + lowest, plan.design + lowest)
+    plan = replace(plan, natural=plan.natural + lowest, design=plan.design + lowest)
     check()
     first, second = progress_of(random, lie, plan)
     check()
@@ -110,11 +115,13 @@ def terrain_of(seed: int, style: str, length_m: float, check: StopCheck) -> Site
     after += np.where(moved, other, rough)
     check()
     active = _active(random, lie)
+    reached = _reached(random, lie, plan)
+    active = active * np.clip((plan.reach_m - np.abs(lie.v)) / _EDGE_M, 0, 1)
     after = before + active * (after - before)
     later = np.where(active > 0, later, material).astype(np.uint8)
     return SiteTerrain(
-        SiteGround(HeightGrid(before.astype(np.float32), res), material),
-        SiteGround(HeightGrid(after.astype(np.float32), res), later),
+        SiteGround(HeightGrid(before.astype(np.float32), res), material, reached),
+        SiteGround(HeightGrid(after.astype(np.float32), res), later, reached),
         np.asarray(active == 0, np.bool_),
     )
 
@@ -126,6 +133,15 @@ def _active(random: Generator, lie: WorkPlacement) -> Floats:
     ramp = random.uniform(0.2, 2.0)
     ahead: Floats = np.clip((lie.u - start) / ramp, 0, 1)
     return ahead if random.random() < 0.5 else ahead[:, ::-1].copy()
+
+
+def _reached(random: Generator, lie: WorkPlacement, plan: Plan) -> Mask:
+    """Where scanners are carried: everywhere, or along the work but for one far end of it."""
+    if not np.isfinite(plan.reach_m):
+        return np.ones(lie.x.shape, np.bool_)
+    left = random.uniform(0.15, 0.3) * float(np.ptp(lie.u))
+    along = lie.u if random.random() < 0.5 else -lie.u
+    return np.asarray((np.abs(lie.v) <= plan.reach_m) & (along <= along.max() - left), np.bool_)
 
 
 @dataclass(frozen=True)

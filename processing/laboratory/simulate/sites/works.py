@@ -49,10 +49,23 @@ class WorkPlacement:
 
 @dataclass(frozen=True)
 class Plan:
-    """Ground as it was and as it is designed: (rows, columns) float64, m."""
+    """What is to be built.
+
+    Attributes
+    ----------
+    natural, design : (rows, columns) float64
+        Ground as it was and as it is designed, m.
+    reach_m : float
+        Half width of the strip along the work within which anything is done, and from which it is
+        scanned.
+    gain : (float, float)
+        Least and most share of the work that is done between the dates on a stretch.
+    """
 
     natural: Floats
     design: Floats
+    reach_m: float = np.inf
+    gain: tuple[float, float] = (0.05, 0.75)
 
     def built(self, down_to: Floats, up_to: Floats) -> Floats:
         """The ground when it is cut down and filled up to levels, never past the design."""
@@ -132,10 +145,27 @@ def pad(random: Generator, lie: WorkPlacement) -> Plan:
     return Plan(natural, np.clip(terraces, natural - reach, natural + reach))
 
 
+def hillside(random: Generator, lie: WorkPlacement) -> Plan:
+    """A road through hills of which little is moved; beyond the strip ground falls out of sight."""
+    scale = lie.wide_m
+    fall = random.uniform(0.04, 0.18)
+    hills = random.uniform(0.012, 0.03) * scale * undulation(random, lie.x, lie.y, 0.3 * scale)
+    natural = fall * lie.v + hills + _uneven(random, lie, 0.2)
+    half = float(np.clip(random.uniform(0.05, 0.08) * scale, 1.2, 7.0))
+    road = random.uniform(-0.04, 0.04) * lie.u + random.uniform(-0.02, 0.02) * scale
+    beside = np.maximum(np.abs(lie.v) - half, 0.0)
+    bench, every = random.uniform(*_BENCH_M), random.uniform(*_BENCH_EVERY_M)
+    upper = _benched(beside, 1.0 / random.uniform(*_CUT_SLOPE), bench, every)
+    lower = _benched(beside, 1.0 / random.uniform(*_FILL_SLOPE), bench, every)
+    reach = half + random.uniform(0.12, 0.2) * scale
+    return Plan(natural, np.clip(natural, road - lower, road + upper), reach, (0.05, 0.4))
+
+
 PLANS: dict[str, Callable[[Generator, WorkPlacement], Plan]] = {
     "levee": levee,
     "cutting": cutting,
     "pad": pad,
+    "hillside": hillside,
 }
 
 
@@ -154,7 +184,7 @@ def progress_of(random: Generator, lie: WorkPlacement, plan: Plan) -> tuple[Prog
     edges = np.sort(random.uniform(lie.u.min(), lie.u.max(), count - 1))
     ramps = random.uniform(0.15, 5.0, count - 1)
     first = np.clip(random.normal(0.3, 0.3, count), 0, 1)
-    gain = random.uniform(0.05, 0.75, count)
+    gain = random.uniform(*plan.gain, count)
     second = np.clip(first + gain, 0, 1)
     worked = np.abs(plan.design - plan.natural) > 0.05
     if not worked.any():

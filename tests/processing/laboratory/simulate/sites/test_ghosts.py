@@ -27,7 +27,13 @@ EYE = np.array([10.0, 10.0, 2.0])
 
 def flat(material: Material) -> SiteLayout:
     z = np.zeros((41, 41), np.float32)
-    return SiteLayout(SiteGround(HeightGrid(z, 0.5), np.full(z.shape, int(material), np.uint8)))
+    return SiteLayout(
+        SiteGround(
+            HeightGrid(z, 0.5),
+            np.full(z.shape, int(material), np.uint8),
+            np.ones(z.shape, np.bool_),
+        )
+    )
 
 
 def beams_to(targets: np.ndarray, time_s: float = 0.0) -> Beams:

@@ -32,7 +32,11 @@ UPRIGHT = (*STORES, cone, hut, net, scaffold, batter_board, bush, survey_pole, w
 def slope(grade: float, side_m: float = 20.0) -> SiteGround:
     count = round(side_m / 0.25) + 1
     z = np.broadcast_to(np.arange(count) * 0.25 * grade, (count, count)).astype(np.float32)
-    return SiteGround(HeightGrid(z, 0.25), np.full(z.shape, int(Material.SOIL), np.uint8))
+    return SiteGround(
+        HeightGrid(z, 0.25),
+        np.full(z.shape, int(Material.SOIL), np.uint8),
+        np.ones(z.shape, np.bool_),
+    )
 
 
 @pytest.mark.parametrize("make", [*MACHINES, *UPRIGHT])

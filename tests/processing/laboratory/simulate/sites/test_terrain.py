@@ -23,7 +23,7 @@ def test_a_site_changes_by_decimetres_to_metres_but_not_everywhere(style: str) -
     terrain = terrain_of(5, style, 24.0, nothing)
     change = terrain.after.heights.z - terrain.before.heights.z
     assert 0.1 < np.abs(change).max() < 8
-    assert 0.02 < terrain.unchanged.mean() < 0.6
+    assert 0.02 < terrain.unchanged.mean() < 0.75
     assert (change[terrain.unchanged] == 0).all()
 
 
