@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -14,6 +15,17 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 Mask = NDArray[np.bool_]
+
+FARTHEST_M = 10.0
+"""Beyond the last points lies what a disc of this radius covers that holds none, unless points
+surround it: behind machines and banks of 3 to 5 m a tripod's beams come down again within twice
+that. Of sites of development seeds, a radius of 5 m left out 7 % of what was moved on one; 10 m
+left out nothing that was moved on any."""
+
+_NEAR_M, _LEAST_SHARE = 1.0, 0.2
+"""To each side of a cell with points, within which at least this share of cells has some where
+ground was measured: scan lines a metre apart, as at the far end of a site, fill two cells of
+five."""
 
 _TENSION = 0.02
 """Weight of slope against bending, per cell squared: bending decides up to some seven cells, 3.5 m
@@ -28,6 +40,38 @@ _RIM_CELLS = 3
 
 _TWIST = 2.0
 """Weight of the mixed derivative in the energy of a thin plate: it stands in it twice."""
+
+
+def measured_extent(is_known: Mask, size_m: float) -> Mask:
+    """Cells with ground, between such cells, or surrounded by them: (rows, columns) bool, a copy.
+
+    A few points alone are strays more often than ground, and say nothing of how far it reaches.
+
+    Parameters
+    ----------
+    is_known : (rows, columns) bool
+        Cells with points; row = north, column = east.
+    size_m : float
+        Side of a cell.
+
+    References
+    ----------
+    Serra 1982, Image Analysis and Mathematical Morphology: the closing by a disc.
+    """
+    from scipy.ndimage import binary_fill_holes, distance_transform_edt, uniform_filter
+
+    reach = FARTHEST_M / size_m
+    near = 2 * max(1, round(_NEAR_M / size_m)) + 1
+    shares = uniform_filter(is_known.astype(np.float32), near, mode="constant")
+    is_ground = is_known & (shares >= _LEAST_SHARE)
+    if not is_ground.any():
+        return is_ground
+    beside = math.ceil(reach) + 1
+    padded = np.pad(is_ground, beside)
+    is_near: Mask = np.asarray(distance_transform_edt(~padded) <= reach, np.bool_)
+    closed = np.asarray(distance_transform_edt(is_near) > reach, np.bool_)
+    extent: Mask = binary_fill_holes(closed[beside:-beside, beside:-beside] | is_ground)
+    return extent
 
 
 def fill_smoothly(heights: Floats, is_known: Mask, is_wanted: Mask) -> Floats:

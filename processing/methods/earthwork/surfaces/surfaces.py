@@ -11,7 +11,7 @@ from processing.core.monitor import Monitor
 from processing.methods.earthwork.geometry.triangle_surface import TriangleSurface
 from processing.methods.earthwork.surfaces.filling import relax_heights
 from processing.methods.earthwork.surfaces.ground_cells import GroundCells
-from processing.methods.earthwork.surfaces.hidden_ground import fill_ground
+from processing.methods.earthwork.surfaces.hidden_ground import SeenBeside, fill_ground
 from processing.methods.earthwork.surfaces.sides import EpochGround, Level
 from processing.methods.earthwork.surfaces.sight_lines import Floor, SightLines
 from processing.methods.ground.filters.cells import CellGrid
@@ -61,6 +61,26 @@ class SideHeights:
     spread: Floats
 
 
+@dataclass(frozen=True)
+class EpochContext:
+    """What is known of an epoch beside its own points.
+
+    Attributes
+    ----------
+    shift_m : (float, float, float)
+        What was taken from its points when they were counted.
+    others : tuple of (rows, columns) float64
+        Mean heights of the ground points of other dates in the same cells, m; NaN without a point.
+    """
+
+    shift_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    others: tuple[Floats, ...] = ()
+
+
+ALONE = EpochContext()
+"""An epoch that lies as it was measured, and no other."""
+
+
 def designed_surface(side: TriangleSurface | Level, grid: CellGrid) -> SideHeights:
     """A design or a level at the middles of cells."""
     if isinstance(side, Level):
@@ -78,34 +98,37 @@ def measured_surface(
     cells: GroundCells,
     is_wanted: Mask,
     monitor: Monitor,
-    shift_m: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    context: EpochContext = ALONE,
 ) -> SideHeights:
-    """The ground of an epoch, holes filled in as far as they can be.
+    """The ground of an epoch, holes filled in from what is around them.
 
     Gaps between points are bridged; larger holes are filled on cells of half a metre, where a
-    crest or a machine is larger than a cell.
+    crest or a machine is larger than a cell. Beyond the last points there is no ground.
 
     Parameters
     ----------
     is_wanted : (rows, columns) bool
         Where ground is asked for.
-    shift_m : (float, float, float)
-        What was taken from the epoch's points when they were counted.
+    context : EpochContext
     """
     grid = cells.grid
     times = cells_of_hole(grid.size_m)
-    coarse, wanted = coarse_means(cells.heights, times), _any_of(is_wanted, times)
-    origin = grid.origin + np.asarray(shift_m)
+    coarse, wanted = coarse_means(cells.heights, times), coarse_any(is_wanted, times)
+    origin = grid.origin + np.asarray(context.shift_m)
     lines = _sight_lines(epoch, origin, (coarse, times * grid.size_m), monitor)
-    filled = fill_ground(coarse, wanted, lines, times * grid.size_m, monitor)
+    others = np.full(coarse.shape, np.nan)
+    for counted in context.others:
+        others = np.where(np.isfinite(others), others, coarse_means(counted, times))
+    seen = SeenBeside(lines, others)
+    filled = fill_ground(coarse, wanted, seen, times * grid.size_m, monitor)
     shape = cells.heights.shape
-    heights = np.where(cells.is_counted, cells.heights, _fine(filled.heights, times, shape))
+    heights = np.where(cells.is_counted, cells.heights, fine_heights(filled.heights, times, shape))
     # Larger holes keep what was found for them: a crest would be smoothed away again.
-    relax_heights(heights, cells.is_counted | np.isnan(_repeated(coarse, times, shape)))
+    relax_heights(heights, cells.is_counted | np.isnan(repeated_cells(coarse, times, shape)))
     is_measured = _bridged(cells) | _thinly_measured(cells, times)
-    spread = np.where(is_measured, 0.0, _repeated(filled.spread, times, shape))
-    outside = ~is_wanted & ~cells.is_counted
-    heights[outside] = np.nan
+    spread = np.where(is_measured, 0.0, repeated_cells(filled.spread, times, shape))
+    is_filled = is_wanted & np.isfinite(repeated_cells(filled.heights, times, shape))
+    heights[~is_filled & ~cells.is_counted] = np.nan
     return SideHeights(heights, is_measured & np.isfinite(heights), spread)
 
 
@@ -132,7 +155,7 @@ def _thinly_measured(cells: GroundCells, times: int) -> Mask:
     counts = np.nansum(_blocks(cells.counts.astype(np.float64), times), axis=(1, 3))
     densest = maximum_filter(counts, 3) / times**2
     is_thin = (counts > 0) & (densest < _FEW_IN_CELL)
-    return _repeated(is_thin.astype(np.float64), times, cells.counts.shape) > 0
+    return repeated_cells(is_thin.astype(np.float64), times, cells.counts.shape) > 0
 
 
 def _sight_lines(
@@ -168,16 +191,18 @@ def coarse_means(heights: Floats, times: int) -> Floats:
     return means
 
 
-def _any_of(mask: Mask, times: int) -> Mask:
+def coarse_any(mask: Mask, times: int) -> Mask:
+    """Whether any cell of a block of ``times`` cells a side is true."""
     found: Mask = np.any(_blocks(mask.astype(np.float64), times) == 1.0, axis=(1, 3))
     return found
 
 
-def _repeated(values: Floats, times: int, shape: tuple[int, int]) -> Floats:
+def repeated_cells(values: Floats, times: int, shape: tuple[int, int]) -> Floats:
+    """Values of coarse cells, each in all of its fine ones."""
     return values.repeat(times, axis=0).repeat(times, axis=1)[: shape[0], : shape[1]]
 
 
-def _fine(coarse: Floats, times: int, shape: tuple[int, int]) -> Floats:
+def fine_heights(coarse: Floats, times: int, shape: tuple[int, int]) -> Floats:
     """Heights of coarse cells at the middles of fine ones, linear between their middles."""
     if times == 1:
         return coarse.copy()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,8 +15,10 @@ from processing.methods.earthwork.geometry.boundary import inside_shares
 from processing.methods.earthwork.geometry.volume_scope import EVERYWHERE, VolumeScope
 from processing.methods.earthwork.maps.change_grid import ChangeGrid
 from processing.methods.earthwork.surfaces.ground_cells import GroundCells, grid_over, ground_cells
+from processing.methods.earthwork.surfaces.joined_dates import JoinedDates, join_dates
 from processing.methods.earthwork.surfaces.sides import EpochGround, Side
 from processing.methods.earthwork.surfaces.surfaces import (
+    EpochContext,
     SideHeights,
     cells_of_hole,
     coarse_means,
@@ -23,7 +26,7 @@ from processing.methods.earthwork.surfaces.surfaces import (
     measured_surface,
 )
 from processing.methods.earthwork.volumes import comparison_checks as checks
-from processing.methods.earthwork.volumes.change_sums import change_sums, is_filled
+from processing.methods.earthwork.volumes.change_sums import change_sums, is_certain, is_filled
 from processing.methods.earthwork.volumes.other_methods import OtherMethod, volume_by
 from processing.methods.earthwork.volumes.registration import correctable_shift, registration_of
 from processing.methods.earthwork.volumes.uncertainty import volume_spread
@@ -56,8 +59,15 @@ def compare(
     parameters: VolumeParameters,
     monitor: Monitor,
     within: VolumeScope = EVERYWHERE,
+    *,
+    others: Sequence[EpochGround] = (),
 ) -> VolumeResult:
     """The volume between two sides.
+
+    Parameters
+    ----------
+    others : sequence of EpochGround
+        Of the same site on other dates: they tell the shape of ground that a side did not show.
 
     Raises
     ------
@@ -68,7 +78,7 @@ def compare(
         The boundary lies outside, or the mesh is too fine for so large an area.
     Cancelled
     """
-    checks.check_systems(before, after)
+    checks.check_systems(before, after, *others)
     grid = _grid_of((before, after), parameters.grid_m, within.boundary)
     counting, filling, summing = parts_of(monitor, _SHARES_OF_WORK)
     counting.report(0.0, _COUNTING)
@@ -84,27 +94,63 @@ def compare(
     designs = [_designed(side, grid) for side in (before, after)]
     inside = _inside(cells, designs, grid, within.boundary)
     shifts = ((0.0, 0.0, 0.0), shift)
-    surfaces = [
-        designed if designed is not None else _measured(side, counted, inside, filling, moved)
-        for side, counted, designed, moved in zip(
-            (before, after), cells, designs, shifts, strict=True
-        )
+    epochs = [
+        _Epoch(side, counted, moved)
+        for side, counted, moved in zip((before, after), cells, shifts, strict=True)
+        if isinstance(side, EpochGround) and counted is not None
     ]
+    seen = [_Epoch(one, ground_cells(one, grid, filling), shifts[0]) for one in others]
+    joined = _filled(epochs, seen, inside, grid, filling)
+    filled = iter(joined.grounds)
+    surfaces = [designed if designed is not None else next(filled) for designed in designs]
     change = _change(grid, surfaces, inside)
     checks.check_common(change, before, after)
     summing.report(0.0, _SUMMING)
-    epochs = sum(one is not None for one in cells)
-    tie = _Tie((before, after), registration, epochs)
-    return _result_of(change, surfaces, tie, (parameters, within), summing)
+    spread = joined.change_spread if len(epochs) > 1 else joined.grounds[0].spread
+    tie = _Tie((before, after), registration, len(epochs), spread, tuple(others))
+    return _result_of(change, tie, (parameters, within), summing)
+
+
+@dataclass(frozen=True)
+class _Epoch:
+    """A date that was measured, counted into cells, and what was taken from its points first."""
+
+    ground: EpochGround
+    cells: GroundCells
+    shift_m: tuple[float, float, float]
+
+
+def _filled(
+    epochs: list[_Epoch],
+    others: list[_Epoch],
+    inside: NDArray[np.float32],
+    grid: CellGrid,
+    monitor: Monitor,
+) -> JoinedDates:
+    """The epochs that are compared, each filled in by all that were measured."""
+    every = [*epochs, *others]
+    counted = [one.cells.heights for one in every]
+    grounds = []
+    for number, one in enumerate(every):
+        context = EpochContext(one.shift_m, (*counted[:number], *counted[number + 1 :]))
+        grounds.append(measured_surface(one.ground, one.cells, inside > 0, monitor, context))
+    if len(every) < 2:
+        return JoinedDates(tuple(grounds), grounds[0].spread)
+    wanted = inside > 0
+    for ground in grounds[: len(epochs)]:
+        wanted &= np.isfinite(ground.heights)
+    return join_dates(grounds, counted, wanted, grid.size_m, monitor)
 
 
 @dataclass(frozen=True)
 class _Tie:
-    """Two sides, how they lie to each other, and how many of them were measured."""
+    """Two sides, how they lie to each other, how many were measured, and how surely filled in."""
 
     sides: tuple[Side, Side]
     registration: Registration | None
     epochs: int
+    spread: Floats
+    others: tuple[EpochGround, ...] = ()
 
 
 def _grid_of(
@@ -138,18 +184,6 @@ def _registration(cells: list[GroundCells | None]) -> Registration | None:
 
 def _designed(side: Side, grid: CellGrid) -> SideHeights | None:
     return None if isinstance(side, EpochGround) else designed_surface(side, grid)
-
-
-def _measured(
-    side: Side,
-    cells: GroundCells | None,
-    inside: NDArray[np.float32],
-    monitor: Monitor,
-    shift_m: tuple[float, float, float],
-) -> SideHeights:
-    if not isinstance(side, EpochGround) or cells is None:
-        raise TypeError(side)
-    return measured_surface(side, cells, inside > 0, monitor, shift_m)
 
 
 def _inside(
@@ -188,22 +222,20 @@ def _change(grid: CellGrid, surfaces: list[SideHeights], inside: NDArray[np.floa
 
 def _result_of(
     change: ChangeGrid,
-    surfaces: list[SideHeights],
     tie: _Tie,
     asked: tuple[VolumeParameters, VolumeScope],
     monitor: Monitor,
 ) -> VolumeResult:
-    (before, after), (parameters, within) = surfaces, asked
-    spread = volume_spread(change, (before, after), tie.registration, tie.epochs)
-    filled = is_filled(change)
-    measured = change_sums(change, filled, change.is_measured)
+    parameters, within = asked
+    filled, certain = is_filled(change), is_certain(change)
+    spread = volume_spread(change, certain, tie.spread, tie.registration, tie.epochs)
+    measured = change_sums(change, filled, change.is_measured & certain)
     cell_m2 = change.grid.size_m**2
     area_m2 = float(change.inside.sum(dtype=np.float64)) * cell_m2
     seen_m2 = float(change.inside[change.is_measured].sum(dtype=np.float64)) * cell_m2
-    has_ground = np.isfinite(change.change_m)
     other = OtherMethod(0.0, 0.0)
     if parameters.method == GRID:
-        whole = change_sums(change, filled, has_ground)
+        whole = change_sums(change, filled, certain)
         cut, fill = whole.cut_m3, whole.fill_m3
     else:
         other = volume_by(parameters, change, tie.sides, monitor, within)
@@ -217,11 +249,13 @@ def _result_of(
         uncertainty_m3=spread.stated_m3,
         measured_cut_m3=max(0.0, measured.cut_m3),
         measured_fill_m3=max(0.0, measured.fill_m3),
+        left_out_area_m2=_left_out_m2(change),
     )
     notes = (
         *(note for side in tie.sides for note in checks.notes_of(side)),
         *checks.notes_on(tie.registration),
-        *checks.notes_on_gaps(change),
+        *checks.notes_on_gaps(volumes),
+        *checks.notes_on_others(tie.others),
         *other.notes,
     )
     return VolumeResult(
@@ -234,3 +268,8 @@ def _result_of(
         other.line,
         other.between,
     )
+
+
+def _left_out_m2(change: ChangeGrid) -> float:
+    lacking = change.inside[~np.isfinite(change.change_m)].sum(dtype=np.float64)
+    return float(lacking) * change.grid.size_m**2

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import shapely
 from numpy.typing import NDArray
@@ -12,7 +14,7 @@ from processing.methods.earthwork.geometry.triangle_surface import TriangleSurfa
 from processing.methods.earthwork.maps.change_grid import ChangeGrid
 from processing.methods.earthwork.surfaces.ground_cells import GroundCells
 from processing.methods.earthwork.surfaces.sides import EpochGround, Level, Side
-from processing.methods.earthwork.volumes.volume_result import Registration
+from processing.methods.earthwork.volumes.volume_result import Registration, Volumes
 
 Floats = NDArray[np.float64]
 
@@ -29,6 +31,9 @@ _LOW_PERCENT, _HIGH_PERCENT = 10, 90
 """What most of a site is."""
 
 _MM = 1000
+
+_WORTH_NAMING_M2 = 0.5
+"""Area from which a note has a square metre to name."""
 
 
 def name_of(side: Side) -> str:
@@ -64,17 +69,19 @@ def notes_of(side: Side) -> tuple[Text, ...]:
     return side.notes if isinstance(side, TriangleSurface) else ()
 
 
-def check_systems(before: Side, after: Side) -> None:
+def check_systems(*sides: Side) -> None:
     """Refuse epochs of different reference systems.
 
     Raises
     ------
     Unsuitable
     """
-    named = [side for side in (before, after) if isinstance(side, EpochGround) and side.crs]
+    named = [side for side in sides if isinstance(side, EpochGround) and side.crs]
     if len({side.crs for side in named}) > 1:
         raise Unsuitable(
-            Text("The two epochs have different reference systems.", "2時期の座標系が異なります。"),
+            Text(
+                "The epochs have different reference systems.", "時期によって座標系が異なります。"
+            ),
             Text.same("; ".join(f"{side.name}: {side.crs}" for side in named)),
             Text(
                 "Convert one of them, or import it with the right --crs.",
@@ -235,18 +242,30 @@ def notes_on(registration: Registration | None) -> tuple[Text, ...]:
     return (words.filled(east=f"{east:+d}", north=f"{north:+d}", up=f"{up:+d}"),)
 
 
-def notes_on_gaps(change: ChangeGrid) -> tuple[Text, ...]:
+def notes_on_gaps(volumes: Volumes) -> tuple[Text, ...]:
     """What a reader must know of ground that nothing tells of."""
-    lacking = change.inside[~np.isfinite(change.change_m)].sum(dtype=np.float64)
-    area_m2 = float(lacking) * change.grid.size_m**2
-    if area_m2 < 0.5:
+    if volumes.left_out_area_m2 < _WORTH_NAMING_M2:
         return ()
     return (
         Text(
-            "On {area} m² one side has no ground: a hole in a design, or too far from any that was "
-            "measured; they count nothing.",
-            "設計面の穴、または計測した地面から離れすぎて補えない{area}㎡は、土量に含まれていません。",
-        ).filled(area=f"{area_m2:,.0f}"),
+            "{area} m² are left out and count nothing: there a design has a hole, or lies ground "
+            "beyond the last points of a date.",
+            "設計面の穴、またはいずれかの時期の計測点の外側にある{area}㎡は計算から除外し、"
+            "土量に含めていません。",
+        ).filled(area=f"{volumes.left_out_area_m2:,.0f}"),
+    )
+
+
+def notes_on_others(others: Sequence[EpochGround]) -> tuple[Text, ...]:
+    """What a reader must know of other dates that hidden ground was filled by."""
+    if not others:
+        return ()
+    names = ", ".join(one.name for one in others)
+    return (
+        Text(
+            "Ground that a compared date did not show was filled in by other dates too: {names}.",
+            "未計測部の補間には、ほかの時期の計測データも使用しました：{names}。",
+        ).filled(names=names),
     )
 
 

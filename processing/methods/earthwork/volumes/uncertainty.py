@@ -14,10 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.methods.earthwork.maps.change_grid import ChangeGrid
-from processing.methods.earthwork.surfaces.surfaces import SideHeights
 from processing.methods.earthwork.volumes.volume_result import Registration
 
 Floats = NDArray[np.float64]
+Mask = NDArray[np.bool_]
 
 COVERAGE = 2.0
 """Standard deviations that are stated: the truth lies within them in 95 of 100 cases."""
@@ -34,6 +34,17 @@ _SIGMA_PER_MEDIAN = 1.4826
 
 _BEND_VARIANCE = 1.5
 """Of a value less the mean of its two neighbours, in variances of one: 1 + 2 · (1/2)²."""
+
+_STEP_M = 0.5
+"""Between places whose distance from points is looked up: a cell of holes."""
+
+_SHARED = 4 * 6 * math.pi
+"""Area that shares a cell's error over its squared distance from what was measured. By 6π the cells
+of a round hole of radius R sum up to π² R⁴ as one error of all of it does, since ∫ (R − r)² 2πr dr
+is π R⁴ / 6. Four times that, since what hides ground goes on from hole to hole, and what a rim does
+not show, a ditch or a heap, neither: with 6π volumes of twelve development sites were off by .8
+(true ground) and 1.1 (found ground) of what was stated, root mean square, with this by .43 and .57,
+where .5 is meant."""
 
 
 @dataclass(frozen=True)
@@ -63,7 +74,8 @@ class VolumeSpread:
 
 def volume_spread(
     change: ChangeGrid,
-    sides: tuple[SideHeights, SideHeights],
+    counted: Mask,
+    spread: Floats,
     registration: Registration | None,
     epochs: int,
 ) -> VolumeSpread:
@@ -71,19 +83,22 @@ def volume_spread(
 
     Parameters
     ----------
-    sides : (SideHeights, SideHeights)
-        What the change was taken from.
+    counted : (rows, columns) bool
+        Cells whose change was summed: what all of an epoch is off by counts nowhere else.
+    spread : (rows, columns) float64
+        Standard deviation of the change where it was filled in, m; 0 where it was measured.
     epochs : int
         How many of the sides were measured: 1 or 2.
     """
-    area_m2 = float(change.inside[np.isfinite(change.change_m)].sum()) * change.grid.size_m**2
+    known = counted & np.isfinite(change.change_m)
+    area_m2 = float(change.inside[known].sum(dtype=np.float64)) * change.grid.size_m**2
     tie_m = registration.sure_m[2] if registration is not None else _UNTIED_M
     if not math.isfinite(tie_m):
         tie_m = _UNTIED_M
     return VolumeSpread(
         noise_m3=_of_noise(change),
         set_up_m3=math.hypot(tie_m, _SURFACE_M * math.sqrt(epochs)) * area_m2,
-        holes_m3=math.hypot(*(_of_holes(change, side) for side in sides)),
+        holes_m3=_of_holes(change, spread),
     )
 
 
@@ -98,14 +113,26 @@ def _of_noise(change: ChangeGrid) -> float:
     return sigma_m * change.grid.size_m**2 * math.sqrt(cells)
 
 
-def _of_holes(change: ChangeGrid, side: SideHeights) -> float:
-    """Within a hole all may be off to one side; one hole tells nothing of another."""
-    from scipy.ndimage import label
+def _of_holes(change: ChangeGrid, spread: Floats) -> float:
+    """Errors of filled ground, which are alike over about the width of a hole.
 
-    in_hole = np.nan_to_num(side.spread) > 0
+    A cell's error is shared by an area in proportion to the square of its distance from what was
+    measured.
+    """
+    from scipy.ndimage import distance_transform_edt
+
+    deviation = np.where(np.isfinite(change.change_m), np.nan_to_num(spread), 0.0)
+    in_hole = deviation > 0
     if not in_hole.any():
         return 0.0
-    numbers, _ = label(in_hole)
-    volumes = np.nan_to_num(side.spread) * change.inside * change.grid.size_m**2
-    by_hole = np.bincount(numbers.ravel(), volumes.ravel())[1:]
-    return float(np.sqrt(np.square(by_hole).sum()))
+    size_m = change.grid.size_m
+    step = max(1, round(_STEP_M / size_m))
+    away_m = np.asarray(distance_transform_edt(in_hole[::step, ::step])) * (step * size_m)
+    away_m = away_m.repeat(step, axis=0).repeat(step, axis=1)[
+        : in_hole.shape[0], : in_hole.shape[1]
+    ]
+    # Gaps narrower than a step are at least a cell wide.
+    away_m = np.maximum(away_m, size_m)
+    shared_m2 = _SHARED * np.square(away_m)
+    volumes = deviation * change.inside * size_m
+    return float(np.sqrt((np.square(volumes) * shared_m2).sum()))

@@ -20,11 +20,14 @@ class Volumes:
     area_m2 : float
         Of what was compared, seen from above.
     unmeasured_area_m2 : float
-        Part of it where a ground was not measured on a date, and was filled in.
+        Part of it where a ground was not measured on a date: filled in, or left out.
     uncertainty_m3 : float
         Cut, fill and net are each expected within it in 95 of 100 cases.
     measured_cut_m3, measured_fill_m3 : float
         Parts of cut and fill where both grounds were measured.
+    left_out_area_m2 : float
+        Part of what was not measured that counts nothing: beyond the last points of a date, or
+        where a design has no ground.
     """
 
     cut_m3: float
@@ -34,6 +37,7 @@ class Volumes:
     uncertainty_m3: float
     measured_cut_m3: float
     measured_fill_m3: float
+    left_out_area_m2: float = 0.0
 
     @property
     def net_m3(self) -> float:

@@ -95,7 +95,7 @@ def test_a_design_is_a_side_and_its_holes_count_nothing() -> None:
     assert whole.volumes.fill_m3 == pytest.approx(256.0, rel=0.005)
     assert part.volumes.fill_m3 == pytest.approx(128.0, rel=0.02)
     assert part.volumes.unmeasured_area_m2 == pytest.approx(128.0, rel=0.02)
-    assert any("no ground" in note.en for note in part.notes)
+    assert any("left out" in note.en for note in part.notes)
 
 
 def test_triangles_of_a_design_count_as_they_are() -> None:
@@ -147,6 +147,76 @@ def test_a_hole_under_a_machine_is_filled_and_told() -> None:
     assert result.volumes.unmeasured_area_m2 == pytest.approx(np.pi * 2.5**2, rel=0.15)
     assert result.volumes.fill_m3 == pytest.approx(98.0, abs=result.volumes.uncertainty_m3)
     assert result.volumes.measured_fill_m3 < result.volumes.fill_m3
+
+
+def test_hidden_ground_takes_the_shape_of_the_other_date_and_no_change_is_invented() -> None:
+    def ridged(x: Floats, y: Floats) -> Floats:
+        return rolling(x, y) + np.maximum(1.0 - np.abs(x - 10.0), 0.0)
+
+    def shown(x: Floats, y: Floats) -> NDArray[np.bool_]:
+        return np.hypot(x - 10, y - 10) > 4.0
+
+    after = scan_of(ridged, keep=shown, seed=6)
+    result = volume(scan_of(ridged), after, boundary=box(3, 3, 17, 17))
+
+    # A smooth surface over the hole would cut the ridge off: 8 m³.
+    assert result.volumes.unmeasured_area_m2 > 40.0
+    assert result.volumes.cut_m3 + result.volumes.fill_m3 < 0.2
+    assert result.volumes.uncertainty_m3 < 2.5
+
+
+def test_ground_beyond_the_last_points_is_left_out_and_named() -> None:
+    def shown(x: Floats, _: Floats) -> NDArray[np.bool_]:
+        return x < 24.0
+
+    wide = {"size_m": (40.0, 20.0)}
+    before = scan_of(rolling, **wide)  # type: ignore[arg-type]
+    after = scan_of(lambda x, y: rolling(x, y) + 0.5, keep=shown, seed=4, **wide)  # type: ignore[arg-type]
+    result = volume(before, after, boundary=box(2, 2, 38, 18))
+
+    assert result.volumes.left_out_area_m2 == pytest.approx(14 * 16, rel=0.03)
+    assert result.volumes.unmeasured_area_m2 >= result.volumes.left_out_area_m2
+    assert result.volumes.fill_m3 == pytest.approx(0.5 * 22 * 16, rel=0.03)
+    assert any("left out and count nothing" in note.en for note in result.notes)
+
+
+def test_a_third_date_fills_what_both_compared_ones_hid() -> None:
+    def pit(x: Floats, y: Floats) -> Floats:
+        return rolling(x, y) - 2.0 * (np.hypot(x - 10, y - 10) < 2.0)
+
+    def shown(x: Floats, y: Floats) -> NDArray[np.bool_]:
+        return np.hypot(x - 10, y - 10) > 3.0
+
+    sides = scan_of(pit, keep=shown), scan_of(pit, keep=shown, seed=2)
+    third = scan_of(pit, name="五月", seed=3)
+    area = VolumeScope(box(3, 3, 17, 17))
+    alone = compare(*sides, GRID, SilentMonitor(), area)
+    result = compare(*sides, GRID, SilentMonitor(), area, others=(third,))
+    middle = np.array([[10.0, 10.0]]) + ORIGIN[:2]
+    deep = np.floor((middle - result.change.grid.origin[:2]) / result.change.grid.size_m)
+    column, row = deep[0].astype(int)
+
+    assert result.change.before[row, column] < alone.change.before[row, column] - 1.5
+    assert any("五月" in note.en for note in result.notes)
+    elsewhere = scan_of(pit, crs="EPSG:6678")
+    with pytest.raises(Unsuitable, match="different reference systems"):
+        compare(*sides, GRID, SilentMonitor(), area, others=(elsewhere,))
+
+
+def test_only_ground_that_changed_bears_what_set_ups_are_off() -> None:
+    def little(x: Floats, y: Floats) -> Floats:
+        return rolling(x, y) + 0.5 * (np.hypot(x - 10, y - 10) < 2.0)
+
+    layer = volume(scan_of(rolling, noise_m=0.003), raised(0.5), boundary=box(2, 2, 18, 18))
+    heap = volume(
+        scan_of(rolling, noise_m=0.003),
+        scan_of(little, noise_m=0.003, seed=8),
+        boundary=box(2, 2, 18, 18),
+    )
+
+    assert heap.volumes.fill_m3 == pytest.approx(0.5 * np.pi * 4.0, rel=0.03)
+    assert heap.volumes.cut_m3 < 0.05
+    assert heap.volumes.uncertainty_m3 < 0.5 * layer.volumes.uncertainty_m3
 
 
 def test_a_shift_of_the_later_epoch_is_found_and_corrected_on_request() -> None:
