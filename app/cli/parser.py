@@ -162,6 +162,14 @@ def _add_run(commands: _Commands[_Parser]) -> None:
     running.add_argument(
         "--after", type=Path, metavar="B", help="(.xml, .xml#SURFACE), or a level in m"
     )
+    running.add_argument(
+        "--also",
+        type=Path,
+        action="append",
+        default=[],
+        metavar="C",
+        help="of a volume: points of another date, for ground that A or B did not show",
+    )
     running.add_argument("--set", action="append", default=[], metavar="NAME=VALUE")
     running.add_argument(
         "--output", type=Path, metavar="OUT", help="without it the project stores the result"

@@ -33,7 +33,7 @@ def operation_of(arguments: argparse.Namespace) -> RunOperation:
         They name no input, or a setting without a value.
     """
     given = vars(arguments)
-    if not arguments.inputs or given.get("before") or given.get("after"):
+    if not arguments.inputs or any(given.get(name) for name in ("before", "after", "also")):
         raise no_single_input(arguments.tool)
     return RunOperation(
         arguments.tool,

@@ -54,4 +54,5 @@ def operation_of(arguments: argparse.Namespace) -> VolumeOperation:
         arguments.crs,
         columns_of(arguments),
         system_language(),
+        tuple(VolumeSide.of_words(str(one)) for one in arguments.also),
     )

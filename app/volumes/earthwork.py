@@ -124,6 +124,11 @@ class Earthwork(QObject):
             return False
         return any(not self._with_ground.get(id_, True) for id_ in side.drives)
 
+    def others_than(self, sides: Sequence[ChosenSide]) -> tuple[ChosenSide, ...]:
+        """Epochs whose ground is known besides those that are compared."""
+        every = tuple(epoch.side for epoch in self._epochs)
+        return tuple(one for one in every if one not in sides and not self.lacks_ground(one))
+
     # What is done.
 
     def find_ground(self, sides: Sequence[ChosenSide | None]) -> None:

@@ -189,6 +189,7 @@ class _VolumeWiring(QObject):
             boundary,
             lines[0] if len(lines) == 1 else None,
             lines,
+            self._parts.of(Earthwork).others_than((before, after)),
         )
 
     def _selected_features(self) -> Sequence[Feature]:

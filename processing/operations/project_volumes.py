@@ -21,7 +21,7 @@ from processing.formats.surfaces.design import read_design
 from processing.map.change import Change
 from processing.methods.earthwork.geometry.volume_scope import VolumeScope
 from processing.methods.earthwork.surfaces.epoch_ground import ground_of_drives
-from processing.methods.earthwork.surfaces.sides import Level, Side
+from processing.methods.earthwork.surfaces.sides import EpochGround, Level, Side
 from processing.methods.earthwork.volumes.comparison import compare
 from processing.project.project import Project
 from processing.project.volumes.volume import (
@@ -70,7 +70,8 @@ def make_volume(
     parameters = fill_parameters(VOLUME.parameters, request.parameters)
     before, after = sides_reader(request, drives, crs)(PartMonitor(monitor, 0.0, _READ_SHARE))
     comparing = PartMonitor(monitor, _READ_SHARE, 1.0)
-    result = compare(before, after, parameters, comparing, _within(request))
+    others = _others(request, drives, monitor)
+    result = compare(before, after, parameters, comparing, _within(request), others=others)
     kept = new_volume(request, result, crs=crs, version=VOLUME.version, made=datetime.now(UTC))
     monitor.check()
     write_volume(kept, result, into)
@@ -132,6 +133,16 @@ def sides_reader(
         return before, _side_of(request.after, by_id, crs, second)
 
     return read
+
+
+def _others(
+    request: VolumeRequest, drives: Sequence[Drive], monitor: Monitor
+) -> tuple[EpochGround, ...]:
+    by_id = {drive.id: drive for drive in drives}
+    return tuple(
+        ground_of_drives(tuple(by_id[id_] for id_ in one.drives), monitor, name=one.name)
+        for one in request.others
+    )
 
 
 def _side_of(side: ChosenSide, drives: Mapping[str, Drive], crs: str, monitor: Monitor) -> Side:

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import ExitStack
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -54,6 +54,8 @@ class VolumeOperation:
         What the columns of text files are; empty to go by the files.
     language : "en" or "ja"
         Of the papers.
+    others : tuple of VolumeSide
+        Points of other dates, which tell the shape of ground that a compared one did not show.
     """
 
     before: VolumeSide
@@ -63,6 +65,7 @@ class VolumeOperation:
     crs: str = ""
     columns: tuple[str, ...] = ()
     language: Language = "ja"
+    others: tuple[VolumeSide, ...] = ()
 
     @property
     def parameter_class(self) -> type[Any]:
@@ -91,7 +94,7 @@ def compare_grounds(operation: VolumeOperation, monitor: Monitor) -> WrittenFile
     operation.check()
     parameters = fill_parameters(VolumeParameters, operation.parameters)
     check_report_options(parameters, (operation.before, operation.after))
-    first, second, comparing, writing = parts_of(monitor, (0.35, 0.35, 0.2, 0.1))
+    first, second, third, comparing, writing = parts_of(monitor, (0.3, 0.3, 0.1, 0.2, 0.1))
     output = operation.output
     with ExitStack() as stack:
         scratch = stack.enter_context(scratch_folder(output.parent))
@@ -100,12 +103,21 @@ def compare_grounds(operation: VolumeOperation, monitor: Monitor) -> WrittenFile
             stack.enter_context(named_side(asked, reading, part))
             for asked, part in ((operation.before, first), (operation.after, second))
         )
+        others = [
+            stack.enter_context(named_side(asked, reading, part))
+            for asked, part in zip(
+                operation.others, parts_of(third, (1.0,) * len(operation.others)), strict=True
+            )
+        ]
         crs = _one_system(before, after)
         within = _within(parameters, crs)
         papers = volume_reports_of(parameters, (before, after), crs, operation.language)
+        papers = replace(papers, others=tuple(others))
         # All of them before the first is written: nothing half done is left.
         papers.refuse_inputs(output)
-        result = compare(before.side, after.side, parameters, comparing, within)
+        result = compare(
+            before.side, after.side, parameters, comparing, within, others=_epochs(others)
+        )
         evaluations, writing = parts_of(writing, (0.5, 0.5))
         judged = papers.judged(evaluations, within)
         reported = _reported(result, before, after, crs) | _told_of_form(judged)
@@ -130,6 +142,18 @@ def _one_system(before: NamedSide, after: NamedSide) -> str:
             ),
         )
     return next(iter(systems), "")
+
+
+def _epochs(others: Sequence[NamedSide]) -> tuple[EpochGround, ...]:
+    """What else was measured: designs and levels tell nothing of hidden ground."""
+    epochs = tuple(one.side for one in others if isinstance(one.side, EpochGround))
+    if len(epochs) < len(others):
+        raise Unsuitable(
+            Text("Only points tell of hidden ground.", "未計測部の補間に使えるのは点群だけです。"),
+            Text.same("; ".join(one.source for one in others)),
+            Text("Give points of another date.", "別の時期の点群を指定してください。"),
+        )
+    return epochs
 
 
 def _within(parameters: VolumeParameters, crs: str) -> VolumeScope:
@@ -163,6 +187,7 @@ def _reported(
         "grid_m": result.grid_m,
         "uncertainty_m3": volumes.uncertainty_m3,
         "unmeasured_area_m2": volumes.unmeasured_area_m2,
+        "left_out_area_m2": volumes.left_out_area_m2,
         "measured_cut_m3": volumes.measured_cut_m3,
         "measured_fill_m3": volumes.measured_fill_m3,
         "crs": crs,

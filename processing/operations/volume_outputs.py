@@ -98,6 +98,8 @@ class VolumeReports:
         The table and the work type that the form judges by; None without a form.
     language : "en" or "ja"
         Of the papers.
+    others : tuple of NamedSide
+        Further dates that are read.
     """
 
     parameters: VolumeParameters
@@ -106,13 +108,14 @@ class VolumeReports:
     details: WorkDetails
     limits: tuple[AsBuiltLimits, str] | None
     language: Language
+    others: tuple[NamedSide, ...] = ()
 
     @property
     def never(self) -> list[Path]:
         """Files that must not be overwritten: all that was read."""
         given = self.parameters
         named = (given.line, given.break_lines, given.limits, given.work)
-        files = [path for side in self.sides for path in side.files]
+        files = [path for side in (*self.sides, *self.others) for path in side.files]
         files += [Path(name) for name in named if name]
         if given.boundary:
             files.append(file_and_layer(given.boundary)[0])

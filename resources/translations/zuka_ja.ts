@@ -2418,8 +2418,12 @@ kept</source>
         <translation>面積</translation>
     </message>
     <message>
-        <source>Not measured, filled in</source>
-        <translation>未計測（補間）の面積</translation>
+        <source>Not measured on a date</source>
+        <translation>どちらかの時期に未計測の面積</translation>
+    </message>
+    <message>
+        <source>Of it left out</source>
+        <translation>うち計算から除外した面積</translation>
     </message>
 </context>
 <context>

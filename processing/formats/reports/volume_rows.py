@@ -190,6 +190,9 @@ def quantities(result: VolumeResult) -> tuple[Quantity, ...]:
         Quantity(
             Text("Area without data", "データのない面積"), reported.unmeasured_area_m2, nan, "m²"
         ),
+        Quantity(
+            Text("Of it left out", "うち計算から除外した面積"), reported.left_out_area_m2, nan, "m²"
+        ),
     )
 
 

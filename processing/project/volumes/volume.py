@@ -66,6 +66,8 @@ class VolumeRequest:
         Along which sections are cut.
     break_lines : tuple of shapely geometry
         Lines in space that triangles don't cross.
+    others : tuple of ChosenSide
+        Other epochs, which tell the shape of ground that a compared one did not show.
     """
 
     before: ChosenSide
@@ -74,6 +76,7 @@ class VolumeRequest:
     boundary: BaseGeometry | None = None
     line: BaseGeometry | None = None
     break_lines: tuple[BaseGeometry, ...] = ()
+    others: tuple[ChosenSide, ...] = ()
 
 
 @dataclass(frozen=True)

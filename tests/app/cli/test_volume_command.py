@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from pathlib import Path
 
@@ -84,6 +85,21 @@ def test_a_pit_is_found_and_told_on_paper_and_as_a_map(
         east, north = CORNER[:2] + np.array([10.0, 9.0])
         assert next(opened.sample([(east, north)]))[0] == pytest.approx(-0.5, abs=0.02)
     assert len(pypdfium2.PdfDocument(pdf)) >= 1
+
+
+def test_further_dates_are_named_and_only_points_will_do(
+    epochs: tuple[Path, Path], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    output = tmp_path / "out.json"
+    sides = ("--before", epochs[0], "--after", epochs[1])
+    assert run(output, *sides, "--also", epochs[0]) == 0
+    found = json.loads(output.read_text(encoding="utf-8"))
+
+    assert any("other dates too: 前" in note["en"] for note in found["notes"])
+    assert found["cut_m3"] == pytest.approx(PIT_M3, rel=0.02)
+    assert found["left_out_area_m2"] < 1.0
+    line = refused(tmp_path, capsys, *sides, "--also", "12.5", name="other.json")
+    assert "Only points tell of hidden ground" in line
 
 
 def test_a_level_and_a_design_are_grounds_too(epochs: tuple[Path, Path], tmp_path: Path) -> None:

@@ -77,6 +77,7 @@ class VolumeTable(QWidget):
             "uncertainty": f"± {volumes.uncertainty_m3:,.1f}",
             "area": f"{volumes.area_m2:,.1f}",
             "unmeasured": f"{volumes.unmeasured_area_m2:,.1f}",
+            "left_out": f"{volumes.left_out_area_m2:,.1f}",
         }
         for id_, text in values.items():
             self._values[id_].setText(text)
@@ -110,7 +111,8 @@ class VolumeTable(QWidget):
             ("net", self.tr("Net (fill less cut)"), "m³"),
             ("uncertainty", self.tr("Uncertainty (95 %)"), "m³"),
             ("area", self.tr("Area"), "m²"),
-            ("unmeasured", self.tr("Not measured, filled in"), "m²"),
+            ("unmeasured", self.tr("Not measured on a date"), "m²"),
+            ("left_out", self.tr("Of it left out"), "m²"),
         )
 
     def _add_row(self, grid: QGridLayout, number: int, row: tuple[str, str, str]) -> None:
