@@ -73,7 +73,10 @@ _POINT_FORMATS = (
         "text",
         Text("Text", "テキスト"),
         (".pts", ".xyz", ".txt", ".csv"),
-        reads={Content.POINTS: f"{_POINTS}.text.text_points:open_text_points", Content.CLASSES: _TRUTH},
+        reads={
+            Content.POINTS: f"{_POINTS}.text.text_points:open_text_points",
+            Content.CLASSES: _TRUTH,
+        },
     ),
     Format(
         "pulses",

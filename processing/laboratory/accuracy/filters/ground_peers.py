@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.laboratory.accuracy.filters.peer_filters import Flags, Floats
+from processing.core.arrays import Flags, Floats
 from processing.methods.ground.filters.triangles import Triangles, triangulate_points
 
 _MOST_ROUNDS = 15

@@ -36,9 +36,9 @@ class FaceRange(NamedTuple):
 
 
 class _Moments(NamedTuple):
-    """Sums over the points of each cell: count, x, y, z, x z, y z, z z, in ``_UNIT_M``."""
+    """Sums over the points of each cell: how many, x, y, z, x z, y z, z z, in ``_UNIT_M``."""
 
-    count: NDArray[np.int64]
+    points: NDArray[np.int64]
     sums: NDArray[np.int64]
     products: NDArray[np.int64]
 
@@ -68,13 +68,13 @@ def upright_faces(blocks: Blocks, grid: CellGrid, face: FaceRange) -> NDArray[np
     )
     for xyz in blocks():
         _moments_kernel(np.ascontiguousarray(xyz), grid.origin, grid.size_m, face, moments)
-    count = np.maximum(moments.count, 1)
+    count = np.maximum(moments.points, 1)
     x, y, z = moments.sums.astype(np.float64)
     centred = moments.products - np.stack((x, y, z)) * z / count
     side = 2 * round(_WINDOW_M / grid.size_m / 2) + 1
     number, *around = (
         cv2.boxFilter(one.astype(np.float64), cv2.CV_64F, (side, side), normalize=False)
-        for one in (moments.count, *centred)
+        for one in (moments.points, *centred)
     )
     run = np.hypot(around[0], around[1])
     upright: NDArray[np.bool_] = (
@@ -103,7 +103,7 @@ def _moments_kernel(
                 east = int(np.rint((x - column) * size_m / _UNIT_M))
                 north = int(np.rint((y - row) * size_m / _UNIT_M))
                 up = int(np.rint((z - low) / _UNIT_M))
-                moments.count[row, column] += 1
+                moments.points[row, column] += 1
                 moments.sums[0, row, column] += east
                 moments.sums[1, row, column] += north
                 moments.sums[2, row, column] += up
