@@ -18,6 +18,7 @@ from processing.core.safe_write import write_safely
 from processing.core.text import Text
 from processing.operations.import_files import ImportOperation, import_files
 from processing.operations.project_export import ExportOperation, export_project
+from processing.operations.project_volumes import KeepVolumeOperation, keep_volume
 from processing.operations.run import RunOperation, run_operation
 from processing.operations.score import ScoreOperation, score_result
 from processing.operations.undo import UndoOperation, undo_step
@@ -64,6 +65,7 @@ OPERATIONS: Kinds = {
         OperationKind("export", ExportOperation, export_project),
         OperationKind("score", ScoreOperation, score_result),
         OperationKind("volume", VolumeOperation, compare_grounds),
+        OperationKind("keep-volume", KeepVolumeOperation, keep_volume),
     )
 }
 """What can be done to projects and files, by the name that a file gives it."""
@@ -175,8 +177,9 @@ def rooted(operation: Any, folder: Path) -> Any:  # any kind of operation, and t
         for field in fields(cast("Any", operation))
     }
     parameters = changed.get(_PARAMETERS)
-    if parameters:
-        declared = {one.id: one for one in parameters_of(operation.parameter_class)}
+    declaring = getattr(operation, "parameter_class", None)
+    if parameters and declaring is not None:
+        declared = {one.id: one for one in parameters_of(declaring)}
         changed[_PARAMETERS] = {
             name: _rooted_words(value, folder)
             if name in declared and declared[name].kind == "file"

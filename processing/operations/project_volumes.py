@@ -23,6 +23,7 @@ from processing.methods.earthwork.geometry.volume_scope import VolumeScope
 from processing.methods.earthwork.surfaces.epoch_ground import ground_of_drives
 from processing.methods.earthwork.surfaces.sides import EpochGround, Level, Side
 from processing.methods.earthwork.volumes.comparison import compare
+from processing.operations.inputs import opened_project
 from processing.project.project import Project
 from processing.project.volumes.volume import (
     ChosenSide,
@@ -36,7 +37,46 @@ from processing.recording.drive import Drive
 from processing.tools.volume import VOLUME
 
 _READ_SHARE = 0.3
+_STORED = Text(
+    "{words}: cut {cut} m³, fill {fill} m³ (± {within} m³)",
+    "{words}: 切土 {cut} m³、盛土 {fill} m³（± {within} m³）",
+)
 _REMOVAL = Text("Remove {volume}", "{volume} を削除")
+
+
+@dataclass(frozen=True)
+class KeepVolumeOperation:
+    """Two grounds of a project to be compared, for the project to keep what comes of it.
+
+    Attributes
+    ----------
+    project : Path
+    request : VolumeRequest
+        As the window's form gives it.
+    """
+
+    project: Path
+    request: VolumeRequest
+
+
+@dataclass(frozen=True)
+class StoredVolume:
+    """A volume that a project keeps now."""
+
+    kept: KeptVolume
+
+    @property
+    def words(self) -> tuple[Text, ...]:
+        """One line."""
+        volumes = self.kept.volumes
+        return (
+            _STORED.filled(
+                words=words_of(self.kept.request),
+                cut=f"{volumes.cut_m3:,.1f}",
+                fill=f"{volumes.fill_m3:,.1f}",
+                within=f"{volumes.uncertainty_m3:,.1f}",
+            ),
+        )
 
 
 @dataclass(frozen=True)
@@ -76,6 +116,21 @@ def make_volume(
     monitor.check()
     write_volume(kept, result, into)
     return MadeVolume(kept, into)
+
+
+def keep_volume(operation: KeepVolumeOperation, monitor: Monitor) -> StoredVolume:
+    """Compare two grounds of a project and let it keep the result, as one step.
+
+    Raises
+    ------
+    UserError, Cancelled
+        As :func:`make_volume` and :func:`store_volume`; the project is as it was.
+    """
+    with opened_project(operation.project, writing=True) as project:
+        into = project.temporary_folder()
+        made = make_volume(operation.request, project.drives, project.crs, into, monitor)
+        store_volume(project, made)
+        return StoredVolume(made.kept)
 
 
 def store_volume(project: Project, made: MadeVolume) -> Change:

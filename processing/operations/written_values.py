@@ -1,8 +1,8 @@
 """Values as people and other programs write them: TOML or JSON, read by a value's own types.
 
-A frozen dataclass of plain values, paths, and such dataclasses becomes a table; what has its
-default is left out. There is no second list of its fields: the types that Python knows are the
-declaration.
+A frozen dataclass of plain values, paths, days, choices, geometry (as WKT) and such dataclasses
+becomes a table; what has its default is left out. There is no second list of its fields: the types
+that Python knows are the declaration.
 """
 
 from __future__ import annotations
@@ -13,8 +13,13 @@ import re
 import tomllib
 import types
 from collections.abc import Mapping
+from datetime import date
+from enum import Enum
 from pathlib import Path
 from typing import Any, Literal, TypeVar, Union, cast, get_args, get_origin, get_type_hints
+
+import shapely
+from shapely.geometry.base import BaseGeometry
 
 from processing.core.errors import BadFile, OutOfRange, use_one_of
 from processing.core.text import Text
@@ -123,6 +128,12 @@ def _default_of(field: dataclasses.Field[Any]) -> object:
 def _plain(value: object) -> object:
     if isinstance(value, Path):
         return str(value)
+    if isinstance(value, Enum):
+        return value.value
+    if isinstance(value, date):
+        return value.isoformat()
+    if isinstance(value, BaseGeometry):
+        return shapely.to_wkt(value, rounding_precision=-1)
     if isinstance(value, tuple):
         return [_plain(one) for one in value]
     if isinstance(value, Mapping):
@@ -173,8 +184,22 @@ def _as_plain(wanted: Any, written: object) -> Any:  # as above
         return Path(written)
     if wanted is float and type(written) is int:
         return float(written)
+    if isinstance(wanted, type) and issubclass(wanted, (Enum, date, BaseGeometry)):
+        return _as_word(wanted, written)
     # A yes is a whole number to Python, but not to people.
     return written if type(written) is wanted else _NOT_READ
+
+
+def _as_word(wanted: type[Enum | date | BaseGeometry], written: object) -> object:
+    """A choice, a day or a geometry from how it is written."""
+    if not isinstance(written, str):
+        return _NOT_READ
+    try:
+        if issubclass(wanted, BaseGeometry):
+            return shapely.from_wkt(written)
+        return date.fromisoformat(written) if issubclass(wanted, date) else wanted(written)
+    except (ValueError, shapely.errors.ShapelyError):
+        return _NOT_READ
 
 
 def _write_table(table: Mapping[str, object], name: str, lines: list[str]) -> None:
@@ -197,6 +222,8 @@ def _toml(value: object) -> str:
         return "true" if value else "false"
     if isinstance(value, (list, tuple)):
         return f"[{', '.join(map(_toml, value))}]"
+    if isinstance(value, Mapping):
+        return f"{{{', '.join(f'{_key(key)} = {_toml(one)}' for key, one in value.items())}}}"
     if isinstance(value, (int, float)):
         return repr(value)
     return _quoted(str(value))

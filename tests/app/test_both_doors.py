@@ -24,7 +24,12 @@ from processing.map.feature import Feature, Status
 from processing.operations.export import ExportRequest
 from processing.operations.inputs import OperationInputs
 from processing.operations.operation_files import perform, read_operation, write_operation
-from processing.operations.project_volumes import make_volume, store_volume
+from processing.operations.project_volumes import (
+    KeepVolumeOperation,
+    StoredVolume,
+    make_volume,
+    store_volume,
+)
 from processing.operations.run import RunOperation, operation_on_drive
 from processing.operations.undo import UndoneStep, UndoOperation
 from processing.operations.volume import VolumeOperation
@@ -32,7 +37,8 @@ from processing.operations.volume_sides import VolumeSide
 from processing.project.importing.dropped_files import request_of_files
 from processing.project.project import Project
 from processing.project.volumes.epochs import epochs_of
-from processing.project.volumes.volume import VolumeRequest
+from processing.project.volumes.volume import KeptVolume, VolumeRequest
+from processing.project.volumes.volume_store import VolumeStore
 from processing.recording.drive import Drive
 from processing.tools.registry import TOOLS
 from resources import path_of
@@ -243,6 +249,10 @@ def test_a_volume_between_two_epochs_has_the_same_figures(window: Document, tmp_
     )
     store_volume(project, made)
     kept = made.kept
+    window.close()
+    again = _kept_from_a_file(KeepVolumeOperation(folder, request), tmp_path / "keep.toml")
+    assert again.request == kept.request
+    assert (again.volumes, again.notes) == (kept.volumes, kept.notes)
     output = tmp_path / "volume.json"
     earlier, later = (VolumeSide(folder, drives=one.side.drives) for one in (before, after))
     write_operation(tmp_path / "volume.toml", VolumeOperation(earlier, later, output, parameters))
@@ -252,3 +262,12 @@ def test_a_volume_between_two_epochs_has_the_same_figures(window: Document, tmp_
     for name in ("cut_m3", "fill_m3", "net_m3", "area_m2", "uncertainty_m3"):
         assert told[name] == getattr(kept.volumes, name), name
     assert told["grid_m"] == kept.grid_m
+
+
+def _kept_from_a_file(operation: KeepVolumeOperation, path: Path) -> KeptVolume:
+    """The volume that a project keeps after an operation was written, read and done."""
+    write_operation(path, operation)
+    stored = perform(read_operation(path), SilentMonitor())
+    assert isinstance(stored, StoredVolume)
+    assert stored.kept in VolumeStore(operation.project).all()
+    return stored.kept
