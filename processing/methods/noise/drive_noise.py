@@ -6,7 +6,9 @@ drive by tiles of space. The combined one follows the recording where its beams 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from itertools import count
 from pathlib import Path
 from threading import Lock
@@ -16,8 +18,10 @@ from numpy.typing import NDArray
 
 from processing.core.monitor import Monitor, PartMonitor
 from processing.image.images_of_drives import image_of
+from processing.methods.noise.beams.beam_kernels import PointBeams
 from processing.methods.noise.beams.beam_origins import beam_origins
 from processing.methods.noise.beams.beams_of_drives import along_rows, beams_of
+from processing.methods.noise.beams.standing_scans import standing_scan_of
 from processing.methods.noise.combined import noise_codes_in_space, noise_codes_with_beams
 from processing.methods.noise.neighbours.sharing import share_out
 from processing.methods.noise.noise_codes import part_noise_by_ground
@@ -27,7 +31,6 @@ from processing.methods.noise.whole_clouds import (
     radius_outliers_by_parts,
     statistical_outliers_by_parts,
 )
-from processing.recording.columns.ordering import read_chunk
 from processing.recording.drive import Drive
 
 _TILE_M = 1.0
@@ -44,6 +47,15 @@ are taken from (16 spacings, with the cells beside them 48), within limits. By t
 
 _POINTS_IN_SPACE = 2_000_000
 """Points of such a part: some 2 GB while their features are worked out. By trial."""
+
+
+@dataclass(frozen=True)
+class _BeamRows:
+    """Rows of beams: where each begins, how far the scanner had come, and the beams of some."""
+
+    starts: NDArray[np.int64]
+    along_m: NDArray[np.float64]
+    beams_of: Callable[[range], tuple[PointBeams, slice | NDArray[np.int64]]]
 
 
 @dataclass(frozen=True)
@@ -98,26 +110,41 @@ class NoiseSearch:
 
     def combined(self, strictness: float, monitor: Monitor) -> None:
         """By everything that is known; see :mod:`processing.methods.noise.combined`."""
-        origins = beam_origins(self.drive)
-        if origins is None:
+        drive = self.drive
+        origins = beam_origins(drive)
+        if origins is not None:
+            image = image_of(drive, drive.pixel_kind)
+            along = along_rows(origins, image.row_starts)
+            beams_in = partial(beams_of, drive, image, origins=origins)
+            self._combined_with_beams(
+                _BeamRows(image.row_starts, along, beams_in), strictness, monitor
+            )
+            return
+        scan = standing_scan_of(drive, self.scratch, monitor)
+        if scan is None:
             self._combined_in_space(strictness, monitor)
             return
-        drive = self.drive
-        image = image_of(drive, drive.pixel_kind)
-        starts = image.row_starts
-        along = along_rows(origins, starts)
-        chunks = list(row_chunks_of(starts, along, self.points_per_chunk))
+        stood = np.zeros(scan.segments.size)
+        self._combined_with_beams(
+            _BeamRows(scan.row_starts, stood, scan.beams_of), strictness, monitor
+        )
+
+    def _combined_with_beams(self, rows: _BeamRows, strictness: float, monitor: Monitor) -> None:
+        drive, starts = self.drive, rows.starts
+        chunks = list(row_chunks_of(starts, rows.along_m, self.points_per_chunk))
         reporting, ended = Lock(), count(1)
 
         def look(number: int, _: int) -> None:
             chunk = chunks[number]
             drive.columns.give_back()
-            beams, points = beams_of(drive, image, chunk.with_overlap, origins)
-            intensity = read_chunk(drive.folder, "intensity", points.start, points.stop)
+            beams, points = rows.beams_of(chunk.with_overlap)
+            intensity = np.asarray(drive.columns["intensity"][points])
             codes = noise_codes_with_beams(beams, intensity, strictness, monitor=monitor)
             first, end = int(starts[chunk.rows.start]), int(starts[chunk.rows.stop])
             skipped = first - int(starts[chunk.with_overlap.start])
-            self.codes[first:end] = codes[skipped : skipped + end - first]
+            owned = slice(skipped, skipped + end - first)
+            into = slice(first, end) if isinstance(points, slice) else points[owned]
+            self.codes[into] = codes[owned]
             with reporting:
                 monitor.report(next(ended) / len(chunks))
 

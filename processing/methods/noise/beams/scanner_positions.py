@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.methods.noise.beams.beam_origins import beam_origins
+from processing.methods.noise.beams.measured_order import measured_times
 from processing.recording.drive import Drive
 
 Floats = NDArray[np.float64]
@@ -87,14 +88,37 @@ def scanner_position_of(drive: Drive) -> Floats | None:
         return None
     if drive.revolutions is not None:
         return _middle_of_revolutions(drive)
-    moments = _moments(drive)
+    times = np.asarray(drive.columns["time"])
+    if not np.isfinite(times).all():
+        return None
+    return _met(drive, np.argsort(times, kind="stable"), times)
+
+
+def position_in_order(drive: Drive, order: NDArray[np.int64]) -> Floats | None:
+    """The same from the points of a drive as they were measured, with or without times.
+
+    Parameters
+    ----------
+    order : (n,) int64
+        As :func:`processing.methods.noise.beams.measured_order.measured_order` gives it. Without
+        times every point is taken for a pulse of its own, right after the one before.
+    """
+    times = measured_times(drive)
+    if times is None:
+        times = np.empty(order.size)
+        times[order] = np.arange(order.size)
+    return _met(drive, order, times)
+
+
+def _met(drive: Drive, order: NDArray[np.int64], times: Floats) -> Floats | None:
+    """Where the planes of moments meet; None where they don't."""
+    moments = _moments(drive, order, times)
     if not moments:
         return None
     across = _crossing(moments)
     if across is None:
         return None
-    up = _height_over(moments, across)
-    return np.array([*across, up])
+    return np.array([*across, _height_over(moments, across)])
 
 
 def _middle_of_revolutions(drive: Drive) -> Floats | None:
@@ -107,12 +131,10 @@ def _middle_of_revolutions(drive: Drive) -> Floats | None:
     return middle if float(np.median(away)) <= _MOST_SPREAD_M else None
 
 
-def _moments(drive: Drive) -> list[Floats]:
+def _moments(drive: Drive, order: NDArray[np.int64], times: Floats) -> list[Floats]:
     """Points measured one after the other, in several moments spread over the recording."""
-    times = np.asarray(drive.columns["time"])
-    if times.size < _FEWEST or not np.isfinite(times).all() or times.min() == times.max():
+    if times.size < _FEWEST or times.min() == times.max():
         return []
-    order = np.argsort(times, kind="stable")
     starts = np.unique(
         np.linspace(0, max(times.size - _POINTS_OF_MOMENT, 0), _MOMENTS).astype(np.int64)
     )
