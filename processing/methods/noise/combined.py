@@ -9,6 +9,8 @@
 4. What they say of the points around is asked together with the numbers once more
    (:mod:`processing.methods.noise.features.second_pass`): noise seldom comes alone, and true things
    hang together.
+5. Where beams are known, a point without company is noise, too
+   (:mod:`processing.methods.noise.beams.lone_points`), however little noise there is around.
 
 All trees learned from simulated scenes with other shapes and shares of noise than any sample, and
 from real recordings as examples of what must be kept (:mod:`processing.laboratory.noise_training`).
@@ -23,6 +25,7 @@ from numpy.typing import NDArray
 
 from processing.core.monitor import Monitor, SilentMonitor
 from processing.methods.noise.beams.beam_kernels import PointBeams
+from processing.methods.noise.beams.lone_points import lone_points
 from processing.methods.noise.features.features import (
     Candidates,
     candidates_in_space,
@@ -88,7 +91,13 @@ def noise_codes_with_beams(
         cheap = search.cheap_features(monitor)
         is_doubtful = log_odds(_trees(FIRST_LOOK), cheap, monitor) > 0
         candidates = search.candidates(cheap, is_doubtful, intensity, monitor)
-        codes[~far] = _codes(candidates, WITH_BEAMS, strictness, monitor)
+        found = _codes(candidates, WITH_BEAMS, strictness, monitor)
+        is_lone = lone_points(
+            beams, search.around.spacings, search.points, search.rows, strictness, monitor=monitor
+        )
+        alone = search.points[is_lone]
+        found[alone] = codes_by_height(search.around.heights[alone])
+        codes[~far] = found
     return codes
 
 

@@ -199,6 +199,11 @@ _AIRBORNE_ROLLERS = tuple((radius, 1.0, 0.5) for radius in (20.0, 10.0, 50.0))
 """Radius, cell and band in m."""
 
 
+def our_noise(scene: FilterScene, folder: Path) -> Codes:
+    """What ``zuka run noise`` gives without a setting; ``folder`` is for files meanwhile."""
+    return _ours(NOISE, NoiseParameters(), scene, folder)
+
+
 def as_delivered(scene: FilterScene, folder: Path) -> Path:
     """The scene's cloud as a LAS file without its truth: its own, or one made of text."""
     if scene.cloud is not None:

@@ -1,8 +1,8 @@
 """Clouds whose noise or ground is known: where they lie in a folder of data, and how they are read.
 
-A noise scene is a folder with ``in/scan.laz``, ``in/trajectory.csv`` and ``truth/truth.npz``; a
-site has ``in/NAME.laz`` and ``truth/labels_NAME.npy``; the ISPRS filter test is text in a folder
-``isprs``.
+A noise scene is a folder with ``in/scan.laz`` and ``truth/truth.npz``, and ``in/trajectory.csv`` if
+the scanner moved; a site has ``in/NAME.laz`` and ``truth/labels_NAME.npy``; the ISPRS filter test
+is text in a folder ``isprs``.
 """
 
 from __future__ import annotations
@@ -93,14 +93,14 @@ def noise_scenes(data: Path) -> Iterator[FilterScene]:
     """
     for cloud in sorted(data.glob("*/in/scan.laz")):
         folder = cloud.parents[1]
-        truth, trajectory = folder / "truth" / "truth.npz", cloud.with_name("trajectory.csv")
+        truth, path = folder / "truth" / "truth.npz", cloud.with_name("trajectory.csv")
         true = read_truth(
             truth,
             if_false=NOISE_SCORER.if_false,
             if_true=NOISE_SCORER.if_true,
             flags=NOISE_SCORER.flags,
         )
-        yield _scene(folder.name, cloud, trajectory, true)
+        yield _scene(folder.name, cloud, path if path.is_file() else None, true)
 
 
 def sites(data: Path) -> Iterator[FilterScene]:

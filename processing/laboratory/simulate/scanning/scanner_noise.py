@@ -39,6 +39,7 @@ _LEVEL = 0.7  # of a normal's z: water and wet ground rather than windows
 _WEAK = 0.02  # of the power that a white surface 10 m away gives
 _JUMPING_SHARE = 0.02
 _FINER_WAVES = 60.0  # in the range of unambiguity
+_LEAST_DETOUR_M = 0.2  # shorter ones are one echo with the first; a metre more in the mean
 _OWN_LIKE_M = 0.05  # noise that falls so near to the true surface is none
 
 
@@ -56,12 +57,15 @@ class NoiseOptions:
         Of pulses on retro-reflecting plates.
     drops : float
         Of all pulses: rain, dust, insects.
+    late : float
+        Of all pulses: echoes by way of a second surface, behind what the beam met.
     """
 
     arcs_per_s: float
     folded: float
     streaks: float
     drops: float
+    late: float = 0.0
 
 
 def noise_options(seed: int, sensor: Sensor) -> NoiseOptions:
@@ -75,7 +79,11 @@ def noise_options(seed: int, sensor: Sensor) -> NoiseOptions:
             float(10 ** random.uniform(-4, -2.7)),
         )
     return NoiseOptions(
-        0.0, 0.0, float(random.uniform(0.0, 0.03)), float(10 ** random.uniform(-5.5, -3.5))
+        0.0,
+        0.0,
+        float(random.uniform(0.0, 0.03)),
+        float(10 ** random.uniform(-5.5, -3.5)),
+        float(10 ** random.uniform(-5.5, -4.0)),
     )
 
 
@@ -129,6 +137,7 @@ class NoiseSource:
         self._jumps(recorded, ranges)
         self._streaks(beams, met, ranges)
         self._drops(beams, met, ranges)
+        self._late(beams, met, ranges)
         is_level = self._mirrored(recorded, ranges)
         known = np.where(np.isfinite(met.ranges), met.ranges, NOWHERE)
         ranges[np.abs(ranges - known) < _OWN_LIKE_M] = np.nan
@@ -198,6 +207,12 @@ class NoiseSource:
         away = _LEAST_M - 4.0 * np.log(np.maximum(shares_of(beams.first + rows, 301), 1e-9))
         is_free = away < met.ranges[rows]
         ranges[rows[is_free]] = away[is_free]
+
+    def _late(self, beams: Beams, met: BeamHits, ranges: Floats) -> None:
+        """Echoes that came back by way of a second surface: single points behind the first."""
+        rows = self._chosen(beams, np.arange(met.ranges.size), self._request.late, 700)
+        detour = _LEAST_DETOUR_M - np.log(np.maximum(shares_of(beams.first + rows, 701), 1e-9))
+        ranges[rows] = met.ranges[rows] + detour
 
     def _mirrored(self, recorded: PulseHits, ranges: Floats) -> Integers:
         """Glass and water: some beams come back from what they mirror; rows of level mirrors."""

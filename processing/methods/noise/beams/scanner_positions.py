@@ -56,13 +56,13 @@ _LEAST_SPREAD_M = 1e-3
 _SIGMA_PER_MEDIAN = 1.4826
 """Standard deviation of a normal distribution over its median absolute deviation."""
 
-_GROUND_PERCENT, _GROUND_NEAR_M = 10, 6.0
-"""The ground below a tripod: this percentile of heights within this distance. By trial; nearest is
-a blind cone, and the lowest points may be echoes."""
+_GROUND_PERCENT, _GROUND_NEAR_M = (10, 90), 6.0
+"""The ground around a tripod: heights within this distance between these percentiles. By trial;
+nearest is a blind cone, and the lowest points may be echoes. On a bank they are metres apart."""
 
 _SEEN_HEIGHTS_M = (0.5, 3.5)
-"""Above that ground between which the scanner is looked for: tripods from the lowest to those that
-are set up with a ladder."""
+"""Above the lower and the higher of them, between which the scanner is looked for: tripods from the
+lowest to those that are set up with a ladder."""
 
 _STEPS_M = (0.05, 0.01)
 """Of the first and the second search: the second looks about what the first found, to 1 cm."""
@@ -183,10 +183,10 @@ def _height_over(moments: list[Floats], position: Floats) -> float:
     everything = np.concatenate(moments)
     away = np.hypot(*(everything[:, :2] - position).T)
     near = everything[away < _GROUND_NEAR_M, 2]
-    below = float(everything[:, 2].min())
+    below = above = float(everything[:, 2].min())
     if near.size >= _FEWEST:
-        below = float(np.percentile(near, _GROUND_PERCENT))
-    low, high = below + _SEEN_HEIGHTS_M[0], below + _SEEN_HEIGHTS_M[1]
+        below, above = (float(one) for one in np.percentile(near, _GROUND_PERCENT))
+    low, high = below + _SEEN_HEIGHTS_M[0], above + _SEEN_HEIGHTS_M[1]
     slants = [_slants_of(moment, position) for moment in moments]
     best, least, usual = below + _USUAL_HEIGHT_M, np.inf, np.inf
     for step in _STEPS_M:
