@@ -158,7 +158,8 @@ def _is_accompanied(beams: PointBeams, point: int, row: int, reach: int, limit: 
 @kernel
 def _columns_within(beams: PointBeams, point: int, limit: float) -> int:
     step = max(beams.ranges[point] * beams.step_rad, _LEAST_STEP_M)
-    return min(math.ceil(limit / step), _MOST_COLUMNS)
+    aside: int = min(math.ceil(limit / step), _MOST_COLUMNS)
+    return aside
 
 
 @kernel
