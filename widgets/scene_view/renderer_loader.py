@@ -10,6 +10,8 @@ from PySide6.QtGui import QSurfaceFormat
 from PySide6.QtOpenGLWidgets import QOpenGLWidget
 from PySide6.QtWidgets import QWidget
 
+from processing.core.library_loading import LIBRARY_LOADING
+
 
 class RendererLoader(QObject):
     """Tells when the modules of the 3D view are there.
@@ -43,7 +45,8 @@ class RendererLoader(QObject):
 
     def _load(self) -> None:
         try:
-            importlib.import_module("widgets.scene_view.points.cloud")
+            with LIBRARY_LOADING:
+                importlib.import_module("widgets.scene_view.points.cloud")
         finally:
             # Where this failed, the view imports again on its own thread, and the error is told.
             if not self._is_closed:

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple, cast
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.library_loading import LIBRARY_LOADING
 from processing.laboratory.simulate.scene.mesh import Floats, Integers, Mesh
 
 NOWHERE = np.inf
@@ -41,7 +42,8 @@ class RaycastScene:
     """
 
     def __init__(self, mesh: Mesh, origin: Floats) -> None:
-        import open3d as o3d
+        with LIBRARY_LOADING:
+            import open3d as o3d
 
         self.mesh, self._origin = mesh, np.asarray(origin, np.float64)
         # Open3D's stubs don't know that a tensor is made of an array.
