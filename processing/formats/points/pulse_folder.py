@@ -77,7 +77,7 @@ def _blocks(layout: _Layout) -> Iterator[ColumnBlock]:
     up: float | None = None
     for name in names:
         echoes = _read(layout.pulse, "n_echo", name)
-        theta = _read(layout.pulse, "theta", name).astype(np.float64)
+        theta = _read_numbers(layout.pulse, "theta", name)
         if theta.size != echoes.size:
             raise _sizes_differ(layout.path, name, theta.size, echoes.size)
         up = _up_angle(theta, echoes) if up is None else up
@@ -88,12 +88,12 @@ def _block(
     layout: _Layout, name: str, theta: NDArray[np.float64], echoes: NDArray[np.int64]
 ) -> ColumnBlock:
     pulse_of_echo = np.repeat(np.arange(echoes.size), echoes)
-    ranges = _read(layout.echo, "range", name).astype(np.float64)
+    ranges = _read_numbers(layout.echo, "range", name)
     if ranges.size != pulse_of_echo.size:
         raise _sizes_differ(layout.path, name, ranges.size, pulse_of_echo.size)
     phi = np.zeros(echoes.size)
     if "phi" in layout.pulse:
-        phi = _read(layout.pulse, "phi", name).astype(np.float64)
+        phi = _read_numbers(layout.pulse, "phi", name)
     angle, tilt = theta[pulse_of_echo], phi[pulse_of_echo]
     first_echo = np.cumsum(echoes) - echoes
     block: ColumnBlock = {
@@ -116,8 +116,18 @@ def _block(
 
 def _up_angle(theta: NDArray[np.float64], echoes: NDArray[np.generic]) -> float:
     """Where the sky is: the mean direction of the pulses without an echo, rad."""
-    empty = theta[echoes == 0]
+    empty = theta[(echoes == 0) & np.isfinite(theta)]
     return float(np.angle(np.exp(1j * empty).sum())) if empty.size else 0.0
+
+
+def _read_numbers(
+    attributes: dict[str, tuple[Path, str]], attribute: str, name: str
+) -> NDArray[np.float64]:
+    """As :func:`_read`; what is no finite number is NaN, and such echoes are passed over later."""
+    with np.errstate(invalid="ignore"):
+        values = _read(attributes, attribute, name).astype(np.float64)
+    values[~np.isfinite(values)] = np.nan
+    return values
 
 
 def _read(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -72,7 +73,10 @@ def _shapes(path: Path) -> tuple[NDArray[np.object_], str]:
     from pyogrio.errors import DataLayerError, DataSourceError
 
     try:
-        facts, _, binary, _ = raw.read(path, columns=[])
+        with warnings.catch_warnings():
+            # Of GDAL, about what other programs left out of the file: what counts is what it reads.
+            warnings.simplefilter("ignore", RuntimeWarning)
+            facts, _, binary, _ = raw.read(path, columns=[])
         shapes = shapely.from_wkb(binary)
     except (DataSourceError, DataLayerError, shapely.errors.GEOSException, ValueError) as error:
         raise BadFile(
