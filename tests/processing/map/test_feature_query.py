@@ -117,6 +117,8 @@ def test_occluded_vertices_are_asked_for() -> None:
         ("tall", "<", "10", False),
         ("tall", "=", "TALL", True),
         ("12", ">", "9", True),
+        ("B-2", "<", "B-2", False),
+        ("B-2", ">", "B-2", False),
         (8.25, "contains", ".2", True),
         (None, "contains", "", False),
         (None, "is empty", "", True),

@@ -124,6 +124,23 @@ def test_a_pcd_gives_points_and_packed_colours(tmp_path: Path, storage: str) -> 
     np.testing.assert_array_equal(chunk.columns["color"][0], np.array([10, 20, 30]) * 257)
 
 
+def test_a_pcd_may_have_remarks_empty_lines_and_fields_of_several_values_before_the_place(
+    tmp_path: Path,
+) -> None:
+    path = tmp_path / "a.pcd"
+    header = (
+        "# .PCD v0.7\n# FIELDS a b c\n\nVERSION 0.7\nFIELDS normal x y z\nSIZE 4 4 4 4\n"
+        "TYPE F F F F\nCOUNT 3 1 1 1\nWIDTH 3\nHEIGHT 1\n\nPOINTS 3\nDATA ascii\n"
+    )
+    rows = [" ".join(map(str, (0.0, 0.0, 1.0, *row))) for row in _POINTS.tolist()]
+    path.write_text(header + "\n".join(rows) + "\n")
+    _, xyz, _ = _read(path)
+    np.testing.assert_allclose(xyz, _POINTS, atol=1e-4)
+    path.write_text(header.replace("DATA ascii", "DATA folded") + "\n".join(rows) + "\n")
+    with pytest.raises(BadFile):
+        read_info(path)
+
+
 def test_a_ptx_is_moved_by_its_pose_and_cells_without_return_are_left_out(tmp_path: Path) -> None:
     path = tmp_path / "a.ptx"
     scan = "2\n2\n{x} 0 0\n1 0 0\n0 1 0\n0 0 1\n0 1 0 0\n-1 0 0 0\n0 0 1 0\n{x} 20 30 1\n"
