@@ -21,6 +21,7 @@ from app.document.document import Document
 from app.jobs.jobs import JobQueue
 from app.window.window_parts import WindowParts
 from processing.core.monitor import SilentMonitor
+from processing.core.parameters import ParameterValue
 from processing.core.text import Text
 from processing.laboratory.every_operation import EVERY_OPERATION
 from processing.laboratory.simulate.simulate_operation import SimulateOperation
@@ -42,7 +43,13 @@ from widgets.dialogs.simulate import SimulateForm
 
 WAIT_MS = 30_000
 NOISE = {"method": "radius", "radius_m": 0.3, "neighbours": 12}
-STREET = {"seed": 4, "style": "highway", "length_m": 10.0, "pulses": 100, "turns_per_s": 20.0}
+STREET: dict[str, ParameterValue] = {
+    "seed": 4,
+    "style": "highway",
+    "length_m": 10.0,
+    "pulses": 100,
+    "turns_per_s": 20.0,
+}
 
 
 @pytest.fixture(scope="module")

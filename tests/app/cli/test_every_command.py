@@ -68,6 +68,7 @@ def test_an_image_has_room_for_the_points_and_is_not_empty(
     output = tmp_path / "画像.png"
     printed(capsys, *image_words(street, output))
     picture = cv2.imdecode(np.fromfile(output, np.uint8), cv2.IMREAD_UNCHANGED)
+    assert picture is not None
     info = json.loads(printed(capsys, "info", street / "street.laz", "--json"))
     assert picture.shape[0] * picture.shape[1] * 2 > info["points"]
     assert np.unique(picture).size > 10
