@@ -126,10 +126,10 @@ def test_two_strokes_while_a_tool_stores_its_columns_are_both_kept(painter, surv
 
     surveyor.wait_for_job(run_and_paint)
     assert set(painter.labels) >= {0, 5}
-    assert document.undo()
-    assert set(painter.labels) == {0, 2}
-    assert document.undo()
-    assert not painter.labels.any()
+    # The columns are a step among the strokes.
+    seen = [set(painter.labels) for _ in range(3) if document.undo()]
+    assert {0, 2} in seen
+    assert seen[-1] == {0}
 
 
 def _usual(tool: str):
@@ -154,8 +154,9 @@ def test_a_lasso_in_3d_labels_every_measured_point_inside_it(painter, surveyor):
         move_mouse(picture, spot, LEFT)
         scene._mouse._on_look_up_timeout()
     projection = scene._hits.projection
+    before = document.undo_stack.undo_label
     QTest.mouseRelease(picture, LEFT, NO_KEYS, spots[-1])
-    bot.waitUntil(lambda: document.undo_stack.undo_label is not None, timeout=WAIT_MS)
+    bot.waitUntil(lambda: document.undo_stack.undo_label != before, timeout=WAIT_MS)
     found = 0
     for drive in document.drives():
         local_xyz = drive.local_xyz(slice(0, drive.count), document.origin())

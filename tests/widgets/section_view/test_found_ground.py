@@ -16,7 +16,7 @@ from processing.methods.ground.stored_surface import (
     FILE_NAME,
     SurfaceTile,
     SurfaceWriter,
-    keep_surface,
+    copy_surface,
 )
 from processing.project.results.run_findings import finding_path
 from processing.recording.columns.counted_classes import class_columns
@@ -40,7 +40,9 @@ def ground_in(user: SectionViewUser, folder: Path, height_m: float) -> None:
     filled[:, int(cut.middle[0] - low[0]) :] = True
     with SurfaceWriter(folder / "ground", grid, "") as writer:
         writer.add(SurfaceTile(0, 0, np.zeros((rows, columns), np.float32), filled))
-    keep_surface(folder / "ground", (drive,))
+    kept = drive.folder / FILE_NAME
+    kept.unlink(missing_ok=True)
+    copy_surface(folder / "ground", kept)
     user.do(lambda: user.map.shared.map_changes.drive_columns_changed.emit(drive.id))
 
 

@@ -19,8 +19,8 @@ from processing.methods.ground.stored_surface import (
     StoredSurface,
     SurfaceTile,
     SurfaceWriter,
+    copy_surface,
     ground_surface_of,
-    keep_surface,
 )
 from processing.recording.columns.columns import ColumnWriter
 from processing.recording.drive import Drive
@@ -297,9 +297,8 @@ def test_a_kept_surface_serves_all_its_drives_until_it_is_deleted(tmp_path: Path
     drives = tuple(drive_at(tmp_path / name, level(20.0)) for name in ("a", "b"))
     result = found(drives, tmp_path / "run")
     assert ground_surface_of(drives[0]) is None
-    keep_surface(result.kept[0], drives)
-    keep_surface(result.kept[0], drives)
     for drive in drives:
+        copy_surface(result.kept[0], drive.folder / FILE_NAME)
         surface = ground_surface_of(drive)
         assert surface is not None
         assert surface.crs == "EPSG:6677"
