@@ -23,6 +23,12 @@ _ROWS = Text(
 )
 
 
+_BY_ORDER = Text(
+    "{rows} rows, {each} pulses per revolution ({by}). {how}",
+    "{rows} 行, 1回転あたり {each} パルス ({by})。{how}",
+)
+
+
 def command(arguments: argparse.Namespace) -> int:
     """Import files into a project, made if there is none; an import that was killed goes on.
 
@@ -63,7 +69,9 @@ def describe_drive(drive: Drive) -> str:
     if revolutions is None:
         return f"{info.name}: {points}, {info.rows_reason.in_language(language)}"
     rows = revolutions.segments.size
-    reported = _ROWS.filled(
+    words = _ROWS if info.has_measured_times else _BY_ORDER
+    reported = words.filled(
+        how=info.rows_reason,
         rows=f"{rows:,}",
         rate=f"{revolutions.revolution_rate_hz:.3f}",
         pulse=f"{revolutions.pulse_rate_hz:,.0f}",

@@ -48,6 +48,7 @@ def _of_project(folder: Path) -> dict[str, object]:
 
 def _of_drive(drive: Drive) -> dict[str, object]:
     info, revolutions = drive.info, drive.revolutions
+    timed = revolutions if info.has_measured_times else None
     return {
         "id": info.id,
         "name": info.name,
@@ -58,8 +59,8 @@ def _of_drive(drive: Drive) -> dict[str, object]:
         "rows_by": info.rows_by,
         "rows_reason": info.rows_reason.in_language(system_language()),
         "revolutions": None if revolutions is None else int(revolutions.segments.size),
-        "turns_per_s": None if revolutions is None else revolutions.revolution_rate_hz,
-        "pulses_per_s": None if revolutions is None else revolutions.pulse_rate_hz,
+        "turns_per_s": None if timed is None else timed.revolution_rate_hz,
+        "pulses_per_s": None if timed is None else timed.pulse_rate_hz,
         "pulses_per_turn": None if revolutions is None else revolutions.pulses_per_revolution,
         "has_trajectory": drive.trajectory is not None,
         "sources": [source.path for source in info.sources if source.points],

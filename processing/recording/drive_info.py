@@ -18,6 +18,9 @@ Triple = tuple[float, float, float]
 
 FILE_NAME = "drive.json"
 
+BY_ORDER = "order"
+"""What is said of rows that come from the order of the points, of a drive without any time."""
+
 
 @dataclass(frozen=True)
 class SourceFile:
@@ -57,10 +60,12 @@ class DriveInfo:
     clock_offset_s : float
         What was added to the delivered times to bring them to the trajectory's clock.
     rows_by : str
-        How rows were found: ``trajectory``, ``origins``, ``scan-angle``, ``periodicity``; ``scan``
-        for the sweeps of a standing scanner's own grid; or ``top-view`` where there are none.
+        How rows were found: ``trajectory``, ``origins``, ``scan-angle``, ``periodicity``,
+        ``order``; ``scan`` for the sweeps of a standing scanner's own grid; or ``top-view`` where
+        there are none.
     rows_reason : Text
-        Why there are no revolutions; empty when there are.
+        Why there are no revolutions, or how sure those are that come from the order of the points;
+        empty for others.
     cell_m, cells_per_row
         Without revolutions only: size of a cell of the top view, 0 for a scan; cells in a row or
         sweep.
@@ -88,6 +93,11 @@ class DriveInfo:
     cells_per_row: int = 0
     source_runs: tuple[SourceRun, ...] = ()
     scanner_position: Triple | None = None
+
+    @property
+    def has_measured_times(self) -> bool:
+        """Whether the column ``time`` tells times: with rows by order it only orders the points."""
+        return self.rows_by != BY_ORDER
 
     def widened(self, by_m: float) -> DriveInfo:
         """The same with an extent that reaches farther to all sides."""

@@ -30,7 +30,7 @@ def measured_day(drives: Sequence[Drive]) -> date | None:
 
 
 def _first_day(drive: Drive) -> date | None:
-    if not drive.count or not drive.columns.has("time"):
+    if not (drive.count and drive.info.has_measured_times and drive.columns.has("time")):
         return None
     points = np.unique(np.linspace(0, drive.count - 1, _LOOKED_AT).astype(np.int64))
     times = drive.columns["time"][points]

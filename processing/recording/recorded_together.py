@@ -88,7 +88,7 @@ def _extents_meet(one: Drive, other: Drive) -> bool:
 
 def _times(drive: Drive) -> tuple[float, float] | None:
     """About the first and the last time, s; None where a cloud has none, or one for all points."""
-    if drive.count == 0:
+    if drive.count == 0 or not drive.info.has_measured_times:
         return None
     points = np.unique(np.linspace(0, drive.count - 1, _TIMES).astype(np.int64))
     times = drive.columns["time"][points]

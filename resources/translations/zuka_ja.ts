@@ -1348,6 +1348,10 @@ kept</source>
         <translation>スキャナの回転なし: {reason}</translation>
     </message>
     <message>
+        <source>{pulses} pulses per revolution. {how}</source>
+        <translation>1回転あたり{pulses}パルス。{how}</translation>
+    </message>
+    <message>
         <source>{rate} revolutions per second, {pulses} pulses per revolution</source>
         <translation>毎秒{rate}回転、1回転あたり{pulses}パルス</translation>
     </message>

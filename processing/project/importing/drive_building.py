@@ -38,7 +38,8 @@ from processing.recording.columns.ordering import (
 from processing.recording.columns.replacing import new_columns, replace_columns
 from processing.recording.columns.varying_columns import varying_bytes
 from processing.recording.drive import SCAN, Drive, write_trajectory
-from processing.recording.drive_info import DriveInfo, SourceFile, write_drive_info
+from processing.recording.drive_info import BY_ORDER, DriveInfo, SourceFile, write_drive_info
+from processing.recording.measurement_order.rows_by_order import NoOrder, find_rows_by_order
 from processing.recording.revolutions.revolutions import (
     NoRevolutions,
     RecordedPoints,
@@ -61,6 +62,7 @@ from processing.recording.without_revolutions.top_view import TopView, top_view_
 
 _SAMPLE_POINTS = 200_000
 SOURCES, _SORTED, _ROWS, _SORTED_BY_CELL = "sources", "sorted", "rows", "sorted by cell"
+_ORDERED = "rows by order"
 _FINDING = Text("Finding revolutions and pulses of {name}", "{name} の回転とパルスを推定中")
 _SORTING = Text("Restoring the time order of {name}", "{name} の時刻順を復元中")
 _LEAST_FILLED = 0.02
@@ -115,8 +117,9 @@ def build_drive(
     -----
     1. Points go into time order if the files lost it.
     2. The trajectory is chosen and the points' clock set to its; origins per point make their own.
-    3. A standing scanner's grid is taken as it is, else revolutions and pulses are found; where
-       there are neither, points are ordered for the top view.
+    3. A standing scanner's grid is taken as it is, else revolutions and pulses are found: from
+       times, or from the order of the points where they have none. Where there is nothing of
+       these, points are ordered for the top view.
     4. The facts are written.
 
     Each step may be begun again; what can't be done to its own result is noted.
@@ -254,6 +257,10 @@ def _by_time(columns: Mapping[str, NDArray[Any]]) -> tuple[NDArray[Any], NDArray
     return columns["time"], np.zeros(columns["time"].size, dtype=np.int8)
 
 
+def _by_pulse(columns: Mapping[str, NDArray[Any]]) -> tuple[NDArray[Any], NDArray[Any]]:
+    return columns["pulse"], np.zeros(columns["pulse"].size, dtype=np.int8)
+
+
 def _restore_time_order(
     recording: Recording, steps: BuildSteps, name: str, monitor: Monitor
 ) -> None:
@@ -266,6 +273,8 @@ def _restore_time_order(
 
 def _sort(recording: Recording, steps: BuildSteps, keys: SortKeys, monitor: Monitor) -> None:
     names = _names_to_sort(recording, steps)
+    if keys is _by_pulse:
+        names = (*names, "pulse")
     room = 2 * recording.count * bytes_of(names) + varying_bytes(recording.folder)
     refuse_small_disk(recording.folder, room)
     sort_points(recording.folder, names, recording.count, keys, monitor)
@@ -357,9 +366,10 @@ def _rows_of(
         if isinstance(grid, ScanGrid):
             return _FoundRows(grid.reported, SCAN, cells_per_row=grid.sweep_length)
         contradiction = grid.reason
-    if recording.has_times:
-        quantisation = recording.quantisation
-        points = RecordedPoints(folder, count, quantisation.scale, quantisation.offset)
+    points = RecordedPoints(
+        folder, count, recording.quantisation.scale, recording.quantisation.offset
+    )
+    if recording.times_differ:
         found = find_revolutions(points, trajectory, monitor)
         if isinstance(found, NoRevolutions):
             reason = found.reason
@@ -369,12 +379,35 @@ def _rows_of(
             write_revolutions(folder, found)
             return _FoundRows(Text("", ""), found.method)
     else:
-        reason = Text(
-            "The points have no times, so there are no rows; the top view is shown.",
-            "点に時刻がないため行を決められません。上面画像で表示します。",
-        )
+        ordered = _rows_by_order(recording, points, steps, monitor)
+        if ordered.rows_by == BY_ORDER:
+            return ordered
+        reason = ordered.reason
     view = _top_view_of(recording)
     return _FoundRows(contradiction or reason, "top-view", view.cells_per_row, view)
+
+
+def _rows_by_order(
+    recording: Recording, points: RecordedPoints, steps: BuildSteps, monitor: Monitor
+) -> _FoundRows:
+    """Rows from the order of the points; with the reason for a top view where it tells none."""
+    known = steps.known(_ORDERED)
+    if known is None:
+        found = find_rows_by_order(points, PartMonitor(monitor, 0.0, 0.8))
+        if isinstance(found, NoOrder):
+            return _FoundRows(found.reason, "top-view")
+        with ColumnWriter(recording.folder) as columns:
+            for start, stop in chunk_ranges(recording.count):
+                pulses = found.pulses[start:stop]
+                columns.append({"pulse": pulses, "time": found.times_of(pulses)})
+        write_trajectory(recording.folder, found.trajectory)
+        write_revolutions(recording.folder, found.revolutions)
+        is_in_order = bool((np.diff(found.pulses) >= 0).all())
+        known = {"reason": asdict(found.reported), "is_in_order": is_in_order}
+        steps.note(_ORDERED, known)
+    if not known["is_in_order"]:
+        _sort(recording, steps, _by_pulse, PartMonitor(monitor, 0.8, 1.0))
+    return _FoundRows(Text(**known["reason"]), BY_ORDER)
 
 
 def _scanner_position(

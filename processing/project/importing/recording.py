@@ -77,6 +77,13 @@ class Recording:
         return all(part.stream.has_times for part in self.parts)
 
     @property
+    def times_differ(self) -> bool:
+        """Whether the points have times, and not one for all, which is a filler."""
+        streams = [part.stream for part in self.parts]
+        first, last = streams[0].first_time, streams[-1].last_time
+        return self.has_times and not (self.is_in_time_order and first == last)
+
+    @property
     def is_in_time_order(self) -> bool:
         """Whether times never go back."""
         streams = [part.stream for part in self.parts]

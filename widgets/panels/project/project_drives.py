@@ -222,7 +222,11 @@ class ProjectDrives(QObject):
         if drive.revolutions is None:
             reason = drive.info.rows_reason.in_language(self._language)
             return self.tr("No revolutions of a scanner: {reason}").format(reason=reason)
+        pulses = f"{drive.revolutions.pulses_per_revolution:.0f}"
+        if not drive.info.has_measured_times:
+            how = drive.info.rows_reason.in_language(self._language)
+            return self.tr("{pulses} pulses per revolution. {how}").format(pulses=pulses, how=how)
         return self.tr("{rate} revolutions per second, {pulses} pulses per revolution").format(
             rate=f"{drive.revolutions.revolution_rate_hz:.1f}",
-            pulses=f"{drive.revolutions.pulses_per_revolution:.0f}",
+            pulses=pulses,
         )

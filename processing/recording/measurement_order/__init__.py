@@ -1,0 +1,1 @@
+"""Rows of a recording without any time, from the order in which its points were measured."""
