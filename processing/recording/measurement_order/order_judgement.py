@@ -31,8 +31,9 @@ The planes and the steps forward must hold as well."""
 _MOST = 0.5
 """Share of the windows that must agree: most of them."""
 
-_LEAST_STRETCH = 0.2
-"""Share of the points that the longest stretch must have, for others to be joined to it."""
+_LEAST_STRETCH = 0.1
+"""Share of the points that the longest stretch must have, for others to be joined to it: with less
+the planes of most of them would be guessed."""
 
 _SHORTEST_PIECE = 200
 """Points of the longest stretch of a shuffled recording are fewer: between near neighbours by
@@ -67,8 +68,8 @@ UNCONFIRMED = Text(
     "最長区間から推定した行が大半の点に当てはまりません",
 )
 _PIECES = Text(
-    "they come in pieces of different things, of which none goes along the way",
-    "対象物ごとの断片に分かれ、走行方向に続く区間がありません",
+    "they come in pieces, of which none goes on along a way",
+    "断片に分かれ、走行方向に続く区間がありません",
 )
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -15,6 +16,9 @@ from processing.recording.measurement_order.sweep_kernels import unwrap_kernel
 _SMOOTHED = 3
 """Knots to either side by which a centre is smoothed: together a vehicle's way of about a metre,
 along which it is straight."""
+
+_LEAST_STEEP = 0.5
+"""Downward share of a direction that is below: 30°. Planes along the way have none."""
 
 _SEEN_AT_ONCE = 200_000
 """Points whose angles are computed at a time: they need twenty numbers each."""
@@ -70,20 +74,42 @@ class SweepPath:
         Returns
         -------
         angles : (n,) float64
-            rad, 0…2π in the sense of the turning, from straight down.
+            rad, 0…2π in the sense of the turning, from the direction in which the plane crosses
+            the way of the centre, below it.
         ranges : (n,) float64
             m.
         """
         centre = interpolated(positions, self.at, self.centres)
         normal = interpolated(positions, self.at, self.normals)
         normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
-        up = np.array([0.0, 0.0, 1.0]) - normal * normal[:, 2:]
-        up /= np.maximum(np.linalg.norm(up, axis=1, keepdims=True), 1e-12)
-        right = np.cross(normal, up)
+        down = _down_along(normal, interpolated(positions, self.at, self.forward))
+        right = np.cross(down, normal)
         beams = xyz - centre
-        x, y = np.einsum("ij,ij->i", beams, right), np.einsum("ij,ij->i", beams, up)
-        angles = (self.sense * np.arctan2(x, -y)) % (2 * np.pi)
+        x, y = np.einsum("ij,ij->i", beams, right), np.einsum("ij,ij->i", beams, down)
+        angles = (self.sense * np.arctan2(x, y)) % (2 * np.pi)
         return angles, np.hypot(x, y)
+
+    @cached_property
+    def forward(self) -> Floats:
+        """(k, 3) horizontal directions of the way at the knots, of any length."""
+        moved = np.gradient(self.centres, axis=0)
+        moved[:, 2] = 0.0
+        return np.asarray(moved)
+
+
+def _down_along(normal: Floats, forward: Floats) -> Floats:
+    """(n, 3) unit vectors in planes and in the upright planes of ways, downward.
+
+    Straight down in its plane where the way lies in the plane, or there is none.
+    """
+    aside = np.column_stack([-forward[:, 1], forward[:, 0], np.zeros(len(forward))])
+    down = np.cross(normal, aside)
+    down *= -np.sign(down[:, 2:])
+    length = np.linalg.norm(down, axis=1, keepdims=True)
+    steep = -down[:, 2:] > _LEAST_STEEP * np.maximum(length, 1e-12)
+    straight = normal * normal[:, 2:] - np.array([0.0, 0.0, 1.0])
+    down = np.where(steep, down, straight)
+    return np.asarray(down / np.maximum(np.linalg.norm(down, axis=1, keepdims=True), 1e-12))
 
 
 def interpolated(positions: Floats, at: Floats, values: Floats) -> Floats:
