@@ -13,8 +13,11 @@ import pytest
 from processing.core.errors import BadFile, Cancelled, MissingInput, OutOfRange, UserError
 from processing.core.monitor import SilentMonitor
 from processing.image.images_of_drives import image_of
+from processing.project.additions import lacks_trajectory
 from processing.project.importing.importing import ImportRequest, import_drives
 from processing.recording.drive import Drive
+from processing.recording.kinds import ImageKind
+from processing.recording.measured_day import measured_day
 from tests.builders import simulated_drive, write_laz, write_trajectory_csv
 from tests.delivered_files import make_las
 
@@ -162,11 +165,49 @@ def test_without_a_trajectory_rows_come_from_the_rhythm_of_the_points(tmp_path, 
     assert np.unique(drive.columns["pulse"] - left.pulse).size == 1
 
 
+@pytest.mark.parametrize("filler_s", [np.nan, 0.0])
+def test_without_any_time_rows_come_from_the_order_of_the_points(tmp_path, left, filler_s):
+    def spoil(cloud):
+        cloud.gps_time[:] = filler_s
+
+    cloud = _shifted(write_laz(left, tmp_path / "a.laz"), tmp_path / "b.laz", spoil)
+    (drive,) = _imported(tmp_path, [cloud])
+    assert drive.info.rows_by == "order"
+    assert not drive.info.has_measured_times
+    assert "order of the points" in drive.info.rows_reason.en
+    assert "並び順" in drive.info.rows_reason.ja
+    assert ImageKind.REVERSIBLE in drive.image_kinds
+    assert (drive.columns["xyz"] == left.columns["xyz"]).all()
+    assert drive.trajectory is not None
+    assert drive.trajectory.covers(drive.columns["time"]).all()
+    assert measured_day([drive]) is None
+    assert not lacks_trajectory(drive)
+
+
+def test_points_sorted_by_object_are_brought_into_rows_and_know_where_they_were(tmp_path, left):
+    height = left.columns["xyz"][:, 2]
+    order = np.argsort(height > np.median(height) + 300, kind="stable")
+
+    def sort(cloud):
+        cloud.points = cloud.points[order]
+        cloud.gps_time[:] = 0.0
+
+    cloud = _shifted(write_laz(left, tmp_path / "a.laz"), tmp_path / "b.laz", sort)
+    (drive,) = _imported(tmp_path, [cloud])
+    assert drive.info.rows_by == "order"
+    assert (np.diff(drive.columns["pulse"]) >= 0).all()
+    assert (np.diff(drive.columns["time"]) >= 0).all()
+    _, indices = drive.sources(0, drive.count)
+    delivered = laspy.read(cloud)
+    assert (np.asarray(delivered.X)[indices] == drive.columns["xyz"][:, 0]).all()
+
+
 @pytest.mark.parametrize("without", ["times", "pulses"])
 def test_where_there_are_no_rows_the_top_view_is_made_and_says_why(tmp_path, left, without):
     def spoil(cloud):
         if without == "times":
             cloud.gps_time[:] = np.nan
+            cloud.points = cloud.points[np.random.default_rng(5).permutation(left.count)]
         else:
             cloud.points = cloud.points[np.arange(0, left.count, 97)]
 
