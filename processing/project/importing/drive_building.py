@@ -117,9 +117,8 @@ def build_drive(
     -----
     1. Points go into time order if the files lost it.
     2. The trajectory is chosen and the points' clock set to its; origins per point make their own.
-    3. A standing scanner's grid is taken as it is, else revolutions and pulses are found: from
-       times, or from the order of the points where they have none. Where there is nothing of
-       these, points are ordered for the top view.
+    3. A standing scanner's grid is taken as it is, else revolutions and pulses are found, by times
+       or by the order of the points; where there are none, points are ordered for the top view.
     4. The facts are written.
 
     Each step may be begun again; what can't be done to its own result is noted.

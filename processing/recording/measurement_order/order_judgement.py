@@ -61,7 +61,8 @@ _FAR_AWAY = Text(
     "路面の近くにあるスキャナによる走査線ではありません",
 )
 _STOOD = Text(
-    "they are sweeps of a scanner that stood still", "据置型スキャナの走査順に並んでいます"
+    "they are sweeps of a scanner that stood still or went less than a metre",
+    "静止した（または1 mも進んでいない）スキャナの走査順に並んでいます",
 )
 UNCONFIRMED = Text(
     "the rows that the longest stretch tells don't hold for most of the points",

@@ -30,6 +30,9 @@ some hundredths of a degree."""
 _FEW_STEPS = 0.5
 """Of the median of steps: profiles with fewer take their normal from their neighbours."""
 
+_LEAST_ALIKE = 0.94
+"""Cosine to the plane before, 20°: steps that give another one are of things placed wrongly."""
+
 _POINTS_AT_ONCE = 200_000
 """Points placed between two looks whether to go on."""
 
@@ -169,7 +172,11 @@ def straighten_planes(profiles: Profiles, xyz: Floats, rows: NDArray[np.int64]) 
     every = np.arange(len(profiles.normals), dtype=np.float64)
     middle = np.asarray((known + 0.5) * _ROWS_TOGETHER, dtype=np.float64)
     before = interpolated(middle, every, profiles.normals)
-    found *= np.sign(np.einsum("ij,ij->i", found, before))[:, None]
+    agreed = np.einsum("ij,ij->i", found, before)
+    is_like = np.abs(agreed) > _LEAST_ALIKE
+    if not is_like.any():
+        return profiles
+    found, middle = (found * np.sign(agreed)[:, None])[is_like], middle[is_like]
     normals = interpolated(every, middle, found)
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     return replace(profiles, normals=normals)

@@ -115,9 +115,8 @@ def fit_sweep(
     Notes
     -----
     1. The plane is that in which points follow one another.
-    2. A beam that turns steadily about a centre goes forward by whole steps from point to point.
-       The centre is where, seen from it, the increments of the angle are nearest to that; it is
-       searched for on grids from coarse to fine.
+    2. A beam that turns steadily goes forward by whole steps. The centre is where, seen from it,
+       the increments of the angle are nearest to that; grids from coarse to fine find it.
     """
     normal = normal_of_steps(xyz)
     if normal is None:
@@ -127,8 +126,8 @@ def fit_sweep(
     middle = np.asarray(xyz.mean(axis=0))
     right, up = plane_axes(normal)
     plane = np.column_stack([(xyz - middle) @ right, (xyz - middle) @ up])
-    lengths = np.linalg.norm(np.diff(plane, axis=0), axis=1)
-    weights = lengths**2 / (lengths**2 + (_ROUNDED * quantum_m) ** 2 + 1e-12)
+    squared = (np.diff(plane, axis=0) ** 2).sum(axis=1)
+    weights = squared / (squared + (_ROUNDED * quantum_m) ** 2 + 1e-12)
     found = np.array([0.0, 0.0, 1.0, step_rad, -2.0])
     if near is None:
         low = np.maximum(plane.min(axis=0) - _BEYOND_M, -_FARTHEST_M)
@@ -148,13 +147,13 @@ def fit_sweep(
         cell = (high - low) / (size - 1)
         low, high = found[:2] - cell, found[:2] + cell
         senses, size = (float(found[2]),), _GRID
-    increments = np.empty(lengths.size)
+    increments = np.empty(len(plane) - 1)
     increments_kernel(plane, found[0], found[1], found[2], increments)
     back = increments < -0.5 * found[3]
     following = float(np.mean((np.abs(increments) < NEAR_RAD) & ~back))
     centre = middle + right * found[0] + up * found[1]
     is_near = bool((found[:2] > edges[0]).all() and (found[:2] < edges[1]).all())
-    sense, step, coherence = (float(value) for value in found[2:])
+    sense, step, coherence = found[2:].tolist()
     step = refined_step_kernel(increments, weights, step) if step > 0 and not step_rad else step
     return SweepFit(normal, centre, sense, step, coherence, following, is_near)
 

@@ -47,9 +47,10 @@ class SweepPath:
     sense: float
 
     def led_on(self, positions: Floats) -> Floats:
-        """(n, 3) centres at rising positions, m; straight on beyond the first and last knot."""
+        """(n, 3) centres at positions, m; straight on beyond the first and last knot."""
         at, centres = self.at, self.centres
-        low, high = min(positions[0], at[0]) - 1.0, max(positions[-1], at[-1]) + 1.0
+        low = min(float(positions.min()), at[0]) - 1.0
+        high = max(float(positions.max()), at[-1]) + 1.0
         first = (centres[1] - centres[0]) / (at[1] - at[0])
         last = (centres[-1] - centres[-2]) / (at[-1] - at[-2])
         wide = np.concatenate(
@@ -79,7 +80,7 @@ class SweepPath:
         ranges : (n,) float64
             m.
         """
-        centre = interpolated(positions, self.at, self.centres)
+        centre = self.led_on(positions)
         normal = interpolated(positions, self.at, self.normals)
         normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
         down = _down_along(normal, interpolated(positions, self.at, self.forward))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import laspy
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -17,6 +18,7 @@ from processing.recording.measurement_order.rows_by_order import (
     OrderedRows,
     find_rows_by_order,
 )
+from resources import path_of
 from tests.builders import SimulatedDrive, simulated_drive
 from tests.monitors import CancelledAfter
 
@@ -144,3 +146,20 @@ def test_looking_for_rows_can_be_cancelled(tmp_path):
     points = recorded(tmp_path, simulated_drive(11).columns["xyz"])
     with pytest.raises(Cancelled):
         find_rows_by_order(points, CancelledAfter(3))
+
+
+@pytest.mark.parametrize("head", ["left", "right"])
+def test_the_sample_street_without_its_times_has_the_rows_that_the_times_tell(tmp_path, head):
+    cloud = laspy.read(path_of(f"sample_street/{head}.laz"))[:60_000]
+    integers = np.column_stack([cloud.X, cloud.Y, cloud.Z]).astype(np.int32)
+    found = rows_in(tmp_path, integers)
+    # 100 turns a second, as the simulator was set; the path of the head is its own.
+    true = (np.asarray(cloud.gps_time) - cloud.gps_time[0]) * 100.0
+    turns = found.pulses / found.revolutions.pulses_per_revolution
+    # Where rows begin moves against the mirror as the vehicle turns and sways, but slowly.
+    parts = np.arange(len(turns)) // 5_000
+    begins = np.array([np.median((turns - true)[parts == part]) for part in np.unique(parts)])
+    rows = np.floor(turns) - np.floor(true + begins[parts])
+    assert float(np.mean(rows == 0)) >= 0.99
+    assert found.revolutions.pulses_per_revolution == pytest.approx(1000, abs=2)
+    assert found.confirmed > 0.99
