@@ -12,10 +12,10 @@ from processing.core.errors import report_as_user_error
 from processing.core.monitor import Monitor, PartMonitor
 from processing.core.owned_files import remove_folder
 from processing.core.parameters import ParameterChoice, choice, count, length, ratio
+from processing.core.scratch_arrays import scratch_array
 from processing.core.text import Text
 from processing.methods.noise.drive_noise import NoiseSearch
 from processing.methods.noise.noise_codes import HIGH_NOISE, LOW_NOISE
-from processing.methods.noise.scratch_files import scratch_array
 from processing.recording.columns.columns import ColumnWriter
 from processing.recording.columns.ordering import chunk_ranges, read_chunk
 from processing.recording.drive import Drive

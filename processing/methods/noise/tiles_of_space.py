@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.core.monitor import Monitor
-from processing.methods.noise.scratch_files import scratch_array
+from processing.core.scratch_arrays import scratch_array
 
 XyzReader = Callable[[NDArray[np.int64] | slice], NDArray[np.float64]]
 

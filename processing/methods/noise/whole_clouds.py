@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.core.monitor import Monitor
+from processing.core.scratch_arrays import scratch_array
 from processing.methods.noise.neighbours.radius import NEIGHBOURS, RADIUS_M, radius_outliers
 from processing.methods.noise.neighbours.statistical import DEVIATIONS, DistanceSums, distances_of
-from processing.methods.noise.scratch_files import scratch_array
 from processing.methods.noise.tiles_of_space import POINTS_PER_PART, SpacePart, TiledCloud
 
 _POINTS_AT_ONCE = 4_000_000

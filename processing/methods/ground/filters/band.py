@@ -168,8 +168,6 @@ def ground_band(
     ground : (rows, columns) bool
         Cells in which it was measured.
     """
-    import cv2
-
     size_m = grid.size_m
     steepness = steepness_of(surface, size_m)
     reach = tolerances.near_m + size_m * (tolerances.near_share + _WITHIN_CELL * steepness)
@@ -189,9 +187,38 @@ def ground_band(
     bins, feet = _find_standing_points(blocks, grid, surface, thick)
     foot = tolerances.foot_deviations * roughness + tolerances.slope_share * rise
     above = np.where(_stands(bins, thick) | ~ground, np.minimum(thick, foot), thick)
+    face_low, face_high = _face_heights(
+        (blocks, grid), (surface, ground), (thick, above), is_level, column_tops(bins)
+    )
+    return GroundBand(
+        surface,
+        thick,
+        above.astype(np.float32),
+        face_low,
+        face_high,
+        feet,
+        typical,
+    )
+
+
+def _face_heights(
+    cloud: tuple[Blocks, CellGrid],
+    known: tuple[NDArray[np.float32], NDArray[np.bool_]],
+    band: tuple[NDArray[np.float32], NDArray[np.float32]],
+    is_level: NDArray[np.bool_],
+    tops: NDArray[np.float32],
+) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Between which heights points of steep cells lie on a face; low > high: on none.
+
+    ``known``: surface and where it was measured; ``band``: how far ground reaches below and above
+    it; ``tops``: of what stands in each cell.
+    """
+    import cv2
+
+    (blocks, grid), (surface, ground), (thick, above) = cloud, known, band
     lowest = cv2.erode(surface, np.ones((3, 3), np.uint8))
     highest = cv2.dilate(surface, np.ones((3, 3), np.uint8))
-    upper = faces(surface, ground, column_tops(bins), size_m)
+    upper = faces(surface, ground, tops, grid.size_m)
     face = np.isfinite(upper)
     face_low = np.where(face, lowest - thick, np.where(is_level, np.inf, lowest))
     face_high = np.where(is_level, -np.inf, highest)
@@ -204,15 +231,7 @@ def ground_band(
     # Beside a wall the ground between cells does not lie between their heights.
     face_low = np.where(upright, np.where(ground, surface - thick, np.inf), face_low)
     face_high = np.where(upright, np.where(ground, surface + above, -np.inf), face_high)
-    return GroundBand(
-        surface,
-        thick,
-        above.astype(np.float32),
-        face_low.astype(np.float32),
-        face_high.astype(np.float32),
-        feet,
-        typical,
-    )
+    return face_low.astype(np.float32), face_high.astype(np.float32)
 
 
 def _find_standing_points(

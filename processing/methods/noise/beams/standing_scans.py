@@ -16,10 +16,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.core.monitor import Monitor
+from processing.core.scratch_arrays import scratch_array
 from processing.methods.noise.beams.beam_kernels import PointBeams
 from processing.methods.noise.beams.measured_order import measured_order
 from processing.methods.noise.beams.scanner_positions import position_in_order
-from processing.methods.noise.scratch_files import scratch_array
 from processing.recording.drive import Drive
 
 _Floats = NDArray[np.float64]
