@@ -66,7 +66,6 @@ from widgets.parts.image_bar import ImageBar
 from widgets.parts.message_bar import MessageBar
 from widgets.parts.start_page import StartPage
 from widgets.parts.status_line import StatusLine
-from widgets.scene_view.renderer_loader import prepare_graphics
 from widgets.scene_view.view import SceneView
 from widgets.section_view.view import SectionView
 from widgets.shared.shared_state import SharedState
@@ -115,7 +114,6 @@ def make_application() -> QApplication:
     """The one Qt application, with its look and its language."""
     application = QApplication.instance()
     if not isinstance(application, QApplication):
-        prepare_graphics()
         application = QApplication(sys.argv[:1])
     application.setApplicationName("Zuka")
     Theme.of(application)

@@ -23,7 +23,7 @@ from resources import path_of
 
 if TYPE_CHECKING:
     from execnet import XSpec
-    from PySide6.QtWidgets import QApplication, QWidget
+    from PySide6.QtWidgets import QWidget
 
 ORDER = (
     "house_rules",
@@ -98,17 +98,6 @@ def home_of_tests(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
             patch.setenv(f"XDG_{name}_HOME", str(home / name.lower()))
         patch.setenv("ZUKA_LANGUAGE", "en")
         yield home
-
-
-@pytest.fixture(scope="session")
-def qapp_cls() -> type[QApplication]:
-    """Give the class of the one application; its windows share graphics, as in the program."""
-    from PySide6.QtWidgets import QApplication
-
-    from widgets.scene_view.renderer_loader import prepare_graphics
-
-    prepare_graphics()
-    return QApplication
 
 
 @pytest.fixture

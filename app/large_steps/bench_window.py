@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 
 from PySide6.QtCore import QPoint
-from PySide6.QtOpenGLWidgets import QOpenGLWidget
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QWidget
 
@@ -14,6 +13,7 @@ from app.screenshots.simulated_mouse import SimulatedMouse
 from app.window.window_parts import WindowParts
 from widgets.image_view.minimap import Minimap
 from widgets.image_view.tile_images import TileImages
+from widgets.scene_view.rendering.scene_picture import ScenePicture
 
 StepTimings = dict[str, list[float]]
 """Seconds by what took them."""
@@ -58,7 +58,7 @@ class BenchWindow:
         self.tiles = parts.image_view.findChildren(TileImages)[0]
         wait_until(lambda: parts.scene_view.picture is not None, self.pulse.felt)
         self.picture = _picture_of(parts)
-        self.picture_frames = PaintedFrames(self.picture, self.picture.frameSwapped)
+        self.picture_frames = PaintedFrames(self.picture, self.picture.frame_painted)
 
     @property
     def middle(self) -> QPoint:
@@ -97,9 +97,9 @@ class BenchWindow:
         wait_until(lambda: parts.scene_view.is_settled, felt)
 
 
-def _picture_of(parts: WindowParts) -> QOpenGLWidget:
+def _picture_of(parts: WindowParts) -> ScenePicture:
     picture = parts.scene_view.picture
-    if not isinstance(picture, QOpenGLWidget):
-        message = "the 3D picture is not drawn by OpenGL"
-        raise TypeError(message)
+    if picture is None:
+        message = "the 3D picture was not made"
+        raise RuntimeError(message)
     return picture

@@ -31,20 +31,20 @@ class PaintedFrames(QObject):
     Parameters
     ----------
     view : QWidget
-    swapped : signal, optional
-        Told when a frame is on the screen, by views that draw by OpenGL; others are watched for
-        their paint events.
+    drawn : signal, optional
+        Told when a new picture was painted, by views that are painted again with the old one while
+        it is being drawn; others are watched for their paint events.
     """
 
-    def __init__(self, view: QWidget, swapped: SignalInstance | None = None) -> None:
+    def __init__(self, view: QWidget, drawn: SignalInstance | None = None) -> None:
         super().__init__(view)
         self._is_wanted: Callable[[], bool] | None = None
         self._painted_at = 0.0
         self._loop = QEventLoop()
-        if swapped is None:
+        if drawn is None:
             view.installEventFilter(self)
         else:
-            swapped.connect(self._on_swapped)
+            drawn.connect(self._look_when_shown)
 
     def seconds_to_paint(
         self,
@@ -68,6 +68,8 @@ class PaintedFrames(QObject):
         TimeoutError
             No such frame came.
         """
+        # A view may have been painted twice; the second time tells nothing of what comes now.
+        QCoreApplication.removePostedEvents(self, _SEEN.value)
         self._painted_at = 0.0
         self._is_wanted = when
         began = time.perf_counter()
@@ -84,20 +86,24 @@ class PaintedFrames(QObject):
 
     @override
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
-        if event.type() == QEvent.Type.Paint and self._is_wanted is not None:
-            # Comes back as soon as the window has painted and shown all its parts.
-            urgent = Qt.EventPriority.HighEventPriority
-            QCoreApplication.postEvent(self, QEvent(_SEEN), urgent.value)
+        if event.type() == QEvent.Type.Paint:
+            self._look_when_shown()
         return False
 
     @override
     def event(self, event: QEvent) -> bool:
         if event.type() == _SEEN:
-            self._on_swapped()
+            self._look()
             return True
         return super().event(event)
 
-    def _on_swapped(self) -> None:
+    def _look_when_shown(self) -> None:
+        if self._is_wanted is not None:
+            # Comes back as soon as the window has painted and shown all its parts.
+            urgent = Qt.EventPriority.HighEventPriority
+            QCoreApplication.postEvent(self, QEvent(_SEEN), urgent.value)
+
+    def _look(self) -> None:
         if self._is_wanted is not None and not self._painted_at and self._is_wanted():
             self._painted_at = time.perf_counter()
             self._loop.quit()

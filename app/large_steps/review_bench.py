@@ -96,19 +96,23 @@ class _Painted(QObject):
 
     def __init__(self, parts: WindowParts) -> None:
         super().__init__()
-        pictures = [
+        views = [
             parts.image_view,
             parts.section_view.panes[0],
             parts.camera_view,
             parts.map_view,
-            parts.scene_view.picture,
         ]
         self.seen: set[QObject] = set()
         self.watched: set[QObject] = set()
-        for picture in pictures:
-            if picture is not None and not picture.visibleRegion().isEmpty():
-                picture.installEventFilter(self)
-                self.watched.add(picture)
+        for view in views:
+            if not view.visibleRegion().isEmpty():
+                view.installEventFilter(self)
+                self.watched.add(view)
+        scene = parts.scene_view.picture
+        if scene is not None and not scene.visibleRegion().isEmpty():
+            # The view is painted with its old picture as well while the new one is drawn.
+            scene.frame_painted.connect(lambda: self.seen.add(scene))
+            self.watched.add(scene)
 
     @override
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:

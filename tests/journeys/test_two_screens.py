@@ -17,11 +17,11 @@ def test_the_3d_view_goes_to_another_window_and_comes_back(
     picture = scene.picture
     assert picture is not None
     for layout in (ViewLayout.TWO_SCREENS, ViewLayout.CHECKING):
-        with bot.waitSignal(picture.frameSwapped, timeout=WAIT_MS):
+        with bot.waitSignal(picture.frame_painted, timeout=WAIT_MS):
             surveyor.parts.window.area.place(layout)
         bot.waitUntil(lambda: scene.is_settled, timeout=WAIT_MS)
         is_apart = layout is ViewLayout.TWO_SCREENS
         assert (scene.window() is not surveyor.parts.window) == is_apart
-        colours = picture.grabFramebuffer()
+        colours = picture.grab().toImage()
         middle = colours.height() // 2
         assert len({colours.pixel(x, middle) for x in range(colours.width())}) > 10

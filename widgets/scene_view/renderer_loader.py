@@ -5,10 +5,7 @@ from __future__ import annotations
 import importlib
 import threading
 
-from PySide6.QtCore import QCoreApplication, QObject, Qt, Signal
-from PySide6.QtGui import QSurfaceFormat
-from PySide6.QtOpenGLWidgets import QOpenGLWidget
-from PySide6.QtWidgets import QWidget
+from PySide6.QtCore import QObject, Signal
 
 from processing.core.library_loading import LIBRARY_LOADING
 
@@ -51,35 +48,3 @@ class RendererLoader(QObject):
             # Where this failed, the view imports again on its own thread, and the error is told.
             if not self._is_closed:
                 self.ready.emit()
-
-
-def prepare_graphics() -> None:
-    """Say how pictures of the 3D view are made; to be called before there is an application.
-
-    Pictures of one window need one format, so the interactor's is set here. Contexts are shared, so
-    that a picture lives on when its view is moved into another window.
-    """
-    QCoreApplication.setAttribute(Qt.ApplicationAttribute.AA_ShareOpenGLContexts)
-    wanted = QSurfaceFormat()
-    wanted.setRenderableType(QSurfaceFormat.RenderableType.OpenGL)
-    wanted.setProfile(QSurfaceFormat.OpenGLContextProfile.CoreProfile)
-    wanted.setVersion(3, 2)
-    wanted.setRedBufferSize(8)
-    wanted.setGreenBufferSize(8)
-    wanted.setBlueBufferSize(8)
-    wanted.setAlphaBufferSize(8)
-    wanted.setDepthBufferSize(8)
-    wanted.setStencilBufferSize(0)
-    wanted.setSamples(0)
-    QSurfaceFormat.setDefaultFormat(wanted)
-
-
-def reserve_graphics(parent: QWidget) -> QOpenGLWidget:
-    """A hidden widget by which the window is made for OpenGL from the start.
-
-    Without it Qt would make the window anew, and it would flash, when the 3D picture is put into it
-    later.
-    """
-    hidden = QOpenGLWidget(parent)
-    hidden.hide()
-    return hidden

@@ -23,11 +23,12 @@ from widgets.scene_view.map.map_layer import MapLayer
 from widgets.scene_view.mouse import SceneMouse
 from widgets.scene_view.overlay import OverlayContent, SceneOverlay
 from widgets.scene_view.points.point_finder import PointFinder
-from widgets.scene_view.renderer_loader import RendererLoader, reserve_graphics
+from widgets.scene_view.renderer_loader import RendererLoader
 from widgets.scene_view.rendering import overviews
 from widgets.scene_view.rendering.backdrop import BACKGROUND
 from widgets.scene_view.rendering.camera import SceneCamera
 from widgets.scene_view.rendering.projection import SceneProjection
+from widgets.scene_view.rendering.scene_picture import ScenePicture
 from widgets.scene_view.shown_drives import ShownDrives
 from widgets.scene_view.view_menu import view_menu
 from widgets.shared.cursor import PickedPosition
@@ -96,7 +97,6 @@ class SceneView(QWidget):
         self._mouse = SceneMouse(self._hits, shared, self._drives.course_deg, self)
         self.clipping = Clipping(source, shared, self)
         self.clipping.changed.connect(self._clip)
-        self._reserved = reserve_graphics(self)
         self._overlay = SceneOverlay(self)
         self._loader = RendererLoader()
         self._loader.ready.connect(self._on_loader_ready)
@@ -130,7 +130,7 @@ class SceneView(QWidget):
         return self._hits.projection.camera
 
     @property
-    def picture(self) -> QWidget | None:
+    def picture(self) -> ScenePicture | None:
         """The widget that gets the mouse; None until the picture was made."""
         return None if self._scene_renderer is None else self._scene_renderer.widget
 

@@ -241,7 +241,7 @@ def test_after_three_changes_no_old_widget_is_alive(qtbot: QtBot, street: Window
     assert [widget for widget in old if shiboken6.isValid(widget)] == []
     assert abs(len(street.window.findChildren(QWidget)) - count) <= 12  # menus' own parts
     pictures = [
-        one for one in street.window.findChildren(QWidget) if type(one).__name__ == "QtInteractor"
+        one for one in street.window.findChildren(QWidget) if type(one).__name__ == "ScenePicture"
     ]
     assert pictures == [street.scene_view.picture]
 

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from PySide6.QtCore import QPoint, Qt
-from PySide6.QtWidgets import QWidget
 from pytestqt.qtbot import QtBot
 from typing_extensions import override
 
@@ -18,6 +17,7 @@ from processing.recording.drive import Drive
 from tests.widgets.builders import OpenMap
 from tests.widgets.view_user import ViewUser
 from widgets.scene_view.rendering.camera import SceneCamera
+from widgets.scene_view.rendering.scene_picture import ScenePicture
 from widgets.scene_view.view import SceneView
 from widgets.shared.cursor import PickedPosition
 
@@ -33,7 +33,7 @@ class SceneViewUser(ViewUser):
 
     @property
     @override
-    def picture(self) -> QWidget:
+    def picture(self) -> ScenePicture:
         """The widget that gets the mouse."""
         picture = self.view.picture
         assert picture is not None

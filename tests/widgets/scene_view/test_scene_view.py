@@ -29,8 +29,8 @@ def image_of(user: SceneViewUser) -> QImage:
     user.sharpen()
     # Two frames: features are put into the scene by the event loop, and then drawn.
     for _ in range(2):
-        with user.qtbot.waitSignal(user.picture.frameSwapped, timeout=30_000):
-            user.picture.update()
+        with user.qtbot.waitSignal(user.picture.frame_painted, timeout=30_000):
+            user.picture.redraw()
     return user.view.grab().toImage()
 
 

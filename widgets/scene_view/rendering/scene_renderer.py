@@ -1,33 +1,28 @@
-"""SceneRenderer: the VTK window with its layers, camera and shading.
+"""SceneRenderer: VTK's picture of the scene with its layers, camera and shading.
 
-Importing this module imports VTK and pyvista, which takes more than a second; the view does it
-after it was shown, beside the window's thread.
+Importing this module imports VTK, which takes a second; the view does it after it was shown,
+beside the window's thread.
 """
 
 from __future__ import annotations
 
-import sys
-import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
-from PySide6.QtCore import QMessageLogContext, QtMsgType, qInstallMessageHandler
+from PySide6.QtCore import QSize
+from PySide6.QtGui import QImage
 from PySide6.QtWidgets import QWidget
-from pyvistaqt import QtInteractor
-from vtkmodules.vtkCommonCore import vtkCommand, vtkLogger, vtkOutputWindow
-from vtkmodules.vtkRenderingCore import vtkRenderer
-from vtkmodules.vtkRenderingOpenGL2 import (
-    vtkEDLShading,
-    vtkGenericOpenGLRenderWindow,
-    vtkRenderStepsPass,
-)
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkLogger, vtkOutputWindow, vtkUnsignedCharArray
+from vtkmodules.vtkRenderingCore import vtkRenderer, vtkRenderWindow
+from vtkmodules.vtkRenderingOpenGL2 import vtkEDLShading, vtkRenderStepsPass
 
 from widgets.scene_view.rendering.backdrop import BACKGROUND
 from widgets.scene_view.rendering.camera import SceneCamera
 from widgets.scene_view.rendering.change_surface import ChangeSurface
 from widgets.scene_view.rendering.feature_actors import FeatureActors
+from widgets.scene_view.rendering.scene_picture import ScenePicture
 from widgets.scene_view.rendering.solid_actors import SolidActors
 from widgets.scene_view.rendering.tile_actors import PointSizes, TileActors
 
@@ -35,47 +30,49 @@ _NEAREST_M = 0.1
 _DEPTH_RATIO = 20_000.0
 _LAYERS = 5
 _ROOM_M = 1.0  # beyond the points, for what is drawn about them
-_FORMAT_AGAIN = "Setting a new default format"
 _MOST_TIMES_LEAST = 4.0  # fills the gaps of a road down to some four metres
 
 
 class SceneRenderer:
-    """One interactor with layers that share a camera: cloud, bodies, halos, lines, marks.
+    """Draws layers that share a camera: cloud, bodies, halos, lines, marks.
+
+    They are drawn beside the window and painted like any other view. A picture that OpenGL draws
+    into the window itself would make every repaint of every view wait until the graphics driver
+    has put the whole window together, which without a graphics card takes ten milliseconds.
 
     Parameters
     ----------
     parent : QWidget
     reported_frame : callable
-        Given the seconds that each frame took, from its beginning until it was on the screen.
+        Given the seconds that each frame took, from its beginning until it was painted.
     """
 
     def __init__(self, parent: QWidget, reported_frame: Callable[[float], None]) -> None:
         # Troubles of the graphics are of no use to a surveyor; on Windows they open a window.
         vtkOutputWindow.GetInstance().SetDisplayModeToNever()
         vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)
-        with _format_taken_as_set():
-            self.widget = QtInteractor(parent, auto_update=False, multi_samples=0)
-        self._window = vtkGenericOpenGLRenderWindow.SafeDownCast(self.widget.ren_win)
+        self.widget = ScenePicture(parent, self._draw_frame)
+        self.widget.frame_painted.connect(reported_frame)
+        self._window = vtkRenderWindow()
+        self._window.ShowWindowOff()
+        self._window.UseOffScreenBuffersOn()
+        self._window.SetMultiSamples(0)
+        # No copy of a frame for a screen: it is read where it is drawn.
+        self._window.SwapBuffersOff()
         self._window.SetNumberOfLayers(_LAYERS)
-        self._cloud: vtkRenderer = self.widget.renderer
-        self._layers: list[vtkRenderer] = [self._cloud]
-        for number in range(1, _LAYERS):
-            layer = vtkRenderer()
+        self._pixels = vtkUnsignedCharArray()
+        self._cloud = vtkRenderer()
+        self._layers = [self._cloud, *(vtkRenderer() for _ in range(1, _LAYERS))]
+        for number, layer in enumerate(self._layers):
             layer.SetLayer(number)
             layer.SetActiveCamera(self._cloud.GetActiveCamera())
-            layer.InteractiveOff()
             self._window.AddRenderer(layer)
-            self._layers.append(layer)
         colour = [int(BACKGROUND[at : at + 2], 16) / 255 for at in (1, 3, 5)]
         self._cloud.SetBackground(*colour)
         self._shading = vtkEDLShading()
         self._shading.SetDelegatePass(vtkRenderStepsPass())
         self._is_shaded = False
         self._is_closed = False
-        self._began_at = 0.0
-        self._reported_frame = reported_frame
-        self._observer = self._window.AddObserver(vtkCommand.StartEvent, self._on_window_start)
-        self.widget.frameSwapped.connect(self._on_widget_frame_swapped)
         self.tiles = TileActors(self._cloud)
         self.change = ChangeSurface(self._layers[1])
         self.solids = SolidActors(self._layers[1])
@@ -122,14 +119,13 @@ class SceneRenderer:
     def redraw(self) -> None:
         """Draw a frame soon."""
         if not self._is_closed:
-            self.widget.update()
+            self.widget.redraw()
 
     def close(self) -> None:
         """Give everything back; may be called again."""
         if self._is_closed:
             return
         self._is_closed = True
-        self._window.RemoveObserver(self._observer)
         self.tiles.close()
         self.change.clear()
         self.solids.clear()
@@ -138,12 +134,24 @@ class SceneRenderer:
         # A pass that isn't in use is not released with the window.
         self._window.MakeCurrent()
         self._shading.ReleaseGraphicsResources(self._window)
-        for layer in self._layers[1:]:
+        for layer in self._layers:
             self._window.RemoveRenderer(layer)
+        self._window.Finalize()
         self.widget.close()
-        # It would keep Python's name for a surface that Qt deletes with the window; whatever Qt
-        # makes at the same address later is then taken for that surface.
-        self.widget._forget_context()  # type: ignore[no-untyped-call]  # noqa: SLF001 - none is public
+
+    def _draw_frame(self, size_px: QSize) -> QImage:
+        """The scene as it is now; nothing once this is closed."""
+        if self._is_closed:
+            return QImage()
+        width, height = size_px.toTuple()
+        self._window.SetSize(width, height)
+        self._window.Render()
+        drawn_buffer, most = 0, (width - 1, height - 1)
+        self._window.GetRGBACharPixelData(0, 0, *most, drawn_buffer, self._pixels)
+        # VTK's first row is the lowest.
+        pixels = vtk_to_numpy(self._pixels).reshape(height, width, 4)[::-1].copy()
+        frame = QImage(pixels.data, width, height, QImage.Format.Format_RGBX8888)
+        return frame.convertToFormat(QImage.Format.Format_RGB32)
 
     def _set_pass(self, shading: vtkEDLShading | None) -> None:
         # VTK's types forget that no pass means its own way of drawing.
@@ -159,37 +167,6 @@ class SceneRenderer:
             near_m = min(near_m, float(depths.min()) - _ROOM_M)
             far_m = max(far_m, float(depths.max()) * 1.01 + _ROOM_M)
         return near_m, far_m
-
-    def _on_window_start(self, *_: object) -> None:
-        self._began_at = time.perf_counter()
-
-    def _on_widget_frame_swapped(self) -> None:
-        if self._began_at and not self._is_closed:
-            seconds, self._began_at = time.perf_counter() - self._began_at, 0.0
-            self._reported_frame(seconds)
-
-
-@contextmanager
-def _format_taken_as_set() -> Iterator[None]:
-    """Keep Qt from warning of the interactor's format, which the application has already.
-
-    The interactor asks for it again, and Qt compares it with what the driver gave, which is newer.
-    """
-    before: Callable[[QtMsgType, QMessageLogContext, str], None] | None = None
-
-    def pass_on(kind: QtMsgType, context: QMessageLogContext, message: str) -> None:
-        if _FORMAT_AGAIN in message:
-            return
-        if before is not None:
-            before(kind, context, message)
-        else:
-            sys.stderr.write(f"{message}\n")
-
-    before = qInstallMessageHandler(pass_on)
-    try:
-        yield
-    finally:
-        qInstallMessageHandler(before)
 
 
 def _corners(low: NDArray[np.float32], high: NDArray[np.float32]) -> NDArray[np.float64]:
