@@ -148,6 +148,8 @@ class AttributeEditor(QObject):
         if isinstance(value, MixedValue):
             self._box.setCurrentIndex(-1)
             return
+        while self._box.count() > 1 + len(self._field.choices):
+            self._box.removeItem(self._box.count() - 1)  # another feature's, see below
         index = 0 if value is None else self._box.findData(value)
         if index < 0:
             # A value that the catalogue no longer has: shown as it is.

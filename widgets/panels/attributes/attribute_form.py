@@ -1,4 +1,4 @@
-"""AttributeForm: the fields of the chosen features, made once for a selection and kept current."""
+"""AttributeForm: the fields of the chosen features, made once for those that have the same."""
 
 from __future__ import annotations
 
@@ -66,6 +66,7 @@ class AttributeForm(QWidget):
         self._fields = common_fields(features, catalogue)
         self._editors: dict[str, AttributeEditor] = {}
         self._fact_labels: list[QLabel] = []
+        self._confidence = QLabel()
         self._form = QFormLayout(self)
         self._form.setContentsMargins(8, 8, 8, 8)
         self._form.setVerticalSpacing(4)
@@ -77,8 +78,7 @@ class AttributeForm(QWidget):
         self._kind = self._add_kind()
         self._status = self._add_status()
         self._fill_boxes()
-        if len(features) == 1:
-            self._add_confidence(features[0])
+        self._add_row(self.tr("Confidence"), self._confidence)
         self._add_fields()
         if len(features) == 1:
             self._add_facts(features[0])
@@ -97,11 +97,17 @@ class AttributeForm(QWidget):
         return tuple(
             one.text() if isinstance(one, QLabel) else one.currentText()
             for one in shown
-            if isinstance(one, QLabel | QComboBox)
+            if isinstance(one, QLabel | QComboBox) and one.isVisibleTo(self)
         )
 
-    def take_over(self, features: tuple[Feature, ...]) -> bool:
-        """Show new values in place, so that who types keeps the field; says whether it could."""
+    def take_over(self, features: tuple[Feature, ...], catalogue: Catalogue) -> bool:
+        """Show others in place; says whether it could.
+
+        Who types keeps the field, and the next candidate of a review, which mostly has the same
+        fields, is shown without a new form.
+        """
+        if catalogue is not self._catalogue:
+            return False
         if self._frame_of(features) != self._frame_of(self._features):
             return False
         self._features = features
@@ -115,13 +121,11 @@ class AttributeForm(QWidget):
 
     def _frame_of(self, features: tuple[Feature, ...]) -> tuple[object, ...]:
         """All that is shown of features but for values of fields and facts."""
-        ids = tuple(feature.id for feature in features)
         kinds = Counter((feature.kind, feature.geometry) for feature in features)
         if len(features) != 1:
-            return ids, kinds
+            return (kinds,)
         (one,) = features
-        is_candidate = one.status is Status.CANDIDATE
-        return ids, kinds, is_candidate, one.provenance, len(one.vertices) == 0, self._others(one)
+        return kinds, len(one.vertices) == 0, self._others(one)
 
     def _others(self, feature: Feature) -> dict[str, AttributeValue]:
         known = {field.id for field in self._fields}
@@ -177,11 +181,6 @@ class AttributeForm(QWidget):
             self._status.addItem(words.in_language(self._language), status.value)
         self._status.activated.connect(self._on_status_activated)
 
-    def _add_confidence(self, feature: Feature) -> None:
-        if feature.status is Status.CANDIDATE:
-            confidence = f"{feature.provenance.confidence * 100:.0f} %"
-            self._add_row(self.tr("Confidence"), QLabel(confidence))
-
     def _add_fields(self) -> None:
         for field in self._fields:
             value = self._value_of(field.id)
@@ -210,6 +209,11 @@ class AttributeForm(QWidget):
         status = common_value(features, lambda one: one.status)
         self._status.setCurrentIndex(
             self._status.findData(status.value) if isinstance(status, Status) else -1
+        )
+        is_candidate = len(features) == 1 and features[0].status is Status.CANDIDATE
+        self._form.setRowVisible(self._confidence, is_candidate)
+        self._confidence.setText(
+            f"{features[0].provenance.confidence * 100:.0f} %" if is_candidate else ""
         )
         if len(features) == 1:
             facts = facts_of(features[0], self._language)

@@ -87,8 +87,10 @@ class AttributePanel(QWidget):
         return tuple(feature for feature in features if feature is not None)
 
     def _show(self, features: tuple[Feature, ...]) -> None:
-        form = self._form
-        if form is not None and (features == form.features or form.take_over(features)):
+        form, catalogue = self._form, self._source.catalogue()
+        if form is not None and form.features == features:
+            return
+        if form is not None and features and form.take_over(features, catalogue):
             return
         focus = self._scroll.focusWidget()
         name = "" if focus is None else focus.objectName()

@@ -344,6 +344,30 @@ def test_a_candidate_shows_how_sure_the_tool_was(
     assert "80 %" not in panel.lines()
 
 
+def test_the_next_feature_of_a_kind_is_shown_in_the_same_fields(
+    panel: AttributePanel, open_map: MapOfPoles
+) -> None:
+    first, second = (
+        replace(
+            pole(id_),
+            status=Status.CANDIDATE,
+            provenance=Provenance("normals", 1, confidence=confidence),
+        )
+        for id_, confidence in (("a", 0.8), ("b", 0.4))
+    )
+    draw_and_choose(open_map, first, second)
+    open_map.shared.selection.choose_features(frozenset({"a"}))
+    status, lines = panel.field("status"), panel.lines()
+    open_map.shared.selection.choose_features(frozenset({"b"}))
+    assert panel.field("status") is status
+    assert "80 %" in lines
+    assert "40 %" in panel.lines()
+    assert "80 %" not in panel.lines()
+    pick(panel, "status", "Accepted")
+    statuses = {one.id: one.status for one in open_map.features()}
+    assert statuses == {"a": Status.CANDIDATE, "b": Status.ACCEPTED}
+
+
 def test_the_wheel_over_a_list_that_is_only_passed_changes_nothing(
     panel: AttributePanel, open_map: MapOfPoles
 ) -> None:
