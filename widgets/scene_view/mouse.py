@@ -180,7 +180,7 @@ class SceneMouse(QObject):
                 self._camera_controller.is_space_down = is_press
             return True
         if not is_press or not self.is_enabled:
-            # What no one here takes goes on to the window, not to VTK.
+            # What no one here takes goes on to the window.
             event.ignore()
             return event.type() != QEvent.Type.ShortcutOverride
         moved = move_by_key(self._hits.projection, key)

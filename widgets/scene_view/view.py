@@ -170,7 +170,10 @@ class SceneView(QWidget):
     def center_on(self, position: PickedPosition) -> None:
         """Put a place in the middle, seen from the same side."""
         distance_m = min(self.camera.distance_m, _FARTHEST_M)
-        self.look_from(self.camera.centred_on(self._local(position), distance_m))
+        camera = self.camera.centred_on(self._local(position), distance_m)
+        # A review moves the cursor there first, and the view followed it.
+        if camera != self.camera:
+            self.look_from(camera)
 
     def center_on_selection(self) -> None:
         """Put the chosen features in the middle, or the cursor when none is chosen."""

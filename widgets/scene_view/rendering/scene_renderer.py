@@ -146,11 +146,14 @@ class SceneRenderer:
         width, height = size_px.toTuple()
         self._window.SetSize(width, height)
         self._window.Render()
-        drawn_buffer, most = 0, (width - 1, height - 1)
-        self._window.GetRGBACharPixelData(0, 0, *most, drawn_buffer, self._pixels)
-        # VTK's first row is the lowest.
-        pixels = vtk_to_numpy(self._pixels).reshape(height, width, 4)[::-1].copy()
-        frame = QImage(pixels.data, width, height, QImage.Format.Format_RGBX8888)
+        drawn_buffer, one_eye = 0, 0
+        self._window.GetRGBACharPixelData(
+            0, 0, width - 1, height - 1, drawn_buffer, self._pixels, one_eye
+        )
+        # VTK doesn't type this function.
+        drawn: NDArray[np.uint8] = vtk_to_numpy(self._pixels)  # type: ignore[no-untyped-call]
+        upright = drawn.reshape(height, width, 4)[::-1].copy()  # VTK's first row is the lowest
+        frame = QImage(upright.data, width, height, QImage.Format.Format_RGBX8888)
         return frame.convertToFormat(QImage.Format.Format_RGB32)
 
     def _set_pass(self, shading: vtkEDLShading | None) -> None:
