@@ -210,7 +210,8 @@ class NoiseSource:
 
     def _late(self, beams: Beams, met: BeamHits, ranges: Floats) -> None:
         """Echoes that came back by way of a second surface: single points behind the first."""
-        rows = self._chosen(beams, np.arange(met.ranges.size), self._request.late, 700)
+        rows = np.flatnonzero(np.isfinite(met.ranges))
+        rows = self._chosen(beams, rows, self._request.late, 700)
         detour = _LEAST_DETOUR_M - np.log(np.maximum(shares_of(beams.first + rows, 701), 1e-9))
         ranges[rows] = met.ranges[rows] + detour
 
