@@ -1,0 +1,199 @@
+"""Columns: narrow upright things that stand free at some heights, as trunks, poles and posts do.
+
+A trunk shows on every scan line that crosses it as a few points with nothing beside them. So cells
+of the plan are marked at which heights above the ground they hold points, and a column is where
+cells are filled over a height without filled ones on two opposite sides. Walls, hedges and fences
+have those; a trunk that stands before a wall, in a hedge or behind a rail has them at some heights
+only. The search takes two passes over the points and no neighbours of single points.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import ndimage
+
+from processing.core.arrays import Floats, Integers
+from processing.core.kernels import kernel
+from processing.core.monitor import Monitor
+from processing.methods.road.objects.drive_chunks import chunks_of
+from processing.methods.road.objects.ground_heights import GROUND_CELLS, height_of
+from processing.methods.road.objects.sparse_plan import TILE, SparsePlan, cell_of
+from processing.recording.drive import Drive
+
+SLAB_M = 0.2
+"""Height of a slab: two are never missed by scan lines that lie 0.3 m apart on an upright thing."""
+
+SLABS = 32
+"""Bits of a cell: from 0.2 to 6.6 m above the ground."""
+
+LOWEST_M = 0.2
+"""Below lie grass, curbs and the error of the ground."""
+
+_RING = 3
+"""Cells from the middle to the ring that must not be filled on two opposite sides: 0.6 m."""
+
+_HALO = _RING + 2
+
+_FEWEST_SLABS = 3
+"""In a row, of a column: 0.6 m, the height of a bollard above `LOWEST_M`."""
+
+_APART_CELLS = 2
+"""Columns are farther apart in either direction: 0.4 m; nearer ones are stakes beside a trunk, or
+the stems of one tree."""
+
+_BEGINS = np.uint32((1 << 11) - 1)
+"""The slabs up to 2.4 m, in which a column stands free: a pedestrian passes under what hangs
+higher."""
+
+
+@dataclass(frozen=True)
+class FoundColumns:
+    """Columns of a survey.
+
+    Attributes
+    ----------
+    middles : (k, 2) float64
+        In plan, m about the origin of the plan.
+    ground : (k,) float64
+        Height of the ground there, m about the origin of the plan, to a decimetre or two.
+    slabs : (k,) uint32
+        At which heights each stands free: bit b is ``0.2 + 0.2 b`` m above the ground and on.
+    """
+
+    middles: Floats
+    ground: Floats
+    slabs: NDArray[np.uint32]
+
+    def __len__(self) -> int:
+        return len(self.middles)
+
+
+def find_columns(
+    drives: Sequence[Drive],
+    plan: SparsePlan,
+    ground: NDArray[np.float32],
+    monitor: Monitor,
+) -> FoundColumns:
+    """Columns of all drives together.
+
+    Parameters
+    ----------
+    ground : (tiles, 16, 16) float32
+        As :func:`ground_heights` found it.
+    """
+    slabs = np.zeros((len(plan), TILE, TILE), np.uint32)
+    for chunk in chunks_of(drives, plan.origin, monitor):
+        slabs_kernel(chunk.local, chunk.is_noise, plan.table, ground.reshape(-1), slabs.reshape(-1))
+    middles: list[Floats] = []
+    free: list[int] = []
+    for tile in range(len(plan)):
+        monitor.check()
+        for middle, bits in _columns_of(plan.window(slabs, tile, _HALO + _APART_CELLS, 0)):
+            if ((middle >= 0) & (middle < TILE)).all():
+                middles.append(plan.middles(tile, np.asarray(middle - 0.5)))
+                free.append(bits)
+    places = np.array(middles, np.float64).reshape(-1, 2)
+    heights = [height_of(ground, plan, *place) for place in places.tolist()]
+    return FoundColumns(places, np.array(heights, np.float64), np.array(free, np.uint32))
+
+
+@kernel
+def slabs_kernel(
+    local: Floats,
+    is_noise: NDArray[np.bool_],
+    table: NDArray[np.int32],
+    ground: NDArray[np.float32],
+    slabs: NDArray[np.uint32],
+) -> None:
+    """Mark at which heights cells hold points."""
+    for point in range(len(local)):
+        if is_noise[point]:
+            continue
+        below = cell_of(local[point, 0], local[point, 1], table, GROUND_CELLS)
+        low = ground[below] if below >= 0 else np.float32(np.nan)
+        if np.isnan(low):
+            continue
+        slab = int((local[point, 2] - low - LOWEST_M) / SLAB_M)
+        if local[point, 2] - low >= LOWEST_M and slab < SLABS:
+            cell = cell_of(local[point, 0], local[point, 1], table, TILE)
+            slabs[cell] |= np.uint32(1) << np.uint32(slab)
+
+
+def free_slabs(slabs: NDArray[np.uint32]) -> NDArray[np.uint32]:
+    """At which heights cells are filled without filled ones 0.6 m away on two opposite sides.
+
+    Parameters
+    ----------
+    slabs : (n, m) uint32
+
+    Returns
+    -------
+    (n, m) uint32
+        0 along the margin of `_HALO` cells.
+    """
+    tall = slabs | (slabs << np.uint32(1)) | (slabs >> np.uint32(1))
+    size = slabs.shape[0]
+    inner = slice(_HALO, size - _HALO)
+
+    def moved(step: tuple[int, int]) -> NDArray[np.uint32]:
+        return tall[
+            _HALO + step[0] : size - _HALO + step[0], _HALO + step[1] : size - _HALO + step[1]
+        ]
+
+    beside = np.zeros((size - 2 * _HALO,) * 2, np.uint32)
+    ring = _ring_steps()
+    half = len(ring) // 2
+    for number in range(half):
+        one = moved(ring[number])
+        # A line of points need not pass exactly through the middle.
+        other = moved(ring[number + half])
+        other = (
+            other | moved(ring[number + half - 1]) | moved(ring[(number + half + 1) % len(ring)])
+        )
+        beside |= one & other
+    free = np.zeros_like(slabs)
+    free[inner, inner] = tall[inner, inner] & ~beside
+    return free
+
+
+def _ring_steps() -> list[tuple[int, int]]:
+    """The cells of the ring about a cell, in order round it."""
+    side = range(-_RING, _RING + 1)
+    steps = [(i, j) for i in side for j in side if max(abs(i), abs(j)) == _RING]
+    return sorted(steps, key=lambda step: float(np.arctan2(step[1], step[0])))
+
+
+def _columns_of(slabs: NDArray[np.uint32]) -> list[tuple[Floats, int]]:
+    """Middles of columns in cells of the tile inside the window, and where they stand free."""
+    free = free_slabs(slabs)
+    height = _longest_run(free & _BEGINS) + _longest_run(free)
+    is_column = _longest_run(free) >= _FEWEST_SLABS
+    is_column &= _longest_run(free & _BEGINS) >= _FEWEST_SLABS
+    weights = np.where(is_column, height, 0).astype(np.float64)
+    about = ndimage.uniform_filter(weights, 3, mode="constant")
+    # Of cells that are alike, the weights themselves tell.
+    about += 1e-3 * weights
+    best = ndimage.maximum_filter(about, 2 * _APART_CELLS + 1, mode="constant")
+    found: list[tuple[Floats, int]] = []
+    border = _HALO + _APART_CELLS
+    for row, column in np.argwhere(is_column & (about == best)).tolist():
+        part = (slice(row - 1, row + 2), slice(column - 1, column + 2))
+        cells = np.argwhere(weights[part] > 0) + (row - 1, column - 1)
+        where = tuple(cells.T)
+        middle = np.average(cells + 0.5, axis=0, weights=weights[where]) - border
+        found.append((np.asarray(middle), int(np.bitwise_or.reduce(free[where]))))
+    return found
+
+
+def _longest_run(bits: NDArray[np.uint32]) -> Integers:
+    """How many bits of each follow each other at most."""
+    run = np.zeros(bits.shape, np.int64)
+    left = bits.copy()
+    while left.any():
+        run += left != 0
+        left &= left << np.uint32(1)
+    return run

@@ -1,0 +1,134 @@
+"""How high the ground lies under the things beside a road: a coarse map of the lowest points.
+
+It tells the height of a point above the ground to a decimetre or two, which is enough to look for
+columns and wires. Where a thing meets the ground exactly is measured about its foot.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import distance_transform_edt, minimum_filter
+
+from processing.core.arrays import Floats
+from processing.core.kernels import kernel
+from processing.core.monitor import Monitor
+from processing.methods.road.objects.drive_chunks import chunks_of
+from processing.methods.road.objects.sparse_plan import (
+    CELL_M,
+    TILE,
+    SparsePlan,
+    cell_of,
+)
+from processing.recording.drive import Drive
+
+GROUND_CELLS = 16
+"""Along the side of a tile: 0.8 m wide, so that among the points of a cell are some of the ground
+between grass and behind a post."""
+
+GROUND_M = CELL_M * TILE / GROUND_CELLS
+
+_LOWEST = 3
+"""The third lowest point of a cell counts: one or two below the ground are mirrored or mixed."""
+
+_STEEPEST = 0.7
+"""Rise over run of the steepest bank beside a road: 1 : 1.5 and what its unevenness adds."""
+
+_STEP_M = 0.35
+"""m; a curb and the noise of the cell beside it. What rises more from one cell to the next is no
+ground, or the top of a wall, whose cells farther in are kept."""
+
+_REACH_CELLS = 4
+"""How far lower ground tells that a cell is none: 3.2 m, wider than a vehicle."""
+
+_FILL_CELLS = 8
+"""How far the ground is taken from the nearest cell that shows it: 6.4 m, under a hedge or a parked
+lorry."""
+
+_EMPTY = 1e9
+
+
+def ground_heights(
+    drives: Sequence[Drive], plan: SparsePlan, monitor: Monitor
+) -> NDArray[np.float32]:
+    """The ground of all cells.
+
+    Parameters
+    ----------
+    plan : SparsePlan
+        Gets the tiles of all points.
+
+    Returns
+    -------
+    (tiles, 16, 16) float32
+        m about the origin of the plan; NaN where no ground is near.
+
+    Notes
+    -----
+    1. Each cell keeps the third lowest of its points.
+    2. A cell is no ground if one within 3.2 m lies lower by more than a bank of 1 : 1.5 and a step
+       of 0.35 m: tops of vehicles, hedges, edges of roofs, crowns without ground under them.
+    3. Other cells take the ground of the nearest within 6.4 m.
+    """
+    lowest: NDArray[np.float32] = np.empty((0, GROUND_CELLS, GROUND_CELLS, _LOWEST), np.float32)
+    for chunk in chunks_of(drives, plan.origin, monitor):
+        plan.add(chunk.local)
+        lowest = plan.grown(lowest, _EMPTY)
+        lowest_kernel(chunk.local, chunk.is_noise, plan.table, lowest.reshape(-1, _LOWEST))
+    third = lowest[..., -1]
+    ground = np.empty_like(third)
+    for tile in range(len(plan)):
+        monitor.check()
+        halo = _REACH_CELLS + _FILL_CELLS
+        heights = plan.window(third, tile, halo, _EMPTY)
+        ground[tile] = _filled(heights, _are_ground(heights))[halo:-halo, halo:-halo]
+    return ground
+
+
+@kernel
+def lowest_kernel(
+    local: Floats,
+    is_noise: NDArray[np.bool_],
+    table: NDArray[np.int32],
+    lowest: NDArray[np.float32],
+) -> None:
+    """Keep the lowest heights of each cell, rising."""
+    for point in range(len(local)):
+        if is_noise[point]:
+            continue
+        cell = cell_of(local[point, 0], local[point, 1], table, GROUND_CELLS)
+        if cell < 0:
+            continue
+        height = np.float32(local[point, 2])
+        for rank in range(_LOWEST):
+            if height < lowest[cell, rank]:
+                height, lowest[cell, rank] = lowest[cell, rank], height
+
+
+def height_of(ground: NDArray[np.float32], plan: SparsePlan, east: float, north: float) -> float:
+    """The ground at a place about the origin, m; NaN where none is known."""
+    cell = int(cell_of(east, north, plan.table, GROUND_CELLS))
+    return float(ground.reshape(-1)[cell]) if cell >= 0 else float("nan")
+
+
+def _are_ground(heights: NDArray[np.float32]) -> NDArray[np.bool_]:
+    """Cells that no nearby ground lies far below."""
+    is_ground = heights < _EMPTY
+    side = np.arange(-_REACH_CELLS, _REACH_CELLS + 1)
+    away = np.hypot(side[:, None], side[None, :])
+    for radius in range(1, _REACH_CELLS + 1):
+        ring = (away > radius - 0.5) & (away <= radius + 0.5)
+        lower = minimum_filter(heights, footprint=ring, mode="nearest")
+        is_ground &= heights <= lower + _STEP_M + _STEEPEST * GROUND_M * radius
+    return is_ground
+
+
+def _filled(heights: NDArray[np.float32], known: NDArray[np.bool_]) -> NDArray[np.float32]:
+    if not known.any():
+        return np.full_like(heights, np.nan)
+    away, nearest = distance_transform_edt(~known, return_indices=True)
+    filled = heights[tuple(nearest)]
+    filled[away > _FILL_CELLS] = np.nan
+    return np.asarray(filled)
