@@ -140,9 +140,10 @@ def free_slabs(slabs: NDArray[np.uint32]) -> NDArray[np.uint32]:
     inner = slice(_HALO, size - _HALO)
 
     def moved(step: tuple[int, int]) -> NDArray[np.uint32]:
-        return tall[
+        part: NDArray[np.uint32] = tall[
             _HALO + step[0] : size - _HALO + step[0], _HALO + step[1] : size - _HALO + step[1]
         ]
+        return part
 
     beside = np.zeros((size - 2 * _HALO,) * 2, np.uint32)
     ring = _ring_steps()
@@ -182,7 +183,7 @@ def _columns_of(slabs: NDArray[np.uint32]) -> list[tuple[Floats, int]]:
     border = _HALO + _APART_CELLS
     for row, column in np.argwhere(is_column & (about == best)).tolist():
         part = (slice(row - 1, row + 2), slice(column - 1, column + 2))
-        cells = np.argwhere(weights[part] > 0) + (row - 1, column - 1)
+        cells = np.argwhere(weights[part] > 0) + np.array([row - 1, column - 1])
         where = tuple(cells.T)
         middle = np.average(cells + 0.5, axis=0, weights=weights[where]) - border
         found.append((np.asarray(middle), int(np.bitwise_or.reduce(free[where]))))
