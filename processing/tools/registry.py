@@ -21,11 +21,13 @@ from processing.tools.normals import NORMALS
 from processing.tools.segments import SEGMENTS
 from processing.tools.template import TEMPLATE
 from processing.tools.tool import Comparison, Tool
+from processing.tools.trees import TREES
 from processing.tools.volume import VOLUME
 
 _DECLARED = (
     CURBS,
     GUTTERS,
+    TREES,
     NOISE,
     GROUND_TOOL,
     NORMALS,

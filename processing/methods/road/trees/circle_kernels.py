@@ -1,0 +1,265 @@
+"""Circles through the points of thin level slabs: the loops.
+
+A trunk shows in each slab as an arc; its inside is empty, since no beam gets there. Stakes, guards
+and twigs show beside it, so a slab may give several circles.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+
+from processing.core.arrays import Floats, Integers
+from processing.core.kernels import kernel
+
+MOST_CIRCLES = 5
+"""In a slab: a trunk and four stakes, or five stems."""
+
+EAST, NORTH, RADIUS, INLIERS, ARC = range(5)
+"""What is told of a circle: middle, m about the column; radius, m; points on it; the share of its
+circumference that they cover."""
+
+CIRCLE_WIDTH = 5
+
+_DRAWS = 250
+"""Of three points each: with a third of the points on the circle one of these is good in all but
+one case in ten thousand."""
+
+_FACTOR, _MODULUS = 1_664_525, 1 << 32
+"""Of the generator of draws (Press et al., Numerical Recipes, 7.1): the same ones each time."""
+
+_SECTORS = 24
+"""Of 15 degrees, in which an arc is covered or not."""
+
+
+class CircleLimits(NamedTuple):
+    """What a circle must be.
+
+    ``least_m``, ``most_m``: radius; ``noise_m``: how far off it a point may lie; ``fewest``:
+    points; ``least_arc``: share of the circumference that they cover; ``most_inside``: points well
+    inside it for each on it.
+    """
+
+    least_m: float
+    most_m: float
+    noise_m: float
+    fewest: int
+    least_arc: float
+    most_inside: float
+
+
+@kernel
+def circles_kernel(plan: Floats, starts: Integers, limits: CircleLimits, circles: Floats) -> None:
+    """The circles of slabs, the best of each first; radius 0 where there are no more.
+
+    Parameters
+    ----------
+    plan : (n, 2) float64
+        Points in plan, m about their column, slab after slab.
+    starts : (slabs + 1,) int64
+    circles : (slabs, MOST_CIRCLES, CIRCLE_WIDTH) float64
+        Written.
+    """
+    for slab in range(starts.size - 1):
+        part = plan[starts[slab] : starts[slab + 1]]
+        left = np.arange(len(part))
+        circles[slab] = 0.0
+        for number in range(MOST_CIRCLES):
+            if left.size < limits.fewest:
+                break
+            best = _best_circle(part, left, limits)
+            if best[RADIUS] == 0.0:
+                break
+            circles[slab, number] = best
+            left = _others(part, left, best, 2 * limits.noise_m)
+
+
+@kernel
+def _best_circle(part: Floats, left: Integers, limits: CircleLimits) -> Floats:
+    best = np.zeros(CIRCLE_WIDTH)
+    best_score = 0.0
+    found = np.zeros(CIRCLE_WIDTH)
+    state = 1
+    for _ in range(_DRAWS):
+        state = (state * _FACTOR + 1) % _MODULUS
+        a = left[state * left.size // _MODULUS]
+        state = (state * _FACTOR + 1) % _MODULUS
+        b = left[state * left.size // _MODULUS]
+        state = (state * _FACTOR + 1) % _MODULUS
+        c = left[state * left.size // _MODULUS]
+        if a in (b, c) or b == c or not _through(part, a, b, c, found):
+            continue
+        if not limits.least_m <= found[RADIUS] <= limits.most_m:
+            continue
+        score = _rate(part, left, limits, found)
+        if score > best_score:
+            best_score = score
+            best[:] = found
+    if best_score > 0:
+        for _ in range(3):
+            _refit(part, left, limits, best)
+        if _rate(part, left, limits, best) <= 0 or not (
+            limits.least_m <= best[RADIUS] <= limits.most_m
+        ):
+            best[:] = 0.0
+    return best
+
+
+@kernel
+def _through(part: Floats, a: int, b: int, c: int, circle: Floats) -> bool:
+    """The circle through three points; False where they are on a line."""
+    bx, by = part[b, 0] - part[a, 0], part[b, 1] - part[a, 1]
+    cx, cy = part[c, 0] - part[a, 0], part[c, 1] - part[a, 1]
+    cross = 2 * (bx * cy - by * cx)
+    if abs(cross) < 1e-9:
+        return False
+    b2, c2 = bx * bx + by * by, cx * cx + cy * cy
+    east, north = (cy * b2 - by * c2) / cross, (bx * c2 - cx * b2) / cross
+    circle[EAST], circle[NORTH] = part[a, 0] + east, part[a, 1] + north
+    circle[RADIUS] = math.hypot(east, north)
+    return True
+
+
+@kernel
+def _rate(part: Floats, left: Integers, limits: CircleLimits, circle: Floats) -> float:
+    """How much speaks for a circle; 0 where it isn't one. Writes its points and arc."""
+    covered = np.zeros(_SECTORS, np.bool_)
+    on, inside = 0, 0
+    for point in left:
+        east, north = part[point, 0] - circle[EAST], part[point, 1] - circle[NORTH]
+        off = math.hypot(east, north) - circle[RADIUS]
+        if abs(off) <= limits.noise_m:
+            on += 1
+            sector = int((math.atan2(north, east) / math.pi + 1) / 2 * _SECTORS)
+            covered[min(sector, _SECTORS - 1)] = True
+        elif off < 0:
+            inside += 1
+    circle[INLIERS] = on
+    circle[ARC] = covered.sum() / _SECTORS
+    if on < limits.fewest or circle[ARC] < limits.least_arc or inside > limits.most_inside * on:
+        return 0.0
+    return float(on * (0.5 + circle[ARC]) - inside)
+
+
+@kernel
+def _refit(part: Floats, left: Integers, limits: CircleLimits, circle: Floats) -> None:
+    """One step of Gauss and Newton on the points that lie on the circle."""
+    normal, right = np.zeros((3, 3)), np.zeros(3)
+    row = np.ones(3)
+    for point in left:
+        east, north = part[point, 0] - circle[EAST], part[point, 1] - circle[NORTH]
+        away = math.hypot(east, north)
+        if away == 0.0 or abs(away - circle[RADIUS]) > limits.noise_m:
+            continue
+        row[0], row[1] = east / away, north / away
+        for i in range(3):
+            right[i] += row[i] * (away - circle[RADIUS])
+            for j in range(3):
+                normal[i, j] += row[i] * row[j]
+    # A short arc leaves middle and radius open along one direction: it is moved no farther.
+    for i in range(3):
+        normal[i, i] += 1e-3
+    step = np.linalg.solve(normal, right)
+    circle[EAST] += step[0]
+    circle[NORTH] += step[1]
+    circle[RADIUS] += step[2]
+
+
+@kernel
+def _others(part: Floats, left: Integers, circle: Floats, band_m: float) -> Integers:
+    """The points that are neither on a circle nor inside it."""
+    kept = np.zeros(left.size, np.bool_)
+    for number in range(left.size):
+        point = left[number]
+        away = math.hypot(part[point, 0] - circle[EAST], part[point, 1] - circle[NORTH])
+        kept[number] = away > circle[RADIUS] + band_m
+    return left[kept]
+
+
+class ChainLimits(NamedTuple):
+    """How circles of slabs join to a stem.
+
+    ``shift_m``, ``swell_m``: how far middle and radius may be off what the circles below tell;
+    ``swell``: the second as a share of the radius besides; ``skipped``: slabs without a circle that
+    may lie between two; ``remembered``: circles that tell where the next is.
+    """
+
+    shift_m: float
+    swell_m: float
+    swell: float
+    skipped: int
+    remembered: int
+
+
+@kernel
+def chain_kernel(
+    circles: Floats,
+    worth: Floats,
+    slab: int,
+    number: int,
+    step: int,
+    limits: ChainLimits,
+    chain: Integers,
+) -> None:
+    """Follow a circle upwards (``step`` 1) or downwards (−1).
+
+    Parameters
+    ----------
+    circles : (slabs, MOST_CIRCLES, CIRCLE_WIDTH) float64
+    worth : (slabs, MOST_CIRCLES) float64
+        0: belongs to another stem already.
+    chain : (slabs,) int64
+        The circle of each slab, −1: none; those of earlier calls are built on. Written.
+    """
+    slabs = len(circles)
+    chain[slab] = number
+    last = slab
+    for ahead in range(1, slabs):
+        at = slab + step * ahead
+        if at < 0 or at >= slabs or abs(at - last) > limits.skipped + 1:
+            break
+        if chain[at] >= 0:
+            last = at
+            continue
+        east, north, radius = _expected(circles, chain, last, step, at, limits.remembered)
+        allowed = limits.shift_m * (1 + 0.3 * abs(at - last)) + 0.1 * radius
+        best, nearest = -1, allowed
+        for one in range(MOST_CIRCLES):
+            if worth[at, one] <= 0:
+                continue
+            row = circles[at, one]
+            shift = math.hypot(row[EAST] - east, row[NORTH] - north)
+            swell = abs(row[RADIUS] - radius)
+            if shift <= nearest and swell <= limits.swell_m + limits.swell * radius:
+                best, nearest = one, shift
+        if best >= 0:
+            chain[at] = best
+            last = at
+
+
+@kernel
+def _expected(
+    circles: Floats, chain: Integers, last: int, step: int, at: int, remembered: int
+) -> tuple[float, float, float]:
+    """Middle and radius that the circles behind tell of a slab: a line, and the median."""
+    slabs = np.zeros(remembered)
+    rows = np.zeros((remembered, 3))
+    count = 0
+    behind = last
+    while 0 <= behind < len(circles) and count < remembered:
+        if chain[behind] >= 0:
+            slabs[count] = behind
+            rows[count] = circles[behind, chain[behind], EAST : RADIUS + 1]
+            count += 1
+        behind -= step
+    radius = np.median(rows[:count, 2])
+    if count < 4:
+        return rows[0, 0], rows[0, 1], radius
+    middle = slabs[:count].mean()
+    off = slabs[:count] - middle
+    ahead = (at - middle) / (off**2).sum()
+    east = rows[:count, 0].mean() + (off * rows[:count, 0]).sum() * ahead
+    north = rows[:count, 1].mean() + (off * rows[:count, 1]).sum() * ahead
+    return east, north, radius

@@ -1,0 +1,196 @@
+"""Street trees of a survey: columns whose stem is round and carries a crown on all sides."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from processing.core.arrays import Floats, Integers
+from processing.core.monitor import Monitor, PartMonitor
+from processing.methods.road.objects.column_points import ColumnPoints, points_about
+from processing.methods.road.objects.columns import FoundColumns, find_columns
+from processing.methods.road.objects.foot import foot_height
+from processing.methods.road.objects.ground_heights import ground_heights
+from processing.methods.road.objects.sparse_plan import SparsePlan, plan_of
+from processing.methods.road.trees.crowns import CROWN_M, Crown, crown_of
+from processing.methods.road.trees.stems import stems_of
+from processing.methods.road.trees.tree_confidence import chance_of, facts_of
+from processing.methods.road.trees.trunks import Trunk, is_round, trunk_of
+from processing.recording.drive import Drive
+
+_TRUNK_M = 0.9
+"""Points so near to a column's middle are looked at for stems: those of a tree of several stems,
+its stakes and its guard."""
+
+_ONE_TREE_M = 0.7
+"""Columns nearer to each other are of one tree: stakes and stems. Street trees stand metres apart
+(道路緑化技術基準: 6 to 10 m)."""
+
+
+_SAME_HEIGHT_M = 0.02
+"""m; the ground beside the stem as found once the stem is known. Stems are fitted again if it is
+farther off: 2 cm of height are a tenth of a millimetre of diameter."""
+
+_APART_M = 1.2
+"""Two trunks nearer to each other are stems of one tree, or one is a stake, a shrub or a piece of
+the crown of the other."""
+
+
+@dataclass(frozen=True)
+class TreeSettings:
+    """What is looked for.
+
+    Attributes
+    ----------
+    most_diameter_m : float
+        Of a trunk 1.2 m above the foot.
+    """
+
+    most_diameter_m: float
+
+
+@dataclass(frozen=True)
+class StreetTree:
+    """One tree, or what might be one.
+
+    Attributes
+    ----------
+    foot : (3,) float64
+        Where the trunk's axis meets the ground, m, project CRS.
+    trunk : Trunk
+        About the column's foot.
+    crown : Crown
+    confidence : float
+        The share of its like that are trees.
+    points : (n,) int64
+        Measured points of the trunk, the lowest first, by their number in their drive.
+    drives : (n,) int64
+        Which of the drives each is of.
+    """
+
+    foot: Floats
+    trunk: Trunk
+    crown: Crown
+    confidence: float
+    points: Integers
+    drives: Integers
+
+
+class _StandingTrunk(NamedTuple):
+    """A trunk with its foot, m about the plan's origin, and its points."""
+
+    trunk: Trunk
+    foot: Floats
+    points: Integers
+    drives: Integers
+
+
+def street_trees(
+    drives: Sequence[Drive], settings: TreeSettings, monitor: Monitor
+) -> tuple[StreetTree, ...]:
+    """All columns with a trunk, with what stands on it; a confidence tells trees from the others.
+
+    Notes
+    -----
+    1. Columns stand free at some heights (:mod:`processing.methods.road.objects.columns`); those
+       of one tree are joined.
+    2. Stems are circles that follow each other upwards, each fitted by a leaning cone.
+    3. The trunk is what goes on upwards of them, its foot lies on the ground about it.
+    4. Of what stands nearer to this trunk than to any other, the crown is measured.
+    """
+    plan = plan_of([(drive.info.lowest, drive.info.highest) for drive in drives])
+    trunks = _standing_trunks(drives, plan, settings, PartMonitor(monitor, 0.0, 0.8))
+    if not trunks:
+        return ()
+    feet = np.array([one.foot for one in trunks])
+    stands = FoundColumns(feet[:, :2].copy(), feet[:, 2].copy(), np.zeros(len(feet), np.uint32))
+    around = points_about(drives, plan, stands, CROWN_M, PartMonitor(monitor, 0.8, 1.0))
+    trees: list[StreetTree] = []
+    for number, one in enumerate(trunks):
+        monitor.check()
+        crown = crown_of(around.local[around.of(number)] - one.foot, one.trunk.stems_about_foot)
+        chance = chance_of(facts_of(one.trunk, crown))
+        foot = one.foot + plan.origin
+        trees.append(StreetTree(foot, one.trunk, crown, chance, one.points, one.drives))
+    return _one_of_each(trees)
+
+
+def _standing_trunks(
+    drives: Sequence[Drive], plan: SparsePlan, settings: TreeSettings, monitor: Monitor
+) -> list[_StandingTrunk]:
+    """What is round and upright among the columns."""
+    ground = ground_heights(drives, plan, PartMonitor(monitor, 0.0, 0.25))
+    found = find_columns(drives, plan, ground, PartMonitor(monitor, 0.25, 0.5))
+    columns = _joined(found)
+    gathered = points_about(drives, plan, columns, _TRUNK_M, PartMonitor(monitor, 0.5, 0.75))
+    trunks: list[_StandingTrunk] = []
+    for number in range(len(columns)):
+        monitor.check()
+        one = _trunk_at(columns, gathered, number, settings)
+        if one is not None and is_round(one.trunk):
+            trunks.append(one)
+        monitor.report(0.75 + 0.25 * (number + 1) / len(columns))
+    return trunks
+
+
+def _one_of_each(trees: Sequence[StreetTree]) -> tuple[StreetTree, ...]:
+    """Of trees that stand too near to each other the surer one."""
+    kept: list[StreetTree] = []
+    for tree in sorted(trees, key=lambda one: -one.confidence):
+        if all(np.hypot(*(tree.foot - one.foot)[:2]) >= _APART_M for one in kept):
+            kept.append(tree)
+    return tuple(kept)
+
+
+def _joined(columns: FoundColumns) -> FoundColumns:
+    """Columns that are near each other as one, in their middle."""
+    if len(columns) < 2:
+        return columns
+    pairs = cKDTree(columns.middles).query_pairs(_ONE_TREE_M, output_type="ndarray")
+    slabs = np.bitwise_count(columns.slabs).astype(np.float64)
+    order = np.argsort(-slabs, kind="stable")
+    near: dict[int, list[int]] = {}
+    for a, b in pairs.tolist():
+        near.setdefault(a, []).append(b)
+        near.setdefault(b, []).append(a)
+    taken = np.zeros(len(columns), np.bool_)
+    middles, ground, bits = [], [], []
+    for first in order.tolist():
+        if taken[first]:
+            continue
+        members = [first, *(one for one in near.get(first, ()) if not taken[one])]
+        taken[members] = True
+        middles.append(np.average(columns.middles[members], axis=0, weights=slabs[members]))
+        ground.append(columns.ground[first])
+        bits.append(np.bitwise_or.reduce(columns.slabs[members]))
+    return FoundColumns(np.array(middles), np.array(ground), np.array(bits, np.uint32))
+
+
+def _trunk_at(
+    columns: FoundColumns, gathered: ColumnPoints, number: int, settings: TreeSettings
+) -> _StandingTrunk | None:
+    """The trunk of a column; None where none of its stems is one."""
+    part = gathered.of(number)
+    local = gathered.local[part]
+    middle = columns.middles[number]
+    height = foot_height(local, middle, float(columns.ground[number]))
+    trunk = trunk_of(stems_of(local - (*middle, height), settings.most_diameter_m))
+    if trunk is None:
+        return None
+    stem = trunk.stems[0]
+    beside = foot_height(local, middle + stem.base, float(columns.ground[number]), stem.radius_m)
+    if abs(beside - height) > _SAME_HEIGHT_M:
+        trunk = trunk_of(stems_of(local - (*middle, beside), settings.most_diameter_m))
+        if trunk is None:
+            return None
+    lines = trunk.lines[np.argsort(local[trunk.lines, 2], kind="stable")]
+    return _StandingTrunk(
+        trunk,
+        np.array([*(middle + trunk.base), beside]),
+        gathered.points[part][lines],
+        gathered.drives[part][lines],
+    )

@@ -1,0 +1,94 @@
+"""How sure a trunk with what stands on it is a tree: the share of right ones among its like."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from processing.methods.road.trees.crowns import Crown
+from processing.methods.road.trees.trunks import Trunk
+
+_MOST_GAP_M = 1.5
+"""A wider gap between stem and crown tells no more: another thing's crown hangs over a post."""
+
+_USUAL_M = 0.4
+"""Diameter up to which trunks of street trees are common; thicker ones have to be rounder."""
+
+_MOST_SEEN_M = 2.0
+"""A longer piece of a stem is no surer."""
+
+_HALF = 0.5
+"""Of its circumference one scanner sees of any round thing; a second head shows no better what it
+is."""
+
+_MOST_NOISE_M = 0.01
+"""Points of one thing lie nearer to its surface."""
+
+_MOST_LOGIT = 30.0
+"""Guard of the exponential."""
+
+# Fitted by logistic regression (L2, C = 20, the smallest loss of 1, 5, 20 and 100) to 667 upright
+# things, 54 of them trees with 20 points and more on the trunk, on 15 simulated streets of four
+# scanners, none of the scenes that results are judged by. Left out one street at a time, 96 % of
+# those given 0.9 and more were trees, 86 % of those from 0.7, 38 % of those from 0.3, none below.
+_CONSTANT = -3.52
+_WEIGHTS = (4.02, 0.68, -9.05, -4.08, -5.72, -4.03, 2.40, 0.21, -1.38)
+"""In the order of the facts."""
+
+
+class TreeFacts(NamedTuple):
+    """What speaks for a tree and against one; bounded, so that none outweighs all others.
+
+    Attributes
+    ----------
+    sectors : float
+        Share of the directions about the axis that twigs fill.
+    filled : float
+        Decimal logarithm of the cells that twigs fill, and one.
+    flat : float
+        Share of the cells about the axis that are planes or lines: walls, signs, arms.
+    aside : float
+        How far the crown's middle lies from the axis, over half its width, 0 to 1.
+    gap_m : float
+        Between the stem and the crown, m, 0 to 1.5.
+    thick_m : float
+        Diameter beyond 0.4 m: pieces of walls and vehicles are wide.
+    arc : float
+        Share of the circumference that was seen, up to a half.
+    seen_m : float
+        Of the stem, 0 to 2 m.
+    noise : float
+        How far points lie off the stem, 1 for 1 cm: bark is smooth beside a hedge.
+    """
+
+    sectors: float
+    filled: float
+    flat: float
+    aside: float
+    gap_m: float
+    thick_m: float
+    arc: float
+    seen_m: float
+    noise: float
+
+
+def facts_of(trunk: Trunk, crown: Crown) -> TreeFacts:
+    """The facts of a trunk and what stands on it."""
+    stem = trunk.stems[0]
+    return TreeFacts(
+        sectors=crown.sectors / 12,
+        filled=math.log10(1 + crown.cells),
+        flat=crown.flat_share,
+        aside=min(crown.aside, 1.0),
+        gap_m=min(crown.gap_m, _MOST_GAP_M),
+        thick_m=max(0.0, 2 * stem.radius_m - _USUAL_M),
+        arc=min(stem.arc, _HALF),
+        seen_m=min(stem.high_m - stem.low_m, _MOST_SEEN_M),
+        noise=min(stem.noise_m / _MOST_NOISE_M, 1.0),
+    )
+
+
+def chance_of(facts: TreeFacts) -> float:
+    """The chance of being a tree, 0 to 1."""
+    logit = _CONSTANT + sum(weight * fact for weight, fact in zip(_WEIGHTS, facts, strict=True))
+    return 1 / (1 + math.exp(-max(-_MOST_LOGIT, min(_MOST_LOGIT, logit))))

@@ -1,0 +1,123 @@
+"""The tool TREES: street trees with girth, height and crown, as a ledger of trees asks for them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from processing.core.monitor import Monitor
+from processing.core.parameters import length, ratio
+from processing.core.text import Text
+from processing.methods.road.trees.street_trees import StreetTree, TreeSettings, street_trees
+from processing.recording.drive import Drive
+from processing.scoring.scorers import TREE_SCORER
+from processing.tools.tool import (
+    Candidate,
+    CandidateResult,
+    CandidateValue,
+    Needs,
+    SurveyFinder,
+    Tool,
+    ToolButton,
+)
+
+
+@dataclass(frozen=True)
+class TreeParameters:
+    """How thick trunks may be, and how sure a tree must be to be shown."""
+
+    thickest_m: float = length(
+        1.2,
+        low=0.1,
+        high=5.0,
+        name=Text("Thickest trunk", "幹の最大直径"),
+        explanation=Text(
+            "What is wider 1.2 m above the ground is no trunk of a street tree.",
+            "地上1.2 mでこれより太いものは、街路樹の幹とみなしません。",
+        ),
+    )
+    least_confidence: float = ratio(
+        0.5,
+        low=0.0,
+        high=1.0,
+        name=Text("Least confidence", "信頼度の下限"),
+        explanation=Text(
+            "What is less likely to be a tree is left out.",
+            "樹木である見込みがこの値より低いものは出力しません。",
+        ),
+        picture="confidence/least",
+    )
+
+
+def find_trees(
+    drives: tuple[Drive, ...], parameters: TreeParameters, monitor: Monitor
+) -> CandidateResult:
+    """Street trees of a survey: one result for all heads and passes."""
+    found = street_trees(drives, TreeSettings(parameters.thickest_m), monitor)
+    trees = [one for one in found if one.confidence >= parameters.least_confidence]
+    return CandidateResult(tuple(_candidate(one) for one in trees), _note(drives, found, trees))
+
+
+def _note(
+    drives: Sequence[Drive], found: Sequence[StreetTree], trees: Sequence[StreetTree]
+) -> Text:
+    if trees:
+        return Text("", "")
+    if not any(drive.count for drive in drives):
+        return Text("The drive has no points.", "走行データに点がありません。")
+    if not found:
+        return Text(
+            "Nothing upright and round was measured beside the road.",
+            "道路沿いに、幹とみなせる円柱状の物は計測されていません。",
+        )
+    return Text(
+        f"None of {len(found)} upright things carries a crown of its own.",
+        f"円柱状の物{len(found)}件のうち、樹冠のあるものはありませんでした。",
+    )
+
+
+def _candidate(tree: StreetTree) -> Candidate:
+    trunk, crown = tree.trunk, tree.crown
+    attributes: dict[str, CandidateValue] = {
+        "girth_m": round(trunk.girth_m, 3),
+        "dbh_m": round(trunk.diameter_m, 4),
+        "dbh_within_m": round(trunk.diameter_within_m, 4),
+        "stems": len(trunk.stems),
+        "height_m": round(crown.height_m, 2),
+        # The ledger of street trees has a column of its own for it.
+        "tree_height_m": round(crown.height_m, 2),
+        "crown_m": round(sum(crown.spread_m) / 2, 2),
+        "crown_across_m": round(crown.spread_m[1], 2),
+        "lean_deg": round(trunk.lean_deg, 1),
+    }
+    if math.isfinite(crown.lowest_m):
+        attributes["lowest_branch_m"] = round(crown.lowest_m, 2)
+    return Candidate(
+        "street_tree",
+        "point",
+        tree.foot[None],
+        tree.points[:1],
+        tree.confidence,
+        attributes,
+        tree.drives[:1],
+    )
+
+
+TREES = Tool(
+    id="trees",
+    name=Text("Street trees", "街路樹の抽出"),
+    explanation=Text(
+        "Finds the trees along the streets and measures girth 1.2 m above the ground, height and "
+        "crown, stakes told apart, from all heads and passes of a survey.",
+        "道路沿いの樹木を全スキャナー・全走行のデータから抽出し、"
+        "支柱を区別して地上1.2 mの幹周・樹高・枝張りを計測します。",
+    ),
+    group=Text("Road", "道路"),
+    needs=Needs.POINTS,
+    parameters=TreeParameters,
+    method=SurveyFinder(find_trees),
+    makes=("street_tree",),
+    button=ToolButton(Text("Find street trees", "街路樹を抽出"), "Ctrl+Shift+F9", "mdi6.tree"),
+    scorer=TREE_SCORER,
+)

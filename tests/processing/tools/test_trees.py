@@ -1,0 +1,151 @@
+"""Street trees: a trunk with stakes, one of three stems, and posts that are none."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from processing.laboratory.simulate.scene.mesh import TriangleShape, tube
+from processing.tools.tool import Candidate
+from tests.processing.methods.road.bad_recordings import (
+    HEAD_45,
+    ORIGIN,
+    DrivenRecording,
+    Floats,
+    RunOutcome,
+    facing_along,
+    recorded,
+    road_along,
+    straight,
+    told_by,
+)
+
+LENGTH_M = 30.0
+GROUND_M = 0.16
+STAKED = np.array([6.0, 5.5, GROUND_M])
+STAKED_DIAMETER_M = 0.18
+STEMMED = np.array([14.0, 5.5, GROUND_M])
+STEMS_M = (0.12, 0.10, 0.08)
+LEANING = np.array([22.0, -5.5, GROUND_M])
+LEANING_DIAMETER_M = 0.30
+LEAN = 0.1
+POST = np.array([10.0, 5.5, GROUND_M])
+
+
+def stem(foot: Floats, diameter_m: float, top_m: float, lean: float = 0.0) -> TriangleShape:
+    """A trunk that loses a centimetre of diameter in a metre; as thick as said 1.2 m up."""
+    up = np.linspace(-0.3, top_m, 12)
+    path = foot + np.column_stack([lean * up, np.zeros(12), up])
+    return tube(path, diameter_m / 2 - 0.005 * (up - 1.2), 48)
+
+
+def moved(place: Floats, east: float, north: float, up: float) -> Floats:
+    """A place so far from another."""
+    return np.asarray(place + np.array([east, north, up]))
+
+
+def crown(middle: Floats, half: Floats, leaves: int = 1_500) -> TriangleShape:
+    """Leaves of 12 cm within an ellipsoid."""
+    random = np.random.default_rng(3)
+    places = random.normal(size=(leaves, 3))
+    places /= np.linalg.norm(places, axis=1)[:, None]
+    places *= random.uniform(0.2, 1.0, (leaves, 1)) ** (1 / 3)
+    corners = middle + (places * half)[:, None] + random.normal(0.0, 0.05, (leaves, 3, 3))
+    return corners.reshape(-1, 3), np.arange(3 * leaves, dtype=np.int64).reshape(-1, 3)
+
+
+def street() -> tuple[TriangleShape, ...]:
+    """A road with three trees and two posts."""
+    stakes = [stem(moved(STAKED, dx, dy, 0.0), 0.06, 1.5) for dx, dy in ((0.25, 0.1), (-0.25, 0.1))]
+    turns = (0.0, 2.1, 4.2)
+    stems = [
+        stem(moved(STEMMED, 0.2 * math.cos(turn), 0.2 * math.sin(turn), 0.0), diameter, 3.0)
+        for turn, diameter in zip(turns, STEMS_M, strict=True)
+    ]
+    leaning = moved(LEANING, 0.3, 0.0, 4.5)
+    lamp = np.array([17.0, -5.5, GROUND_M])
+    arm = np.array([moved(lamp, 0.0, dy, 7.0) for dy in (0.0, 1.0, 2.0)])
+    return (
+        road_along(LENGTH_M),
+        stem(STAKED, STAKED_DIAMETER_M, 3.0),
+        *stakes,
+        crown(moved(STAKED, 0.0, 0.0, 4.0), np.array([1.5, 1.2, 1.5])),
+        *stems,
+        crown(moved(STEMMED, 0.0, 0.0, 4.2), np.array([1.6, 1.6, 1.6])),
+        stem(LEANING, LEANING_DIAMETER_M, 3.5, LEAN),
+        crown(leaning, np.array([2.0, 2.0, 1.8])),
+        stem(POST, 0.09, 2.6),
+        stem(lamp, 0.16, 7.0),
+        tube(arm, np.full(3, 0.05), 12),
+    )
+
+
+@pytest.fixture(scope="module")
+def told(tmp_path_factory: pytest.TempPathFactory) -> RunOutcome:
+    folder: Path = tmp_path_factory.mktemp("trees")
+    way = straight(LENGTH_M)
+    driven = DrivenRecording(way, facing_along(way), street(), head=HEAD_45, pulses=3_000)
+    return told_by("trees", recorded(folder, driven), folder)
+
+
+def tree_at(told: RunOutcome, foot: Floats) -> Candidate:
+    """The tree whose foot is near a place."""
+    near = [one for one in told.candidates if math.dist(one.xyz[0, :2], (foot + ORIGIN)[:2]) < 0.5]
+    assert len(near) == 1
+    return near[0]
+
+
+def measure(tree: Candidate, name: str) -> float:
+    value = tree.attributes[name]
+    assert isinstance(value, float | int)
+    return float(value)
+
+
+def test_trees_are_found_and_posts_are_not(told: RunOutcome) -> None:
+    assert len(told.candidates) == 3
+    assert all(one.kind == "street_tree" for one in told.candidates)
+    assert all(one.confidence >= 0.5 for one in told.candidates)
+
+
+@pytest.mark.parametrize(
+    ("foot", "diameter_m"), [(STAKED, STAKED_DIAMETER_M), (LEANING, LEANING_DIAMETER_M)]
+)
+def test_a_trunk_is_as_thick_as_a_tape_measures_it(
+    told: RunOutcome, foot: Floats, diameter_m: float
+) -> None:
+    tree = tree_at(told, foot)
+    off = abs(measure(tree, "dbh_m") - diameter_m)
+    assert off < 0.012
+    assert off <= measure(tree, "dbh_within_m")
+    assert measure(tree, "stems") == 1
+    assert measure(tree, "girth_m") == pytest.approx(math.pi * measure(tree, "dbh_m"), abs=1e-3)
+
+
+def test_several_stems_count_seven_tenths_of_their_sum(told: RunOutcome) -> None:
+    tree = tree_at(told, STEMMED)
+    assert measure(tree, "stems") == 3
+    assert measure(tree, "dbh_m") == pytest.approx(0.7 * sum(STEMS_M), abs=0.02)
+
+
+def test_the_foot_lies_on_the_ground(told: RunOutcome) -> None:
+    for foot in (STAKED, LEANING):
+        assert tree_at(told, foot).xyz[0] == pytest.approx(foot + ORIGIN, abs=0.04)
+
+
+def test_height_crown_and_lean_are_those_of_the_tree(told: RunOutcome) -> None:
+    staked, leaning = tree_at(told, STAKED), tree_at(told, LEANING)
+    assert measure(staked, "height_m") == pytest.approx(5.5, abs=0.3)
+    assert measure(staked, "crown_m") == pytest.approx(2.7, abs=0.5)
+    assert measure(staked, "lowest_branch_m") == pytest.approx(2.6, abs=0.4)
+    assert measure(leaning, "lean_deg") == pytest.approx(math.degrees(math.atan(LEAN)), abs=0.7)
+
+
+def test_a_street_without_trees_is_told(tmp_path: Path) -> None:
+    way = straight(12.0)
+    bare = DrivenRecording(way, facing_along(way), (road_along(12.0),))
+    told = told_by("trees", recorded(tmp_path, bare), tmp_path)
+    assert told.candidates == ()
+    assert told.sentence.endswith(".")
