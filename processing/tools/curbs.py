@@ -17,10 +17,15 @@ from processing.methods.road.curbs.edges.curb_edges import (
     MeasuredEdges,
     measure_edges,
 )
-from processing.methods.road.curbs.edges.curb_evidence import facts_of, noise_of
+from processing.methods.road.curbs.edges.curb_evidence import (
+    UsualMeasures,
+    facts_of,
+    noise_of,
+    usual_step_m,
+)
 from processing.methods.road.curbs.edges.curb_extension import extend_lines
 from processing.methods.road.curbs.edges.curb_features import CurbFeature, EdgeLine, features_of
-from processing.methods.road.curbs.edges.curb_joins import join_edges
+from processing.methods.road.curbs.edges.curb_joins import JointEdges, join_edges
 from processing.methods.road.curbs.edges.curb_lines import CurbLine, lines_of
 from processing.methods.road.curbs.steps.curb_confidence import CurbFacts, chance_of
 from processing.methods.road.curbs.steps.curb_diagnostics import curb_diagnostics
@@ -247,15 +252,18 @@ def measure_curbs(
         for drive, part in zip(drives, parts_of(rest, [d.count for d in drives]), strict=True)
     ]
     noise_m = noise_of([one.measures for ones in measured for one in ones])
+    found: list[tuple[int, CurbLine, JointEdges]] = []
     for number, approximate_line in enumerate(approximate_lines):
         monitor.check()
+        edges = join_edges([one[number].measures for one in measured], parameters.highest_m)
+        found += [(number, line, edges) for line in lines_of(approximate_line, edges, bridge_m)]
+    step_m = usual_step_m([line for _, line, _ in found])
+    usual = UsualMeasures(parameters.inlier_m, noise_m, step_m)
+    for number, line, edges in found:
+        monitor.check()
         ours = tuple(one[number] for one in measured)
-        measures = [one.measures for one in ours]
-        edges = join_edges(measures, parameters.highest_m)
-        for line in lines_of(approximate_line, edges, bridge_m):
-            tolerances = (parameters.inlier_m, noise_m)
-            facts = facts_of((approximate_line, line), runs, edges, measures, tolerances)
-            yield MeasuredCurb(approximate_line, line, ours, facts)
+        facts = facts_of((approximate_lines[number], line), runs, edges, ours, usual)
+        yield MeasuredCurb(approximate_lines[number], line, ours, facts)
 
 
 def _candidates(features: Sequence[CurbFeature]) -> tuple[Candidate, ...]:

@@ -2,11 +2,11 @@
 
 ``python -m processing.laboratory.road_training.curb_training``.
 
-Simulates streets of ``--seeds``, finds lines on them without leaving any out, and fits
-`processing.methods.road.curbs.steps.curb_confidence.WEIGHTS` to which of them are curbs; streets of
-``--check`` are not learnt from. ``--deliveries`` are further streets to learn from, recorded
-before. Prints the weights and how many lines of each confidence are right: of streets learnt from
-by weights that were fitted without the street itself.
+Simulates streets of ``--seeds`` and ``--worn``, finds lines on them without leaving any out, and
+fits `processing.methods.road.curbs.steps.curb_confidence.WEIGHTS` to which of them are curbs;
+streets of ``--check`` are not learnt from. ``--deliveries`` are further streets to learn from,
+recorded before. Prints the weights and how many lines of each confidence are right: of streets
+learnt from by weights that were fitted without the street itself.
 """
 
 from __future__ import annotations
@@ -34,10 +34,14 @@ from processing.scoring.mapped_features import MappedFile
 from processing.tools.curbs import CurbParameters, measure_curbs, step_settings
 
 EXPECTED = WeightPrior(
-    (2.5, *CurbFacts(1.0, -25.0, -8.0, -1.0, -20.0, -8.0, -2.0, -1.0)),
-    (2.0, *CurbFacts(0.3, 10.0, 5.0, 0.7, 8.0, 4.0, 1.0, 0.7)),
+    (2.5, *CurbFacts(1.0, -25.0, -8.0, -1.0, -20.0, -8.0, -1.0, -1.0, 1.0, -4.0, -3.0)),
+    (2.0, *CurbFacts(0.3, 10.0, 5.0, 0.7, 8.0, 4.0, 1.0, 0.7, 0.5, 2.0, 1.5)),
 )
 """Tens of streets have few false lines of each kind, so much is left to what reasoning expects."""
+
+_SEEDS, _WORN = "500-511", "540-557"
+_CHECK = "530-539"
+"""Streets that the curbs' `WEIGHTS` were learnt from: as laid, and worn and less exactly driven."""
 
 _SHORTEST_M, _LONGEST_M, _POSITIONS_M = 0.75, 10.0, 0.1
 
@@ -80,7 +84,7 @@ def _judge_runs(scene: RoadScene, truth: MappedFile) -> Iterator[tuple[CurbFacts
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """The command."""
-    asked = training_streets("curb_training", arguments)
+    asked = training_streets("curb_training", arguments, seeds=(_SEEDS, _CHECK), worn=_WORN)
     known, check = known_lines(asked.learnt), known_lines(asked.check)
     sys.stdout.write(learn_weights(CurbFacts._fields, EXPECTED, known, check))
     return 0

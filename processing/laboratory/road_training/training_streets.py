@@ -12,6 +12,7 @@ from processing.laboratory.accuracy.road.road_scenes import (
     RoadScene,
     given_scenes,
     simulated_scenes,
+    worn_options_of,
 )
 
 
@@ -28,6 +29,7 @@ def training_streets(
     arguments: Sequence[str] | None,
     scenes: Callable[[Sequence[int], float], Iterator[RoadScene]] = simulated_scenes,
     seeds: tuple[str, str] = ("500-529", "530-539"),
+    worn: str = "",
 ) -> TrainingStreets:
     """What the command of a module of `processing.laboratory.road_training` was told.
 
@@ -37,16 +39,20 @@ def training_streets(
         Makes streets of seeds and a length, m.
     seeds : (str, str)
         Of streets to learn from and to check with, if nothing else is asked.
+    worn : str
+        Of streets with worn stones to learn from, too.
     """
     parser = argparse.ArgumentParser(prog=f"python -m processing.laboratory.road_training.{module}")
     parser.add_argument("--seeds", default=seeds[0], help="streets to learn from")
     parser.add_argument("--check", default=seeds[1], help="streets to check with")
     parser.add_argument("--length", type=float, default=60.0, help="m of each")
+    parser.add_argument("--worn", default=worn, help="streets of worn stones to learn from")
     parser.add_argument("--deliveries", type=Path, nargs="*", default=[])
     asked = parser.parse_args(arguments)
-    simulated = scenes(_seeds(asked.seeds), asked.length)
+    laid = scenes(_seeds(asked.seeds), asked.length)
+    settled = simulated_scenes(_seeds(asked.worn), asked.length, worn_options_of)
     return TrainingStreets(
-        itertools.chain(simulated, given_scenes(asked.deliveries)),
+        itertools.chain(laid, settled, given_scenes(asked.deliveries)),
         scenes(_seeds(asked.check), asked.length),
     )
 

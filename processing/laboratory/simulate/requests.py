@@ -4,7 +4,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from processing.core.parameters import ParameterChoice, choice, count, file, length, ratio, switch
+from processing.core.parameters import (
+    ParameterChoice,
+    angle,
+    choice,
+    count,
+    file,
+    length,
+    ratio,
+    switch,
+)
 from processing.core.text import Text
 from processing.laboratory.simulate.scanning.sensors import SENSORS
 from processing.laboratory.simulate.street.styles import STYLES
@@ -43,6 +52,11 @@ class StreetRequest:
         The second one comes back on the other side, and so on.
     drift_m : float
         Standard deviation of the delivered trajectory's error, which changes over minutes.
+    attitude_deg, mounting_deg : float
+        The same of the angles that the trajectory delivers, and of those at which each head is said
+        to be mounted, which don't change during a pass.
+    wear : float
+        What time made of the kerb stones.
     """
 
     seed: int = count(1, low=0, high=2**31 - 1, name=_SEED, explanation=_SEED_MEANING)
@@ -108,6 +122,37 @@ class StreetRequest:
         explanation=Text(
             "Standard deviation of the delivered positions; it changes over minutes.",
             "成果の位置の標準偏差。数分かけて変化します。",
+        ),
+    )
+    attitude_deg: float = angle(
+        0.0,
+        low=0.0,
+        high=1.0,
+        name=Text("Error of the attitude", "姿勢角の誤差"),
+        explanation=Text(
+            "Standard deviation of the delivered roll, pitch and heading; it changes over minutes.",
+            "成果のロール・ピッチ・方位角の標準偏差。数分かけて変化します。",
+        ),
+    )
+    mounting_deg: float = angle(
+        0.0,
+        low=0.0,
+        high=1.0,
+        name=Text("Error of the mounting", "取付け角の誤差"),
+        explanation=Text(
+            "Standard deviation of the angles by which each head is mounted otherwise than its "
+            "calibration says.",
+            "各スキャナーの取付け角の、検定値に対する誤差の標準偏差。",
+        ),
+    )
+    wear: float = ratio(
+        0.0,
+        low=0.0,
+        high=1.0,
+        name=Text("Wear of kerb stones", "縁石の傷み"),
+        explanation=Text(
+            "0: as laid; 1: settled, tilted and rounded, as in an old street.",
+            "0 は施工時の状態、1 は古い街路のように沈下・傾斜し、角が丸くなった状態。",
         ),
     )
     images: bool = switch(

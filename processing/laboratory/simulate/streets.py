@@ -37,11 +37,11 @@ from processing.laboratory.simulate.scanning.recording import (
     HeadChunk,
     Setup,
     SimulatedRecording,
-    add_trajectory_errors,
+    delivered_positions,
 )
 from processing.laboratory.simulate.scanning.return_kernels import intensities
 from processing.laboratory.simulate.scanning.returns import Weather
-from processing.laboratory.simulate.scanning.sensors import Sensor, sensor_of
+from processing.laboratory.simulate.scanning.sensors import Head, Sensor, sensor_of
 from processing.laboratory.simulate.scanning.simulated_passes import Driving, SimulatedPass, pass_of
 from processing.laboratory.simulate.scene.chance import chance
 from processing.laboratory.simulate.scene.mesh import Floats
@@ -85,7 +85,9 @@ def simulate_street(request: StreetRequest, folder: Path, monitor: Monitor) -> S
     sensor = sensor_of(request.sensor, "mobile", request.own_sensor)
     with write_whole_folder(folder) as hidden:
         (hidden / "truth").mkdir()
-        work = _Work(request, Street(request.seed, style, request.length_m), sensor, hidden)
+        work = _Work(
+            request, Street(request.seed, style, request.length_m, request.wear), sensor, hidden
+        )
         for number in range(request.passes):
             share = _TRUTH_SHARE / request.passes
             work.drive(number, PartMonitor(monitor, number * share, (number + 1) * share))
@@ -136,7 +138,12 @@ class _Work:
         self.setup = Setup(sensor, self.scan_pattern, self.weather)
         slow, fast = street.style.speed_m_s
         usual = float(chance(request.seed, "speed").uniform(slow, fast))
-        self.driving = Driving(request.speed_km_h / _KMH or usual, request.stops, request.drift_m)
+        self.driving = Driving(
+            request.speed_km_h / _KMH or usual,
+            request.stops,
+            request.drift_m,
+            request.attitude_deg,
+        )
         self.evidence = Evidence()
         self.point_files: list[str] = []
         self.trajectories: list[str] = []
@@ -229,7 +236,10 @@ class _Work:
         intensities(returns.strength, self.weather.damping, strength)
         files.points.write(
             DeliveredPoints(
-                add_trajectory_errors(driven, returns) + self.origin,
+                delivered_positions(
+                    driven, chunk.head, returns, self._mounted_rad(driven, chunk.head)
+                )
+                + self.origin,
                 self._times(number) + returns.time_s,
                 strength,
                 returns.number,
@@ -240,6 +250,12 @@ class _Work:
         files.labels.write(returns.label)
         files.instances.write(returns.instance)
         self.evidence.count([returns])
+
+    def _mounted_rad(self, driven: SimulatedPass, head: Head) -> Floats:
+        """(3,) how far a head is turned from what its calibration says; see `SimulatedPass`."""
+        random = chance(self.request.seed, "mounting", driven.number, head.name)
+        mounted: Floats = np.radians(self.request.mounting_deg) * random.normal(size=3)
+        return mounted
 
     def _times(self, number: int) -> float:
         """When a pass begins: adjusted standard GPS time; some minutes after the one before."""
@@ -264,7 +280,9 @@ class _Work:
     def _write_trajectory(self, driven: SimulatedPass, number: int) -> None:
         name = f"{_numbered('trajectory', number)}.csv"
         positions: Floats = driven.positions + driven.errors + self.origin
-        table = np.column_stack([driven.time_s + self._times(number), positions, driven.angles_deg])
+        table = np.column_stack(
+            [driven.time_s + self._times(number), positions, driven.delivered_deg]
+        )
         np.savetxt(
             self.folder / name,
             table,

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -117,10 +117,25 @@ def options_of(number: int, seed: int, length_m: float = LENGTH_M) -> StreetRequ
     )
 
 
-def simulated_scenes(seeds: Sequence[int], length_m: float = LENGTH_M) -> Iterator[RoadScene]:
+def worn_options_of(number: int, seed: int, length_m: float = LENGTH_M) -> StreetRequest:
+    """The same street with worn stones, by a trajectory that drifts and heads mounted otherwise.
+
+    Errors are those of good systems (2 cm, 0.01°, 0.02°), every other street is worn as far as can
+    be, and speeds are the usual ones.
+    """
+    options = options_of(number, seed, length_m)
+    wear = 1.0 if number % 2 else 0.5
+    return replace(options, wear=wear, drift_m=0.02, attitude_deg=0.01, mounting_deg=0.02)
+
+
+def simulated_scenes(
+    seeds: Sequence[int],
+    length_m: float = LENGTH_M,
+    request_of: Callable[[int, int, float], StreetRequest] = options_of,
+) -> Iterator[RoadScene]:
     """Streets of seeds, one after the other; each is gone when the next one is asked for."""
     for number, seed in enumerate(seeds):
-        options = options_of(number, seed, length_m)
+        options = request_of(number, seed, length_m)
         name = f"{options.style} {options.sensor} {seed}" + (" twice" if options.passes > 1 else "")
         with TemporaryDirectory(prefix="zuka-") as position:
             folder = Path(position) / "street"

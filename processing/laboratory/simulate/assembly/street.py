@@ -75,12 +75,14 @@ class Street:
     ----------
     length_m : float
         What is driven of it; a longer one begins like a shorter one.
+    wear : float
+        What time made of its kerb stones, 0 to 1.
     """
 
-    def __init__(self, seed: int, style: Style, length_m: float) -> None:
+    def __init__(self, seed: int, style: Style, length_m: float, wear: float = 0.0) -> None:
         self.seed, self.style, self.length_m = seed, style, length_m
         self.alignment: Alignment = alignment_of(seed, style, length_m)
-        self.plans = tuple(plans_of(seed, style, length_m))
+        self.plans = tuple(plans_of(seed, style, length_m, wear))
         self._starts = np.array([one.start_m for one in self.plans])
         self._built: OrderedDict[int, BuiltSection] = OrderedDict()
         self._bare: OrderedDict[int, StreetSection] = OrderedDict()

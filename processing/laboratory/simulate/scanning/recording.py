@@ -232,8 +232,33 @@ class Evidence:
         self._counts = [np.bincount(position, counts, merged.size).astype(np.int64)]
 
 
-def add_trajectory_errors(driven: SimulatedPass, returns: Returns) -> Floats:
-    """Places as they are delivered: off by what the trajectory is off. (n, 3) float64, m."""
-    errors = [np.interp(returns.time_s, driven.time_s, one) for one in driven.errors.T]
-    moved: Floats = returns.xyz + np.column_stack(errors)
-    return moved
+def delivered_positions(
+    driven: SimulatedPass, head: Head, returns: Returns, mounted_rad: Floats
+) -> Floats:
+    """Places as they are delivered: off by what trajectory, attitude and mounting are off.
+
+    Parameters
+    ----------
+    mounted_rad : (3,) float64
+        How far the head is turned from what its calibration says, as `SimulatedPass.turned_rad`.
+
+    Returns
+    -------
+    (n, 3) float64
+        m, the street's frame.
+    """
+    errors = np.column_stack(
+        [np.interp(returns.time_s, driven.time_s, one) for one in driven.errors.T]
+    )
+    if not (driven.turned_rad.any() or mounted_rad.any()):
+        return np.asarray(returns.xyz + errors)
+    row = np.clip(np.searchsorted(driven.time_s, returns.time_s), 0, driven.time_s.size - 1)
+    axes = driven.rotations[row]
+    at = np.column_stack(
+        [np.interp(returns.time_s, driven.time_s, one) for one in driven.positions.T]
+    )
+    # In the vehicle's frame; a turn by a small vector moves a place by their cross product.
+    away = np.einsum("nij,ni->nj", axes, returns.xyz - at)
+    moved = np.cross(driven.turned_rad[row], away)
+    moved += np.cross(mounted_rad, away - np.array(head.lever_m))
+    return np.asarray(returns.xyz + errors + np.einsum("nij,nj->ni", axes, moved))

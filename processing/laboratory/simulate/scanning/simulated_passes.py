@@ -43,6 +43,9 @@ class SimulatedPass:
         Roll, pitch and heading as the contract counts them.
     errors : (m, 3) float64
         What the delivered positions are off, m.
+    turned_rad : (m, 3) float64
+        What the delivered attitude is off: small turns about the vehicle's forward, left and up
+        axes, rad.
     """
 
     number: int
@@ -52,11 +55,23 @@ class SimulatedPass:
     chainages: Floats
     angles_deg: Floats
     errors: Floats
+    turned_rad: Floats
 
     @property
     def duration_s(self) -> float:
         """From the first record to the last."""
         return float(self.time_s[-1])
+
+    @property
+    def delivered_deg(self) -> Floats:
+        """(m, 3) roll, pitch and heading as delivered, degrees.
+
+        Turns about forward, left and up are roll (right side down), pitch (nose down) and heading
+        (to the left), as long as they are small.
+        """
+        angles: Floats = self.angles_deg + np.degrees(self.turned_rad) * np.array([1.0, -1.0, -1.0])
+        angles[:, 2] %= 360.0
+        return angles
 
     def chainage_at(self, time_s: Floats) -> Floats:
         """Where the vehicle is at times from the pass' beginning."""
@@ -73,12 +88,14 @@ class Driving:
         On free road.
     stops : bool
         Whether it waits at junctions, or else once on the way.
-    drift_m : float
+    drift_m, attitude_deg : float
+        Standard deviations of the delivered positions and angles.
     """
 
     speed_m_s: float
     stops: bool
     drift_m: float
+    attitude_deg: float = 0.0
 
 
 def pass_of(street: Street, number: int, driving: Driving) -> SimulatedPass:
@@ -100,7 +117,11 @@ def pass_of(street: Street, number: int, driving: Driving) -> SimulatedPass:
     errors = driving.drift_m * np.column_stack(
         [_swaying(random, records, (60.0, 600.0)) for _ in range(3)]
     )
-    return SimulatedPass(number, records, positions, rotations, at, angles, errors)
+    turning = chance(street.seed, "attitude", number)
+    turned = math.radians(driving.attitude_deg) * np.column_stack(
+        [_swaying(turning, records, (60.0, 600.0)) for _ in range(3)]
+    )
+    return SimulatedPass(number, records, positions, rotations, at, angles, errors, turned)
 
 
 def _lane_m(street: Street, chainages: Floats) -> Floats:

@@ -111,8 +111,8 @@ def corner_nodes(
     kept = arc if clear is None else arc[clear | np.isin(arc, arc[[0, -1]])]
     ends = np.array([0.0, end + deep_m - corner.radius_m])
     every = np.concatenate([kept, breaks])
-    if looks.sloppiness_m > 0:
-        nodes = lay_stones(random, ends, looks.stone_m, looks.sloppiness_m, every)
+    if looks.row.sloppiness_m > 0:
+        nodes = lay_stones(random, ends, looks.row, every)
     else:
         nodes = place_nodes_evenly(ends, 0.5, every)
     first = int(np.abs(nodes.along - start).argmin())

@@ -103,7 +103,7 @@ def outline(
         measures_along(seed, (before, own, after), along, np.array([plan.start_m, plan.end_m])),
         band_surfaces_of(seed, own),
         own.edge_m + unevenness_of(seed).wander[side].at(along),
-        StoneNodes(along, none, none, none),
+        StoneNodes(along, none, none, none, none, none),
         lowering((), along),
     )
     profile = profile_of(course)
@@ -157,7 +157,7 @@ def _side_layout(
     if own.curb in ("none", "asphalt") or mouth is not None:
         nodes = place_nodes_evenly(ends, _PLAIN_STEP_M, breaks)
     else:
-        nodes = lay_stones(random, ends, looks.stone_m, looks.sloppiness_m, breaks)
+        nodes = lay_stones(random, ends, looks.row, breaks)
     wander = terrain.unevenness.wander[side].at(nodes.along)
     if mouth is not None:
         wander = wander * mouth.calm(nodes.along)

@@ -15,6 +15,7 @@ from processing.laboratory.simulate.scene.chance import chance
 from processing.laboratory.simulate.scene.materials import Material
 from processing.laboratory.simulate.scene.mesh import Floats
 from processing.laboratory.simulate.street.plan import SidePlan
+from processing.laboratory.simulate.street.stones import StoneRow
 
 _CHANGE_M = 5.0
 """Over how many metres widths change to those of the next section."""
@@ -79,17 +80,14 @@ class BandSurfaces:
 
     Attributes
     ----------
-    stone_m : float
-        Length of one curb stone.
-    sloppiness_m : float
-        Standard deviation of the places of single stones.
+    row : StoneRow
+        The curb's stones.
     """
 
     gutter: Material
     stone: Material
     walk: Material
-    stone_m: float
-    sloppiness_m: float
+    row: StoneRow
 
 
 def measures_of(seed: int, side: SidePlan) -> Measures:
@@ -135,8 +133,11 @@ def band_surfaces_of(seed: int, side: SidePlan) -> BandSurfaces:
         concretes[int(random.integers(2))],
         Material.WORN_ASPHALT if side.curb == "asphalt" else concretes[int(random.integers(2))],
         walks[int(random.integers(4))],
-        0.6 if random.random() < 0.75 else 2.0,
-        float(random.uniform(0.0005, 0.004)),
+        StoneRow(
+            0.6 if random.random() < 0.75 else 2.0,
+            float(random.uniform(0.0005, 0.004)),
+            side.wear,
+        ),
     )
 
 

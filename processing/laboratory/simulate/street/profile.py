@@ -23,6 +23,8 @@ STONE_TOP_M = 0.1
 """How much of a stone's top belongs to the run of its edge."""
 
 _LEAST_WIDE_M = 0.03
+_ARC = tuple((float(np.cos(one)), float(np.sin(one))) for one in np.radians([22.5, 45.0, 67.5]))
+"""Places on a quarter of a circle, from the face up to the top."""
 _RAMP_DEEP_M = 1.2  # how far a walk's slope to a dropped curb reaches
 
 
@@ -161,20 +163,26 @@ def _add_curb(profile: RoadProfile, course: Course) -> None:
     foot, level = profile.away[-1] + 0.0, profile.above[-1]
     share = course.lowering.share
     high = curb_high(course)
-    lean = measures.batter * high
+    batter = measures.batter + laid.tilted
+    lean = batter * high
     at = foot + laid.outwards
     profile.away[-1] = np.maximum(at, profile.away[-2]) if len(profile.away) > 1 else at
     if len(profile.away) == 1:
         profile.away[0] = at
     foot_line = len(profile.away) - 1
-    chamfer = np.minimum(measures.chamfer + laid.chipped, 0.45 * high)
+    chamfer = np.minimum(measures.chamfer + laid.chipped + laid.rounded, 0.45 * high)
     if kind == "asphalt":
         chamfer = np.zeros_like(high)
     rear = foot + np.maximum(measures.wide, lean + chamfer + _LEAST_WIDE_M)
     if kind == "asphalt":
         rear = foot + lean * 2 + np.maximum(measures.wide, 0.1) / 2
     top = level + high
-    profile.line(at + measures.batter * (high - chamfer), top - chamfer, strip)
+    profile.line(at + batter * (high - chamfer), top - chamfer, strip)
+    if np.any(laid.rounded > 0):
+        # A worn edge is an arc about a place as far behind the face as below the top.
+        for cos, sin in _ARC:
+            away = chamfer * (1 - cos)
+            profile.line(at + lean + away, top - chamfer * (1 - sin), strip)
     profile.line(at + lean + chamfer, top, strip)
     low = np.minimum(measures.behind, course.lowering.high)
     behind = level + np.minimum(measures.behind * (1 - share) + low * share, high)

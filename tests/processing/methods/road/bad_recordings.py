@@ -271,7 +271,8 @@ def _pass(recording: DrivenRecording) -> SimulatedPass:
         axis=-1,
     )
     angles = np.column_stack([zero, zero, (90.0 - np.degrees(recording.facing)) % 360.0])
-    return SimulatedPass(0, time_s, positions, axes, zero, angles, np.zeros((count, 3)))
+    none = np.zeros((count, 3))
+    return SimulatedPass(0, time_s, positions, axes, zero, angles, none, none)
 
 
 def _write_trajectory(path: Path, driven: SimulatedPass, recording: DrivenRecording) -> None:

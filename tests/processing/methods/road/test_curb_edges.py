@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from processing.methods.road.curbs.edges.curb_edge_kernels import (
+from processing.methods.road.curbs.edges.curb_edge_kernels import edges_kernel
+from processing.methods.road.curbs.edges.curb_edges import nearest_kernel
+from processing.methods.road.curbs.edges.edge_measures import (
     FACE_POINTS,
     HIGH_POINTS,
     LOWER_ABOVE,
@@ -15,8 +17,6 @@ from processing.methods.road.curbs.edges.curb_edge_kernels import (
     UPPER_ABOVE,
     UPPER_ACROSS,
     Window,
-    edges_kernel,
-    nearest_kernel,
 )
 
 Floats = NDArray[np.float64]
@@ -177,3 +177,15 @@ def test_the_nearest_point_is_within_reach_or_none() -> None:
     found = np.empty(2, np.int64)
     nearest_kernel(along, positions, wanted, 0.15, found)
     assert found.tolist() == [1, -1]
+
+
+def test_behind_the_end_of_a_curb_no_longer_window_finds_it_again() -> None:
+    along, points = curb_points(per_m=60.0)
+    ahead = np.linspace(8.0, 20.0, 90)
+    level = np.column_stack([np.linspace(-0.4, 0.4, 90), np.zeros(90)])
+    measures = np.full((18, MEASURES), np.nan)
+    stations = np.tile([0.015, 0.0, 0.15, 0.0], (18, 1))
+    everything = np.concatenate([along, ahead]), np.vstack([points, level])
+    edges_kernel(*everything, stations, WINDOW, measures)
+    assert measures[4, FACE_POINTS] > 3
+    assert not (measures[11:, FACE_POINTS] > 0).any()

@@ -6,16 +6,16 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from processing.methods.road.curbs.edges.curb_edge_kernels import (
+from processing.methods.road.curbs.edges.curb_ends import own_part
+from processing.methods.road.curbs.edges.curb_joins import join_edges
+from processing.methods.road.curbs.edges.curb_lines import CurbLine, lines_of
+from processing.methods.road.curbs.edges.edge_measures import (
     FACE_POINTS,
     HIGH_OFF,
     LOW_OFF,
     LOWER_ABOVE,
     UPPER_ABOVE,
 )
-from processing.methods.road.curbs.edges.curb_ends import own_part
-from processing.methods.road.curbs.edges.curb_joins import join_edges
-from processing.methods.road.curbs.edges.curb_lines import CurbLine, lines_of
 from tests.processing.methods.road.test_curb_lines import approximate_line_of, measures_of
 
 COUNT, END = 120, 80

@@ -9,19 +9,26 @@ import pytest
 from numpy.typing import NDArray
 
 from processing.methods.road.curbs.edges.approximate_lines import approximate_lines_of
-from processing.methods.road.curbs.edges.curb_edge_kernels import (
+from processing.methods.road.curbs.edges.curb_edges import MeasuredEdges
+from processing.methods.road.curbs.edges.curb_evidence import (
+    UsualMeasures,
+    facts_of,
+    noise_of,
+    usual_step_m,
+)
+from processing.methods.road.curbs.edges.curb_joins import join_edges
+from processing.methods.road.curbs.edges.curb_lines import lines_of
+from processing.methods.road.curbs.edges.edge_measures import (
     FACE_POINTS,
     HIGH_OFF,
     LEAN,
     LOW_OFF,
+    LOW_POINTS,
     LOWER_ABOVE,
     LOWER_ACROSS,
     UPPER_ABOVE,
     UPPER_ACROSS,
 )
-from processing.methods.road.curbs.edges.curb_evidence import facts_of, noise_of
-from processing.methods.road.curbs.edges.curb_joins import join_edges
-from processing.methods.road.curbs.edges.curb_lines import lines_of
 from processing.methods.road.curbs.steps.curb_confidence import CurbFacts, chance_of
 from processing.methods.road.curbs.steps.curb_runs import StepRun
 from processing.tools.curbs import CurbParameters
@@ -31,13 +38,19 @@ INLIER_M, NOISE_M = 0.005, 0.002
 LEAST = CurbParameters().least_confidence
 
 
-def facts(measures: NDArray[np.float64], run: StepRun) -> CurbFacts:
-    """With a scanner's noise of 2 mm."""
+def facts(
+    measures: NDArray[np.float64], run: StepRun, points: NDArray[np.float64] | None = None
+) -> CurbFacts:
+    """With a scanner's noise of 2 mm; points are (n, 3) in the line's frame, stations rising."""
     (approximate_line,) = approximate_lines_of([run], 8.0)
     count = approximate_line.xyz.shape[0]
     edges = join_edges([measures[:count]], 0.45)
     (line,) = lines_of(approximate_line, edges, 8.0)
-    return facts_of((approximate_line, line), [run], edges, [measures[:count]], (INLIER_M, NOISE_M))
+    about = np.empty((0, 2)) if points is None else points[:, 1:]
+    along = np.empty(0) if points is None else points[:, 0]
+    seen = MeasuredEdges(measures[:count], along, about, np.arange(along.size))
+    usual = UsualMeasures(INLIER_M, NOISE_M, 0.15)
+    return facts_of((approximate_line, line), [run], edges, [seen], usual)
 
 
 def chance(measures: NDArray[np.float64], run: StepRun | None = None) -> float:
@@ -100,3 +113,32 @@ def test_a_face_nobody_sees_stands_on_pavement_unless_it_looks_away() -> None:
 def test_noise_is_that_of_the_quieter_stations() -> None:
     assert noise_of([np.vstack([stone(), verge()])]) == pytest.approx(0.002)
     assert noise_of([]) > 0
+
+
+def test_a_face_that_goes_on_upwards_is_a_wall() -> None:
+    along = np.repeat(np.arange(32.0), 10)
+    above = np.tile(np.linspace(0.3, 0.6, 10), 32)
+    wall = np.column_stack([along, np.full(along.size, 0.015), above])
+    behind = np.column_stack([along, np.full(along.size, 0.3), above])
+    assert facts(stone(), run_of(0.0, 8.0), wall).walled > 0.9
+    assert facts(stone(), run_of(0.0, 8.0), behind).walled == 0.0
+
+
+def test_a_step_without_a_face_between_foot_and_top_is_no_stone() -> None:
+    faceless = stone()
+    faceless[:, [FACE_POINTS, LOW_POINTS]] = [0.0, 20.0]
+    assert facts(faceless, run_of(0.0, 8.0)).faceless == 1.0
+    # A face that looks away shows none.
+    away = replace(run_of(0.0, 8.0), rises=-1, side=1)
+    assert facts(faceless, away).faceless == 0.0
+
+
+def test_the_usual_step_is_that_of_long_lines() -> None:
+    curbs = []
+    for long_m, step_m in ((30.0, 0.12), (3.0, 0.4)):
+        (approximate_line,) = approximate_lines_of([run_of(0.0, long_m)], 8.0)
+        measures = np.vstack([stone(), stone()])[: approximate_line.xyz.shape[0]]
+        measures[:, UPPER_ABOVE] = measures[:, LOWER_ABOVE] + step_m
+        curbs += lines_of(approximate_line, join_edges([measures], 0.45), 8.0)
+    assert usual_step_m(curbs) == pytest.approx(0.12, abs=0.002)
+    assert usual_step_m([]) > 0.1

@@ -13,7 +13,10 @@ from processing.methods.road.curbs.edges.approximate_lines import (
     ApproximateLine,
     approximate_lines_of,
 )
-from processing.methods.road.curbs.edges.curb_edge_kernels import (
+from processing.methods.road.curbs.edges.curb_joins import join_edges
+from processing.methods.road.curbs.edges.curb_lines import lines_of
+from processing.methods.road.curbs.edges.curb_smoothing import Smoothness, smooth_values
+from processing.methods.road.curbs.edges.edge_measures import (
     ERROR_ACROSS,
     ERROR_HIGH,
     ERROR_LOW,
@@ -26,9 +29,6 @@ from processing.methods.road.curbs.edges.curb_edge_kernels import (
     UPPER_ABOVE,
     UPPER_ACROSS,
 )
-from processing.methods.road.curbs.edges.curb_joins import join_edges
-from processing.methods.road.curbs.edges.curb_lines import lines_of
-from processing.methods.road.curbs.edges.curb_smoothing import Smoothness, smooth_values
 from processing.methods.road.curbs.steps.curb_confidence import confidence_of
 from processing.methods.road.curbs.steps.curb_runs import StepRun
 

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from processing.methods.road.curbs.edges.curb_edge_kernels import STEP_M
 from processing.methods.road.curbs.edges.curb_types import typed_parts
+from processing.methods.road.curbs.edges.edge_measures import STEP_M
 
 
 def _steps(ramp_m: float = 1.0, low_m: float = 0.05) -> NDArray[np.float64]:

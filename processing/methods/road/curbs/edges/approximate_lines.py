@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from processing.methods.road.curbs.edges.curb_edge_kernels import STEP_M as STATION_M
 from processing.methods.road.curbs.edges.curb_smoothing import Smoothness, smooth_values
+from processing.methods.road.curbs.edges.edge_measures import STEP_M as STATION_M
 from processing.methods.road.curbs.steps.curb_runs import StepRun
 
 _Floats = NDArray[np.float64]

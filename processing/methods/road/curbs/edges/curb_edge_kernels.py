@@ -14,28 +14,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.core.kernels import kernel
+from processing.methods.road.curbs.edges import edge_measures as of
 
 _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
 
-LOWER_ACROSS, LOWER_ABOVE, UPPER_ACROSS, UPPER_ABOVE = range(4)
-LEAN, ERROR_ACROSS, ERROR_LOW, ERROR_HIGH = range(4, 8)
-FACE_POINTS, LOW_POINTS, HIGH_POINTS, GAP, OFF, LOW_OFF, HIGH_OFF = range(8, 15)
-MEASURES = 15
-"""Measures of a station: edges in its frame, m; lean of the face (across per m of height); errors
-of place and of the two heights, m; how many points each surface has; how wide nothing is seen
-between them, m; how far points of face, carriageway and top lie off them, m RMS. NaN where not
-measured."""
-
-WIDTH, IS_HIDDEN, STEP, IS_EDGING = range(4)
-"""What is known roughly of a station: width of the face, m; 1 where it is hidden; height of the
-step, m; 1 where it is of an edging stone."""
-
 # "By trial": chosen while the tool was made; no measurement of the single value is recorded.
-
-STEP_M = 0.25
-"""Between stations: half of what Table 6-1 looks at to either side, so that neighbours share points
-and ramps of 70 cm have three."""
 
 _LOW, _HIGH, _FACE = 0, 1, 2
 _HEIGHT, _SLOPE, _SLOPE_ALONG, _TOP_HEIGHT, _TOP_SLOPE, _TOP_SLOPE_ALONG = range(6)
@@ -116,6 +100,10 @@ the middle of what is neither carriageway nor arris."""
 _LEAST_POINTS, _LEAST_FACE_POINTS = 4, 3
 """With fewer points nothing is fitted: one more than a plane's unknowns; a face's are held."""
 
+_LONGEST_M = 2.0
+"""Where few points fall a window is made longer, twice the one before, up to so much before and
+behind: three kerb stones, and less than a quarter of a corner's arc."""
+
 _MOST_POINTS = 400
 """More make an edge slower, not better."""
 
@@ -161,25 +149,6 @@ _LOW_SHARE, _GUTTER_SHARE, _HIGH_SHARE, _HIDDEN_SHARE = 0.4, 0.8, 0.5, 0.6
 """Quantiles of rough heights: the carriageway a little below the median, as things lie on it; that
 beside an open gutter high, that of tops in the middle, that of hidden ones higher since soil lies
 among them. By trial."""
-
-
-class Window(NamedTuple):
-    """Points that are looked at about a station.
-
-    Attributes
-    ----------
-    half_m, most_m : float
-        Half the window, and half the longest one, which is used where the other holds too few.
-    enough : float
-        Points that are enough in one.
-    tolerance_m : float
-        How far a point may lie off a surface.
-    """
-
-    half_m: float
-    most_m: float
-    enough: float
-    tolerance_m: float
 
 
 class _Prior(NamedTuple):
@@ -349,7 +318,7 @@ def _ends(
 @kernel
 def _levels(values: _Floats, span: tuple[int, int], start: _Floats) -> tuple[float, float]:
     """Rough heights of carriageway and top; NaN where there are too few points."""
-    width, is_hidden, step = start[WIDTH], start[IS_HIDDEN] > 0, start[STEP]
+    width, is_hidden, step = start[of.WIDTH], start[of.IS_HIDDEN] == of.HIDDEN, start[of.STEP]
     low = _middle(values, span, _BEFORE_M, -math.inf, _LOW_SHARE)
     if math.isnan(low):
         low = _middle(values, span, _BEFORE_MORE_M, -math.inf, _LOW_SHARE)
@@ -376,7 +345,7 @@ def _station(
     span: tuple[int, int], values: _Floats, start: _Floats, least_tolerance: float, out: _Floats
 ) -> None:
     """Edges at a station; ``start`` is a row of what is known roughly."""
-    is_hidden, tolerance = start[IS_HIDDEN] > 0, least_tolerance
+    is_hidden, tolerance = start[of.IS_HIDDEN] == of.HIDDEN, least_tolerance
     low, high = _levels(values, span, start)
     if math.isnan(high) or (math.isnan(low) and not is_hidden):
         return
@@ -385,8 +354,8 @@ def _station(
     planes = np.array([0.0 if is_shaded else low, 0.0, 0.0, high, 0.0, 0.0])
     # At first a hidden top may begin elsewhere; close below a narrow one its other face may be.
     before_m = _ASIDE_M if is_hidden else 0.0
-    below_m = _CLOSE_BELOW_M if is_hidden and start[IS_EDGING] > 0 else math.inf
-    edge = np.array([0.0, start[WIDTH], _FIRST_BESIDE_M, before_m, below_m])
+    below_m = _CLOSE_BELOW_M if is_hidden and start[of.IS_EDGING] > 0 else math.inf
+    edge = np.array([0.0, start[of.WIDTH], _FIRST_BESIDE_M, before_m, below_m])
     weights, spread = np.zeros(3), math.nan
     for number in range(_ROUNDS):
         _sort_into(span, values, edge, planes, kinds)
@@ -401,25 +370,26 @@ def _station(
         planes[3:] = b.value_m, b.slope, b.slope_along
         tolerance = max(least_tolerance, min(_NOISY * min(a.off_m, b.off_m), _NOISIEST_M))
         weights[_LOW], weights[_HIGH] = a.weight, b.weight
-        out[LOW_OFF], out[HIGH_OFF] = a.off_m, b.off_m
+        out[of.LOW_OFF], out[of.HIGH_OFF] = a.off_m, b.off_m
         _sort_into(span, values, edge, planes, kinds)
         at = 0.5 * (edge[_LOWER] + edge[_UPPER])
         step = b.value_m - a.value_m + (b.slope - a.slope) * at
         middle = a.value_m + a.slope * at + _FACE_MIDDLE * step
         face = _face(span, values, kinds, tolerance, middle)
         weights[_FACE], spread = 0.0 if is_hidden else face.weight, face.off_m
+        out[of.AWAY] = _middle_along(span, values, kinds)
         if weights[_FACE] >= _LEAST_FACE:
             foot, top = face.lean * a.value_m, face.lean * b.value_m
             edge[_LOWER] = (face.across_m + foot) / (1.0 - face.lean * a.slope)
             edge[_UPPER] = (face.across_m + top) / (1.0 - face.lean * b.slope)
             edge[_BESIDE] = _FIRST_BESIDE_M if number == 0 else _LATER_BESIDE_M
-            out[LEAN] = face.lean
+            out[of.LEAN] = face.lean
         else:
-            out[LEAN] = math.nan
+            out[of.LEAN] = math.nan
             if not _without_face(span, values, (kinds, planes, is_hidden), (edge, out)):
                 return
     _measure(planes, edge, weights, (tolerance, spread), out)
-    out[HIGH_POINTS], out[LOW_POINTS] = weights[_HIGH], weights[_LOW]
+    out[of.HIGH_POINTS], out[of.LOW_POINTS] = weights[_HIGH], weights[_LOW]
 
 
 @kernel
@@ -456,14 +426,15 @@ def _without_face(
         for i in range(span[0], span[1]):
             if kinds[i - span[0]] == _HIGH and values[i, 1] < first + _TOP_M:
                 count += 1
-        out[GAP] = min(_TOP_M / max(count, 1), _TOP_SPACING_M)
-        edge[_UPPER] = first - out[GAP]
+        out[of.GAP] = _TOP_M / max(count, 1)
+        edge[_UPPER] = first - min(out[of.GAP], _TOP_SPACING_M)
         edge[_LOWER] = edge[_UPPER] - lean
     else:
         middle = 0.5 * (last + first - lean)
         edge[_LOWER] = min(max(middle, -_MOST_ASIDE_M), _MOST_ASIDE_M)
         edge[_UPPER] = edge[_LOWER] + lean
-        out[GAP] = max(first - last, 0.0)
+        # Surfaces that overlap tell of an edge that runs askew: its place is known no better.
+        out[of.GAP] = abs(first - last)
     return True
 
 
@@ -492,31 +463,42 @@ def _face(
 
 
 @kernel
+def _middle_along(span: tuple[int, int], values: _Floats, kinds: _Integers) -> float:
+    """How far ahead of the station the points on the face are on the average, m; 0 of none."""
+    total, count = 0.0, 0
+    for i in range(span[0], span[1]):
+        if kinds[i - span[0]] == _FACE:
+            total += values[i, 0]
+            count += 1
+    return total / max(count, 1)
+
+
+@kernel
 def _measure(
     planes: _Floats, edge: _Floats, weights: _Floats, about: tuple[float, float], out: _Floats
 ) -> None:
     tolerance, spread = about
     lower, upper = edge[_LOWER], edge[_UPPER]
-    out[LOWER_ACROSS], out[UPPER_ACROSS] = lower, upper
-    out[LOWER_ABOVE] = planes[_HEIGHT] + planes[_SLOPE] * lower
-    out[UPPER_ABOVE] = planes[_TOP_HEIGHT] + planes[_TOP_SLOPE] * upper
-    step = max(out[UPPER_ABOVE] - out[LOWER_ABOVE], 0.0)
-    out[FACE_POINTS] = weights[_FACE]
-    out[OFF] = spread
-    out[ERROR_LOW] = math.sqrt(_LEAST_ERROR_M**2 + tolerance**2 / weights[_LOW])
-    out[ERROR_HIGH] = math.sqrt(_LEAST_ERROR_M**2 + tolerance**2 / weights[_HIGH])
+    out[of.LOWER_ACROSS], out[of.UPPER_ACROSS] = lower, upper
+    out[of.LOWER_ABOVE] = planes[_HEIGHT] + planes[_SLOPE] * lower
+    out[of.UPPER_ABOVE] = planes[_TOP_HEIGHT] + planes[_TOP_SLOPE] * upper
+    step = max(out[of.UPPER_ABOVE] - out[of.LOWER_ABOVE], 0.0)
+    out[of.FACE_POINTS] = weights[_FACE]
+    out[of.OFF] = spread
+    out[of.ERROR_LOW] = math.sqrt(_LEAST_ERROR_M**2 + tolerance**2 / weights[_LOW])
+    out[of.ERROR_HIGH] = math.sqrt(_LEAST_ERROR_M**2 + tolerance**2 / weights[_HIGH])
     if weights[_FACE] >= _LEAST_FACE:
         noise = max(tolerance, spread)
-        out[ERROR_ACROSS] = math.sqrt(_LEAST_ERROR_M**2 + noise**2 / weights[_FACE])
+        out[of.ERROR_ACROSS] = math.sqrt(_LEAST_ERROR_M**2 + noise**2 / weights[_FACE])
     else:
-        out[ERROR_ACROSS] = max(_OF_GAP * out[GAP], _UNPLACED_M)
+        out[of.ERROR_ACROSS] = max(_OF_GAP * out[of.GAP], _UNPLACED_M)
     # What is about as low as the surfaces are rough has no edge that could be placed.
-    out[ERROR_ACROSS] *= 1.0 + (_LOW_STEP * tolerance / max(step, _LEAST_STEP_M)) ** 4
+    out[of.ERROR_ACROSS] *= 1.0 + (_LOW_STEP * tolerance / max(step, _LEAST_STEP_M)) ** 4
 
 
 @kernel
 def edges_kernel(
-    along: _Floats, across_above: _Floats, stations: _Floats, window: Window, measures: _Floats
+    along: _Floats, across_above: _Floats, stations: _Floats, window: of.Window, measures: _Floats
 ) -> None:
     """Edges at every station of one approximate line.
 
@@ -528,54 +510,78 @@ def edges_kernel(
         m.
     stations : (m, 4) float64
         What is known roughly of each.
-    window : Window
-    measures : (m, MEASURES) float64
+    window : of.Window
+    measures : (m, of.MEASURES) float64
         Filled with NaN before.
     """
-    half, most, enough, tolerance = window
+    half, most, enough, _ = window
     first, last = 0, 0
+    longer = np.empty(of.MEASURES)
     for k in range(stations.shape[0]):
-        while first < along.shape[0] and along[first] < k - most / STEP_M:
+        while first < along.shape[0] and along[first] < k - most / of.STEP_M:
             first += 1
         last = max(last, first)
-        while last < along.shape[0] and along[last] <= k + most / STEP_M:
+        while last < along.shape[0] and along[last] <= k + most / of.STEP_M:
             last += 1
         near, far = first, last
         if last - first > enough * most / half:
-            near = first + int(np.searchsorted(along[first:last], k - half / STEP_M))
-            far = first + int(np.searchsorted(along[first:last], k + half / STEP_M))
-        if far - near < 2 * _LEAST_POINTS:
-            continue
-        stride = max(1, (far - near) // _MOST_POINTS)
-        values = np.empty(((far - near + stride - 1) // stride, 3))
-        values[:, 0] = (along[near:far:stride] - k) * STEP_M
-        values[:, 1:] = across_above[near:far:stride]
-        _station((0, values.shape[0]), values, stations[k], tolerance, measures[k])
+            near, far = of.span_about(along, k, half)
+        points = (along, across_above)
+        _measure_span(points, (near, far), (k, stations[k]), window, measures[k])
+        reach = most
+        while reach < _LONGEST_M and last - first < enough and not _is_placed(measures[k]):
+            reach *= 2.0
+            longer[:] = math.nan
+            _measure_span(points, of.span_about(along, k, reach), (k, stations[k]), window, longer)
+            if not _is_placed(longer):
+                # Ends of surfaces tell no direction, as points on a face do.
+                askew = _FREE_LEAN_ALONG * (reach - most)
+                longer[of.ERROR_ACROSS] = math.hypot(longer[of.ERROR_ACROSS], askew)
+            # Beyond a curb's end a long window still sees its face, all of it on one side.
+            if _is_placed(longer) and abs(longer[of.AWAY]) > 0.5 * reach:
+                continue
+            if _is_placed(longer) or (
+                stations[k, of.IS_HIDDEN] == of.ASKEW and of.is_surer(longer, measures[k])
+            ):
+                measures[k] = longer
 
 
 @kernel
-def nearest_kernel(
-    along: _Floats, across_above: _Floats, wanted: _Floats, within_m: float, nearest: _Integers
-) -> None:
-    """The point nearest to each of some places, (k, 3) in the same frame; −1 beyond a distance.
+def _is_placed(measures: _Floats) -> bool:
+    """Whether enough points lie on a face."""
+    return bool(measures[of.FACE_POINTS] >= _LEAST_FACE)
 
-    The first column of ``wanted`` rises.
-    """
-    first = 0
-    for k in range(wanted.shape[0]):
-        nearest[k] = -1
-        least = within_m * within_m
-        reach = within_m / STEP_M
-        while first < along.shape[0] and along[first] < wanted[k, 0] - reach:
-            first += 1
-        i = first
-        while i < along.shape[0] and along[i] <= wanted[k, 0] + reach:
-            away = ((along[i] - wanted[k, 0]) * STEP_M) ** 2
-            away += (across_above[i, 0] - wanted[k, 1]) ** 2
-            away += (across_above[i, 1] - wanted[k, 2]) ** 2
-            if away < least:
-                nearest[k], least = i, away
-            i += 1
+
+@kernel
+def _measure_span(
+    points: tuple[_Floats, _Floats],
+    span: tuple[int, int],
+    station: tuple[int, _Floats],
+    window: of.Window,
+    out: _Floats,
+) -> None:
+    """Edges at a station by some of the points about its line."""
+    (along, across_above), (near, far), (k, start) = points, span, station
+    if far - near < 2 * _LEAST_POINTS:
+        return
+    stride = max(1, (far - near) // _MOST_POINTS)
+    values = np.empty(((far - near + stride - 1) // stride, 3))
+    values[:, 0] = (along[near:far:stride] - k) * of.STEP_M
+    values[:, 1:] = across_above[near:far:stride]
+    if start[of.IS_HIDDEN] != of.ASKEW:
+        _station((0, values.shape[0]), values, start, window.tolerance_m, out)
+        return
+    as_seen, seen = start.copy(), np.full(of.MEASURES, math.nan)
+    for view in (of.VISIBLE, of.HIDDEN):
+        as_seen[of.IS_HIDDEN] = view
+        seen[:] = math.nan
+        _station((0, values.shape[0]), values, as_seen, window.tolerance_m, seen)
+        # What shows its foot is no hidden face: something else cut its top off.
+        is_shadowed = not out[of.LOW_POINTS] >= _LEAST_POINTS
+        if view == of.VISIBLE or (is_shadowed and of.is_surer(seen, out)):
+            out[:] = seen
+        if _is_placed(out):
+            return
 
 
 def warm_up() -> None:
@@ -583,12 +589,11 @@ def warm_up() -> None:
     random = np.random.default_rng(0)
     across = random.uniform(-0.3, 0.3, 200)
     position = np.column_stack([across, np.where(across > 0, 0.15, 0.0)])
-    measures = np.full((3, MEASURES), np.nan)
+    measures = np.full((3, of.MEASURES), np.nan)
     edges_kernel(
         np.linspace(0, 2, 200),
         position,
         np.zeros((3, 4)),
-        Window(0.25, 0.5, 50.0, 0.005),
+        of.Window(0.25, 0.5, 50.0, 0.005),
         measures,
     )
-    nearest_kernel(np.zeros(1), np.zeros((1, 2)), np.zeros((1, 3)), 0.1, np.zeros(1, np.int64))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -9,20 +10,39 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from processing.core.kernels import kernel
 from processing.core.monitor import Monitor
 from processing.methods.road.curbs.edges.approximate_lines import ApproximateLine
-from processing.methods.road.curbs.edges.curb_edge_kernels import (
-    MEASURES,
-    Window,
-    edges_kernel,
-    nearest_kernel,
-)
+from processing.methods.road.curbs.edges.curb_edge_kernels import edges_kernel
 from processing.methods.road.curbs.edges.curb_points import ChosenPoints, LineCells, PointsAbout
+from processing.methods.road.curbs.edges.edge_measures import (
+    ASKEW,
+    HIDDEN,
+    MEASURES,
+    STEP_M,
+    VISIBLE,
+    Window,
+)
 from processing.recording.drive import Drive
 from processing.recording.vehicle_path.trajectory import Trajectory
 
 _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
+
+_SEEN_FROM = (0.0, -1.0, 1.0)
+"""Where on the vehicle's path a face is looked at from: the nearest place, and as far before and
+behind it as that is away (45° aside), from where curbs of side streets show their faces."""
+
+_LEAST_FRONT = 0.1
+"""Sine of the least angle (6°) between a face and the sight of it: at flatter ones pulses pass over
+a face 15 cm high within 1.5 m of ground, and its points are none that tell a plane."""
+
+_ASKEW = math.sin(math.radians(45.0))
+"""Sine of the angle below which a face is looked at rather along than across from the nearest
+place: whether it shows depends on where the scanner looks."""
+
+_LEAST_AWAY_M = 1e-3
+"""Guard of a division."""
 
 
 @dataclass(frozen=True)
@@ -125,35 +145,41 @@ def _measure(
     settings: EdgeSettings,
 ) -> list[MeasuredEdges]:
     measured = []
-    is_hidden = _hidden(approximate_lines, drive.trajectory)
+    views = _views(approximate_lines, drive.trajectory)
     first = 0
     for number, approximate_line in enumerate(approximate_lines):
         part = slice(int(about.starts[number]), int(about.starts[number + 1]))
         along = about.along[part]
         positions = np.column_stack([about.across[part], about.above[part]])
-        hidden = is_hidden[first : first + approximate_line.width_m.size]
-        first += hidden.size
+        view = views[first : first + approximate_line.width_m.size]
+        first += view.size
         stations = np.column_stack(
-            [approximate_line.width_m, hidden, approximate_line.step_m, approximate_line.is_edging]
+            [approximate_line.width_m, view, approximate_line.step_m, approximate_line.is_edging]
         )
         measures = _edges(along, positions, stations, settings)
         measured.append(MeasuredEdges(measures, along, positions, about.point[part]))
     return measured
 
 
-def _hidden(
-    approximate_lines: Sequence[ApproximateLine], trajectory: Trajectory | None
-) -> NDArray[np.bool_]:
-    """Where the faces of approximate lines look away from the vehicle, line by line."""
+def _views(approximate_lines: Sequence[ApproximateLine], trajectory: Trajectory | None) -> _Floats:
+    """(m,) how the faces of approximate lines are seen, line by line, for `edges_kernel`."""
     if trajectory is None:
-        return np.concatenate(
-            [approximate_line.is_hidden for approximate_line in approximate_lines]
-        )
+        hidden = [approximate_line.is_hidden for approximate_line in approximate_lines]
+        return np.where(np.concatenate(hidden), HIDDEN, VISIBLE)
     xy = np.vstack([approximate_line.xyz[:, :2] for approximate_line in approximate_lines])
     outwards = np.vstack([approximate_line.outwards for approximate_line in approximate_lines])
     vehicle_path = trajectory.xyz[:, :2]
-    nearest = cKDTree(vehicle_path).query(xy)[1]
-    return np.asarray(((vehicle_path[nearest] - xy) * outwards).sum(axis=1) > 0)
+    driven_m = np.append(0.0, np.cumsum(np.hypot(*np.diff(vehicle_path, axis=0).T)))
+    away_m, nearest = cKDTree(vehicle_path).query(xy)
+    fronts = []
+    for side in _SEEN_FROM:
+        at_m = driven_m[nearest] + side * away_m
+        seen_from = np.column_stack([np.interp(at_m, driven_m, one) for one in vehicle_path.T]) - xy
+        away = np.maximum(np.hypot(*seen_from.T), _LEAST_AWAY_M)
+        fronts.append(-(seen_from * outwards).sum(axis=1) / away)
+    is_seen = np.max(fronts, axis=0) > _LEAST_FRONT
+    seen = np.where(fronts[0] < _ASKEW, ASKEW, VISIBLE)
+    return np.where(is_seen, seen, HIDDEN)
 
 
 def _edges(
@@ -168,3 +194,33 @@ def _edges(
     measures = np.full((stations.shape[0], MEASURES), np.nan)
     edges_kernel(along, positions, stations, window, measures)
     return measures
+
+
+@kernel
+def nearest_kernel(
+    along: _Floats, across_above: _Floats, wanted: _Floats, within_m: float, nearest: _Integers
+) -> None:
+    """The point nearest to each of some places, (k, 3) in the same frame; −1 beyond a distance.
+
+    The first column of ``wanted`` rises.
+    """
+    first = 0
+    for k in range(wanted.shape[0]):
+        nearest[k] = -1
+        least = within_m * within_m
+        reach = within_m / STEP_M
+        while first < along.shape[0] and along[first] < wanted[k, 0] - reach:
+            first += 1
+        i = first
+        while i < along.shape[0] and along[i] <= wanted[k, 0] + reach:
+            away = ((along[i] - wanted[k, 0]) * STEP_M) ** 2
+            away += (across_above[i, 0] - wanted[k, 1]) ** 2
+            away += (across_above[i, 1] - wanted[k, 2]) ** 2
+            if away < least:
+                nearest[k], least = i, away
+            i += 1
+
+
+def warm_up() -> None:
+    """Compile the kernel."""
+    nearest_kernel(np.zeros(1), np.zeros((1, 2)), np.zeros((1, 3)), 0.1, np.zeros(1, np.int64))

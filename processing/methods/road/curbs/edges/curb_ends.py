@@ -10,8 +10,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.methods.road.curbs.edges.curb_edge_kernels import STEP_M
 from processing.methods.road.curbs.edges.curb_joins import JointEdges
+from processing.methods.road.curbs.edges.edge_measures import STEP_M
 
 _Floats = NDArray[np.float64]
 _Flags = NDArray[np.bool_]

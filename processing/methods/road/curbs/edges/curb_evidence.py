@@ -9,15 +9,23 @@ fields and hedges are rough and uneven.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from processing.methods.road.curbs.edges.approximate_lines import ApproximateLine
-from processing.methods.road.curbs.edges.curb_edge_kernels import HIGH_OFF, LEAN, LOW_OFF, STEP_M
+from processing.methods.road.curbs.edges.curb_edges import MeasuredEdges
 from processing.methods.road.curbs.edges.curb_ends import FACED
 from processing.methods.road.curbs.edges.curb_joins import JointEdges
 from processing.methods.road.curbs.edges.curb_lines import CurbLine
+from processing.methods.road.curbs.edges.edge_measures import (
+    HIGH_OFF,
+    LEAN,
+    LOW_OFF,
+    LOW_POINTS,
+    STEP_M,
+)
 from processing.methods.road.curbs.steps.curb_confidence import CurbFacts, confidence_of
 from processing.methods.road.curbs.steps.curb_runs import StepRun
 
@@ -35,8 +43,13 @@ trial."""
 _NOISES = 2.5
 """Places of one face differ by so many times the noise of single points. By trial."""
 
-_TALLEST_USUAL_M = 0.25
-"""Blocks of JIS A 5371 show no more above the road."""
+_TALLEST_USUAL_M, _TALLER = 0.25, 1.5
+"""Blocks of JIS A 5371 show no more above the road; of one survey's curbs the higher are about so
+many times as high as the lower, since walks are raised alike."""
+
+_TYPICAL_M = 10.0
+"""Lines of which so much was measured tell how high curbs are; walls and steps of houses with a
+curb's face and top hardly go on for as long."""
 
 _USUAL_LEAN = 0.3
 """Half of what a face may lean by Takahashi 2022, Table 6-1 (30°), m across per m of height."""
@@ -56,8 +69,45 @@ line counts as hidden if at least half of its places are."""
 _FIELD_M = 0.25
 """Below the road: no cross slope of a road comes down so far."""
 
+_LEAST_LONG_M = 0.5
+"""Guard of a logarithm: no line is shorter."""
+
+_SHOWN_M = 0.05
+"""Of lower steps pulses often miss the face: the lowest full curb."""
+
+_FOOT_POINTS = 1.0
+"""Weight of points before the edge; where none were seen it is less (`curb_edge_kernels`)."""
+
+_WALL_ASIDE_M, _WALL_ABOVE_M, _WALL_POINTS = 0.06, 0.10, 2
+"""So near to the upper edge, and so far above it, no more than a stray point lies unless the face
+goes on: what stands on a walk stands behind the stone, 10 cm wide and more."""
+
 _LEAST_STATIONS = 4
 """With fewer stations there are too few differences for a median."""
+
+
+class UsualMeasures(NamedTuple):
+    """What is usual in a recording.
+
+    Attributes
+    ----------
+    inlier_m : float
+        How far points may lie off a surface.
+    noise_m : float
+        How far single points of even ground lie off it.
+    step_m : float
+        Height of a curb.
+    """
+
+    inlier_m: float
+    noise_m: float
+    step_m: float
+
+
+def usual_step_m(curbs: Sequence[CurbLine]) -> float:
+    """How high curbs are: the median place of all long lines, m; of none, what standards allow."""
+    steps = [one.steps_m[one.is_seen] for one in curbs if one.is_seen.sum() * STEP_M >= _TYPICAL_M]
+    return _median(np.concatenate(steps)) if steps else _TALLEST_USUAL_M / _TALLER
 
 
 def noise_of(measures: Sequence[_Floats]) -> float:
@@ -71,8 +121,8 @@ def facts_of(
     line: tuple[ApproximateLine, CurbLine],
     runs: Sequence[StepRun],
     edges: JointEdges,
-    measures: Sequence[_Floats],
-    tolerances: tuple[float, float],
+    measured: Sequence[MeasuredEdges],
+    usual: UsualMeasures,
 ) -> CurbFacts:
     """The facts of a line along an approximate line.
 
@@ -84,10 +134,9 @@ def facts_of(
         What the approximate line is made of.
     edges : JointEdges
         At the approximate line's stations.
-    measures : sequence of (m, MEASURES) float64
+    measured : sequence of MeasuredEdges
         Of each drive.
-    tolerances : tuple of float
-        Inlier tolerance, m; noise of single points, m.
+    usual : UsualMeasures
     """
     approximate_line, curb = line
     stations = slice(int(curb.frame[0, 0]), int(curb.frame[-1, 0]) + 1)
@@ -102,9 +151,8 @@ def facts_of(
     above_m = _weighed(shares, lambda number: _seen_median(runs[number], "above_path_m"))
     above_m = 0.0 if above_m < -_FIELD_M else above_m
     known = np.isfinite(edges.across_error[stations])
-    part = [one[stations] for one in measures]
+    part = [one.measures[stations] for one in measured]
     is_faced = bool(known.any() and (edges.face_points[stations][known] > 0).mean() >= FACED)
-    inlier_m, noise_m = tolerances
     # Of a face that looks away from the vehicle nothing but the upper edge was measured. What was
     # found from its front without any point on the face is known by the ground before it alone.
     is_foot_seen = is_faced or float(approximate_line.is_hidden[stations].mean()) < _HIDDEN
@@ -116,11 +164,49 @@ def facts_of(
         risen_m=0.0 if crossing else short * risen_m,
         above_path_m=short * min(max(above_m, -_MOST_ABOVE_M), _MOST_ABOVE_M),
         crossing=float(crossing),
-        too_tall_m=min(max(_median(curb.steps_m) - _TALLEST_USUAL_M, 0.0), _MOST_TALL_M),
+        too_tall_m=min(max(_median(curb.steps_m) - _TALLER * usual.step_m, 0.0), _MOST_TALL_M),
         too_flat=min(max(lean - _USUAL_LEAN, 0.0), _MOST_FLAT),
-        uneven=_unevenness(edges, stations, max(inlier_m, _NOISES * noise_m), is_faced=is_faced),
-        rough=min(max(off_m / noise_m, 1.0), _MOST_ROUGH),
+        uneven=_unevenness(
+            edges, stations, max(usual.inlier_m, _NOISES * usual.noise_m), is_faced=is_faced
+        ),
+        rough=min(max(off_m / usual.noise_m, 1.0), _MOST_ROUGH),
+        long_m=min(max(float(curb.is_seen.sum()) * STEP_M, _LEAST_LONG_M), _LONG_M),
+        faceless=_faceless(line, edges, part, stations),
+        walled=_walled(curb, measured),
     )
+
+
+def _faceless(
+    line: tuple[ApproximateLine, CurbLine],
+    edges: JointEdges,
+    part: Sequence[_Floats],
+    stations: slice,
+) -> float:
+    """Share of the places whose foot and top are seen, and no point of the face between them."""
+    has_foot = np.any([one[:, LOW_POINTS] >= _FOOT_POINTS for one in part], axis=0)
+    approximate_line, curb = line
+    can_show = curb.is_seen & has_foot & (curb.steps_m >= _SHOWN_M)
+    can_show &= ~approximate_line.is_hidden[stations]
+    if can_show.sum() < _LEAST_STATIONS:
+        return 0.0
+    return float((edges.face_points[stations][can_show] <= 0).mean())
+
+
+def _walled(curb: CurbLine, measured: Sequence[MeasuredEdges]) -> float:
+    """Share of the places where the face goes on upwards beyond the upper edge."""
+    first = curb.upper_frame[0, 0]
+    has_wall = np.zeros(curb.is_seen.size, np.bool_)
+    for one in measured:
+        begin, end = np.searchsorted(one.along, curb.upper_frame[[0, -1], 0])
+        at = one.along[begin:end]
+        off = [
+            one.across_above[begin:end, k] - np.interp(at, *curb.upper_frame[:, [0, k + 1]].T)
+            for k in (0, 1)
+        ]
+        is_wall = (np.abs(off[0]) <= _WALL_ASIDE_M) & (off[1] >= _WALL_ABOVE_M)
+        counts = np.bincount((at[is_wall] - first).astype(np.int64), minlength=has_wall.size)
+        has_wall |= counts[: has_wall.size] >= _WALL_POINTS
+    return float(has_wall.mean())
 
 
 def _shares(approximate_line: ApproximateLine, stations: slice) -> dict[int, float]:

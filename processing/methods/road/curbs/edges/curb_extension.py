@@ -21,10 +21,13 @@ from processing.methods.road.curbs.edges.approximate_lines import (
     outwards_of,
     rejoin_lines,
 )
-from processing.methods.road.curbs.edges.curb_edge_kernels import STEP_M
-from processing.methods.road.curbs.edges.curb_edges import EdgeSettings, measure_edges_among
+from processing.methods.road.curbs.edges.curb_edges import (
+    EdgeSettings,
+    measure_edges_among,
+)
 from processing.methods.road.curbs.edges.curb_joins import JointEdges, join_edges
 from processing.methods.road.curbs.edges.curb_points import ChosenPoints, points_near
+from processing.methods.road.curbs.edges.edge_measures import STEP_M
 from processing.recording.drive import Drive
 
 _Floats = NDArray[np.float64]
@@ -47,12 +50,18 @@ REACH_M = 30.0
 """How far a curb is followed beyond its run: round a corner and some way into a side street. By
 trial."""
 
-_AHEAD = 6
-"""Stations that a line is carried on at a time, 1.5 m: as far as its last bend foretells within the
-0.4 m in which edges are looked for. By trial."""
 
-_KNOWN = 8
-"""Stations that say how a line goes on, 2 m. By trial."""
+class _Stride(NamedTuple):
+    """How a line is carried on: stations ahead, those that say how it goes on, those it shares."""
+
+    ahead: int
+    known: int
+    shared: int
+
+
+_NEAR = _Stride(6, 8, 2)
+"""1.5 m at a time by the last 2 m: as far as the last bend foretells within the 0.4 m in which
+edges are looked for. By trial."""
 
 _LEAST = 3
 """Stations ahead that must have an edge for the line to be followed farther. By trial."""
@@ -60,6 +69,8 @@ _LEAST = 3
 _LEAP, _LANDING, _LANDED = 24, 8, 7
 """Stations looked over at a time where a curb ends, lowered to the ground or hidden: 6 m, as long
 as an entrance; and how many of how many behind have its edge. By trial."""
+
+_LEAPING = _Stride(_LEAP + _LANDING, _NEAR.known, _NEAR.shared)
 
 _LANDING_M = 0.02
 """From station to station of a landing the edge moves aside by no more: it is straight. By
@@ -86,6 +97,9 @@ _MOST_BEND = 0.25
 _STRAIGHT = math.nan
 """Straight on: what is known may hold a corner that ends here."""
 
+_WAYS_ON = (_BENDS[:1], (*_BENDS[1:], _STRAIGHT))
+"""Bends that are tried one after the other while a way ends before its last station."""
+
 _LAST = 3
 """Stations whose direction that is."""
 
@@ -104,9 +118,6 @@ is the latter quantile near the end, as parts may be lowered. By trial."""
 
 _ERROR_M = 0.03
 """An edge across must be known so well: no better than scanlines tell it already. By trial."""
-
-_ANCHORS = 2
-"""Stations of an extension that are of the line itself."""
 
 
 def extend_lines(
@@ -137,7 +148,7 @@ def extend_lines(
     is_open = np.array([[not one.is_alone] * 2 for one in now], np.bool_)
     is_short = [one.is_alone or one.xyz.shape[0] < _LEAST_LINE for one in now]
     has_leapt = np.array([[short] * 2 for short in is_short], np.bool_)
-    for _ in range(round(REACH_M / (_AHEAD * STEP_M))):
+    for _ in range(round(REACH_M / (_NEAR.ahead * STEP_M))):
         monitor.check()
         _leap(now, (is_open, has_leapt), (drives, near), (settings, limits[0]))
         if not is_open.any():
@@ -154,26 +165,19 @@ def _carry_on(
 ) -> None:
     """Carry all open ends on once; ends without an edge ahead are closed."""
     ends = [(int(approximate_line), int(end)) for approximate_line, end in np.argwhere(is_open)]
-    straight = _best_continuations(approximate_lines, ends, _BENDS[:1], (recorded, settings))
-    short = [end for end, one in zip(ends, straight, strict=True) if one.stations < _AHEAD]
-    bent = dict(
-        zip(
-            short,
-            _best_continuations(
-                approximate_lines, short, (*_BENDS[1:], _STRAIGHT), (recorded, settings)
-            ),
-            strict=True,
-        )
-    )
-    for (approximate_line, end), one in zip(ends, straight, strict=True):
-        other = bent.get((approximate_line, end), one)
-        count, extension, edges = max(one, other, key=lambda each: each.stations)
-        is_open[approximate_line, end] = count >= _LEAST
-        if count:
-            known = np.isfinite(edges.lower_across)
-            approximate_lines[approximate_line] = _longer(
-                approximate_lines[approximate_line], extension, edges, (end, count), known
-            )
+    best: dict[tuple[int, int], _Continuation] = {}
+    for bends in _WAYS_ON:
+        lacking = [one for one in ends if one not in best or best[one].stations < _NEAR.ahead]
+        found = _best_continuations(approximate_lines, lacking, bends, (recorded, settings))
+        for one, way in zip(lacking, found, strict=True):
+            if one not in best or way.stations > best[one].stations:
+                best[one] = way
+    for (number, end), chosen in best.items():
+        is_open[number, end] = chosen.stations >= _LEAST
+        if chosen.stations:
+            line = approximate_lines[number]
+            is_good = _is_good(chosen.edges, line, end)
+            approximate_lines[number] = _longer(line, chosen, end, is_good)
 
 
 def _leap(
@@ -203,8 +207,9 @@ def _leap(
         is_good = _is_good(edges, approximate_lines[approximate_line], end)
         count = _landing_of(_turn_round(edges) if end == 0 else edges, is_good[:: 1 if end else -1])
         if count:
+            way = _Continuation(count, extension, edges)
             approximate_lines[approximate_line] = _longer(
-                approximate_lines[approximate_line], extension, edges, (end, count), is_good
+                approximate_lines[approximate_line], way, end, is_good
             )
             is_open[approximate_line, end] = True
             has_leapt[approximate_line, end] = False
@@ -212,7 +217,7 @@ def _leap(
 
 def _straight_on(approximate_line: ApproximateLine, end: int, aside: float) -> ApproximateLine:
     """An extension as long as a leap, turned aside, rad."""
-    extension = _extension(approximate_line, end, _STRAIGHT, _LEAP + _LANDING)
+    extension = _extension(approximate_line, end, _STRAIGHT, _LEAPING)
     pivot = extension.xyz[-2 if end == 0 else 1]
     cos, sin = math.cos(aside), math.sin(aside)
     xyz = extension.xyz.copy()
@@ -222,13 +227,13 @@ def _straight_on(approximate_line: ApproximateLine, end: int, aside: float) -> A
 
 def _landing_of(edges: JointEdges, is_good: NDArray[np.bool_]) -> int:
     """How many stations behind the two known ones there are up to a straight edge; 0: none."""
-    for first in range(_ANCHORS, is_good.size - _LANDING + 1):
+    for first in range(_NEAR.shared, is_good.size - _LANDING + 1):
         part = slice(first, first + _LANDING)
         good = is_good[part]
         if is_good[first] and good.sum() >= _LANDED:
             across = edges.lower_across[part][good]
             if np.abs(np.diff(across)).max() <= _LANDING_M:
-                return first - _ANCHORS + int(np.flatnonzero(good)[-1]) + 1
+                return first - _NEAR.shared + int(np.flatnonzero(good)[-1]) + 1
     return 0
 
 
@@ -240,7 +245,7 @@ def _best_continuations(
 ) -> list[_Continuation]:
     """For each end the best of some ways to go on."""
     extensions = [
-        _extension(approximate_lines[approximate_line], end, bend)
+        _extension(approximate_lines[approximate_line], end, bend, _NEAR)
         for approximate_line, end in ends
         for bend in bends
     ]
@@ -250,7 +255,8 @@ def _best_continuations(
     best: list[_Continuation] = []
     for number, (approximate_line, end) in enumerate(ends):
         those = range(number * len(bends), (number + 1) * len(bends))
-        counts = [_followed(edges[one], approximate_lines[approximate_line], end) for one in those]
+        line = approximate_lines[approximate_line]
+        counts = [_followed(edges[one], line, end) for one in those]
         most = int(np.argmax(counts))
         best.append(_Continuation(counts[most], extensions[those[most]], edges[those[most]]))
     return best
@@ -261,7 +267,11 @@ def _trim(
     recorded: _Recorded,
     settings: _Settings,
 ) -> list[ApproximateLine]:
-    """Lines without what is no edge at their ends: a run may go on too far into a mouth."""
+    """Lines whose ends lie on the edges: without what is none, as a run may go on into a mouth.
+
+    Places of runs lie up to some centimetres off, and their last ones straight on where a curb
+    bends; how a line goes on is told by where the edge itself was measured.
+    """
     ends = [
         (approximate_line, end)
         for approximate_line in range(len(approximate_lines))
@@ -280,10 +290,27 @@ def _trim(
         if is_good.any():
             first = int(np.argmax(is_good))
             whole = trimmed[approximate_line].xyz.shape[0]
-            if whole - first >= _KNOWN:
+            if whole - first >= _NEAR.known:
                 part = slice(first, whole) if end == 0 else slice(0, whole - first)
-                trimmed[approximate_line] = _part(trimmed[approximate_line], part)
+                moved = _on_edge(trimmed[approximate_line], edges[number], end, is_good)
+                trimmed[approximate_line] = _part(moved, part)
     return trimmed
+
+
+def _on_edge(
+    approximate_line: ApproximateLine, edges: JointEdges, end: int, is_good: NDArray[np.bool_]
+) -> ApproximateLine:
+    """A line whose last places at an end were put where edges are; ``is_good`` begins there."""
+    known = is_good if end == 0 else is_good[::-1]
+    at = np.arange(known.size)
+    # What was cut off at the other end may have been of this one too.
+    count = min(known.size, approximate_line.xyz.shape[0])
+    where = slice(0, count) if end == 0 else slice(-count, None)
+    xyz = approximate_line.xyz.copy()
+    across = np.interp(at, at[known], edges.lower_across[known])[where]
+    xyz[where, :2] += approximate_line.outwards[where] * across[:, None]
+    xyz[where, 2] += np.interp(at, at[known], edges.lower_above[known])[where]
+    return replace(approximate_line, xyz=xyz, outwards=outwards_of(xyz))
 
 
 def _measure(
@@ -326,11 +353,11 @@ def _turn_round(edges: JointEdges) -> JointEdges:
 
 
 def _extension(
-    approximate_line: ApproximateLine, end: int, more_bend: float, ahead_of: int = _AHEAD
+    approximate_line: ApproximateLine, end: int, more_bend: float, stride: _Stride
 ) -> ApproximateLine:
     """The last places of an approximate line and as it would go on, in its own direction."""
     order = slice(None, None, -1 if end == 0 else 1)
-    known = approximate_line.xyz[order][-_KNOWN:]
+    known = approximate_line.xyz[order][-stride.known :]
     ahead = np.diff(known, axis=0)
     heading = np.unwrap(np.arctan2(ahead[:, 1], ahead[:, 0]))
     bend, last = 0.0, float(heading[-1])
@@ -340,12 +367,14 @@ def _extension(
         last = float(heading.mean()) + bend * float(away[-1])
     if math.isnan(more_bend):
         last, bend, more_bend = float(np.mean(heading[-_LAST:])), 0.0, 0.0
-    turned = last + np.clip(bend + more_bend, -_MOST_BEND, _MOST_BEND) * np.arange(1, ahead_of + 1)
+    turned = last + np.clip(bend + more_bend, -_MOST_BEND, _MOST_BEND) * np.arange(
+        1, stride.ahead + 1
+    )
     rise = float(np.median(ahead[:, 2]))
     going = np.column_stack(
-        [np.cos(turned) * STEP_M, np.sin(turned) * STEP_M, np.full(ahead_of, rise)]
+        [np.cos(turned) * STEP_M, np.sin(turned) * STEP_M, np.full(stride.ahead, rise)]
     )
-    xyz = np.vstack([known[-_ANCHORS:], known[-1] + np.cumsum(going, axis=0)])[order]
+    xyz = np.vstack([known[-stride.shared :], known[-1] + np.cumsum(going, axis=0)])[order]
     positions = np.full(xyz.shape[0], 0 if end == 0 else approximate_line.xyz.shape[0] - 1)
     return replace(
         approximate_line,
@@ -365,7 +394,7 @@ def _followed(edges: JointEdges, approximate_line: ApproximateLine, end: int) ->
     is_good = _is_good(_turn_round(edges) if end == 0 else edges, approximate_line, end)
     missing = 0
     count = 0
-    for station, good in enumerate(is_good[_ANCHORS:].tolist()):
+    for station, good in enumerate(is_good[_NEAR.shared :].tolist()):
         missing = 0 if good else missing + 1
         if missing > 1:
             break
@@ -375,7 +404,7 @@ def _followed(edges: JointEdges, approximate_line: ApproximateLine, end: int) ->
 
 def _is_good(edges: JointEdges, approximate_line: ApproximateLine, end: int) -> NDArray[np.bool_]:
     """Where there is an edge like those of the approximate line some way from its end."""
-    inside = slice(0, 4 * _KNOWN) if end == 0 else slice(-4 * _KNOWN, None)
+    inside = slice(0, 4 * _NEAR.known) if end == 0 else slice(-4 * _NEAR.known, None)
     usual = float(np.quantile(approximate_line.step_m[inside], _USUAL_OF_END))
     with np.errstate(invalid="ignore"):
         return np.asarray(
@@ -387,22 +416,19 @@ def _is_good(edges: JointEdges, approximate_line: ApproximateLine, end: int) -> 
 
 
 def _longer(
-    approximate_line: ApproximateLine,
-    extension: ApproximateLine,
-    edges: JointEdges,
-    which: tuple[int, int],
-    known: NDArray[np.bool_],
+    approximate_line: ApproximateLine, way: _Continuation, end: int, known: NDArray[np.bool_]
 ) -> ApproximateLine:
-    """A line with the stations of its extension up to the last that has an edge."""
-    end, count = which
+    """A line with the stations of a way on up to the last that has an edge."""
+    count, extension, edges = way
     at = np.arange(known.size)
     across = np.interp(at, at[known], edges.lower_across[known])
     above = np.interp(at, at[known], edges.lower_above[known])
     xyz = extension.xyz.copy()
     xyz[:, :2] += extension.outwards * across[:, None]
     xyz[:, 2] += above
-    behind = known.size - _ANCHORS
-    part = slice(behind - count, behind) if end == 0 else slice(_ANCHORS, _ANCHORS + count)
+    behind = known.size - _NEAR.shared
+    ahead = slice(_NEAR.shared, _NEAR.shared + count)
+    part = slice(behind - count, behind) if end == 0 else ahead
     return _with(
         approximate_line,
         end,

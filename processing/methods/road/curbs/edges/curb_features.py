@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from processing.map.drafting.needed_positions import needed_positions
 from processing.methods.road.curbs.edges.approximate_lines import ApproximateLine
-from processing.methods.road.curbs.edges.curb_edge_kernels import STEP_M
 from processing.methods.road.curbs.edges.curb_edges import MeasuredEdges
 from processing.methods.road.curbs.edges.curb_lines import CurbLine, in_space
 from processing.methods.road.curbs.edges.curb_types import CurbType, TypedPart, typed_parts
+from processing.methods.road.curbs.edges.edge_measures import STEP_M
 
 _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]

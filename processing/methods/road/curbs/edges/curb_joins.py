@@ -8,7 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.methods.road.curbs.edges.curb_edge_kernels import (
+from processing.methods.road.curbs.edges.curb_join_kernels import join_kernel
+from processing.methods.road.curbs.edges.edge_measures import (
     ERROR_ACROSS,
     ERROR_HIGH,
     ERROR_LOW,
@@ -21,7 +22,6 @@ from processing.methods.road.curbs.edges.curb_edge_kernels import (
     UPPER_ABOVE,
     UPPER_ACROSS,
 )
-from processing.methods.road.curbs.edges.curb_join_kernels import join_kernel
 
 _Floats = NDArray[np.float64]
 

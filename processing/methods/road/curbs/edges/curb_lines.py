@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 from scipy.ndimage import percentile_filter
 
 from processing.methods.road.curbs.edges.approximate_lines import ApproximateLine
-from processing.methods.road.curbs.edges.curb_edge_kernels import STEP_M
 from processing.methods.road.curbs.edges.curb_ends import FACED, own_part
 from processing.methods.road.curbs.edges.curb_joins import JointEdges
 from processing.methods.road.curbs.edges.curb_smoothing import Smoothness, smooth_values
+from processing.methods.road.curbs.edges.edge_measures import STEP_M
 
 _Floats = NDArray[np.float64]
 _Flags = NDArray[np.bool_]

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import percentile_filter
 
-from processing.methods.road.curbs.edges.curb_edge_kernels import STEP_M
+from processing.methods.road.curbs.edges.edge_measures import STEP_M
 
 _Floats = NDArray[np.float64]
 

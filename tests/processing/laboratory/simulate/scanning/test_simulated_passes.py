@@ -54,6 +54,16 @@ def test_a_longer_drive_begins_like_a_shorter_one() -> None:
     assert np.array_equal(short.positions[:same], long.positions[:same])
 
 
+def test_errors_of_the_attitude_are_delivered_as_small_turns() -> None:
+    street = Street(5, URBAN, 60.0)
+    driven = pass_of(street, 0, Driving(9.0, stops=False, drift_m=0.0, attitude_deg=0.05))
+    delivered = Trajectory(driven.time_s, driven.positions, driven.delivered_deg, has_attitude=True)
+    axes = driven.rotations
+    turned = axes + np.cross(np.einsum("nij,nj->ni", axes, driven.turned_rad)[:, None], axes.mT).mT
+    assert np.abs(driven.turned_rad).max() > 2e-4
+    assert np.abs(delivered.rotations_at(driven.time_s) - turned).max() < 5e-5
+
+
 def test_the_error_of_the_trajectory_is_as_large_as_was_wished() -> None:
     street = Street(8, RURAL, 20_000.0)
     driven = pass_of(street, 0, Driving(10.0, stops=False, drift_m=0.02))
