@@ -6,6 +6,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from processing.core.monitor import Monitor
 from processing.core.parameters import length, ratio
 from processing.core.text import Text
@@ -97,7 +99,7 @@ def _candidate(tree: StreetTree) -> Candidate:
         "street_tree",
         "point",
         tree.foot[None],
-        tree.points[:1],
+        np.array([-1], np.int64),  # the foot lies on no measured point
         tree.confidence,
         attributes,
         tree.drives[:1],
@@ -118,6 +120,6 @@ TREES = Tool(
     parameters=TreeParameters,
     method=SurveyFinder(find_trees),
     makes=("street_tree",),
-    button=ToolButton(Text("Find street trees", "街路樹を抽出"), "Ctrl+Shift+F9", "mdi6.tree"),
+    button=ToolButton(Text("Find street trees", "街路樹を抽出"), "Ctrl+Shift+F8", "mdi6.tree"),
     scorer=TREE_SCORER,
 )

@@ -207,7 +207,7 @@ def test_a_delivered_file_is_never_written_over(
 def test_stopped_work_leaves_nothing(
     epochs: tuple[Path, Path], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    def stop(*_: object) -> None:
+    def stop(*_: object, **__: object) -> None:
         raise Cancelled
 
     monkeypatch.setattr("processing.operations.volume.compare", stop)

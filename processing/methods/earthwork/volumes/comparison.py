@@ -106,7 +106,8 @@ def compare(
     change = _change(grid, surfaces, inside)
     checks.check_common(change, before, after)
     summing.report(0.0, _SUMMING)
-    spread = joined.change_spread if len(epochs) > 1 else joined.grounds[0].spread
+    is_alone = len(epochs) == 1
+    spread = joined.grounds[0].spread if is_alone else joined.change_spread
     tie = _Tie((before, after), registration, len(epochs), spread, tuple(others))
     return _result_of(change, tie, (parameters, within), summing)
 
@@ -134,6 +135,9 @@ def _filled(
     for number, one in enumerate(every):
         context = EpochContext(one.shift_m, (*counted[:number], *counted[number + 1 :]))
         grounds.append(measured_surface(one.ground, one.cells, inside > 0, monitor, context))
+    if not every:
+        # A design against another, or a level: nothing was measured that could be unsure.
+        return JoinedDates((), np.zeros((grid.rows, grid.columns)))
     if len(every) < 2:
         return JoinedDates(tuple(grounds), grounds[0].spread)
     wanted = inside > 0

@@ -58,10 +58,12 @@ def recorded(folder: Path, *, without: tuple[float, float] | None = None) -> Dri
 
 
 def imported(folder: Path, street: SimulatedDrive, *, is_bare: bool = False) -> Drive:
-    """Import a recording; a bare one has neither times nor trajectory."""
+    """Import a recording; a bare one has neither times, nor trajectory, nor its order."""
     if is_bare:
-        times = np.full_like(street.columns["time"], np.nan)
-        street = dataclasses.replace(street, columns={**street.columns, "time": times})
+        order = np.random.default_rng(0).permutation(street.columns["time"].size)
+        columns = {name: values[order] for name, values in street.columns.items()}
+        times = np.full_like(columns["time"], np.nan)
+        street = dataclasses.replace(street, columns={**columns, "time": times})
     points = write_laz(street, folder / "street.laz")
     trajectories = () if is_bare else (write_trajectory_csv(street, folder / "trajectory.csv"),)
     (folder / "drives").mkdir()
