@@ -123,6 +123,18 @@ def ratio(
     )
 
 
+def least_confidence(default: float, explanation: Text) -> Any:
+    """From which confidence on a tool that finds things shows them."""
+    return ratio(
+        default,
+        low=0.0,
+        high=1.0,
+        name=Text("Least confidence", "信頼度の下限"),
+        explanation=explanation,
+        picture="confidence/least",
+    )
+
+
 def count(
     default: int,
     *,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -91,6 +92,14 @@ def share_of(hits: int, of: int) -> ShareInterval:
     low = 0.0 if hits == 0 else max(0.0, middle - half)
     high = 1.0 if hits == of else min(1.0, middle + half)
     return ShareInterval(hits, of, low, high)
+
+
+def reliability_of_pairs(pairs: Sequence[tuple[float, bool]]) -> Reliability:
+    """The same of candidates as pairs: a confidence, and whether it was right."""
+    return reliability_of(
+        np.array([one for one, _ in pairs], np.float64),
+        np.array([is_right for _, is_right in pairs], np.bool_),
+    )
 
 
 def reliability_of(

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from processing.core.monitor import Monitor, PartMonitor, parts_of
-from processing.core.parameters import angle, length, ratio
+from processing.core.parameters import angle, least_confidence, length
 from processing.core.text import Text
 from processing.methods.road.curbs.edges.approximate_lines import (
     ApproximateLine,
@@ -155,16 +155,12 @@ class CurbParameters:
         ),
         picture="curb_along/bridge",
     )
-    least_confidence: float = ratio(
+    least_confidence: float = least_confidence(
         0.6,
-        low=0.0,
-        high=1.0,
-        name=Text("Least confidence", "信頼度の下限"),
-        explanation=Text(
+        Text(
             "Lines that are less likely to be curbs are left out.",
             "縁石である見込みがこの値より低い線は出力しません。",
         ),
-        picture="confidence/least",
     )
 
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.core.monitor import Monitor, PartMonitor, parts_of
-from processing.core.parameters import count, length, ratio
+from processing.core.parameters import count, least_confidence, length
 from processing.core.text import Text
 from processing.methods.road.curbs.edges.curb_points import LineCells
 from processing.methods.road.diagnostics import Diagnostic
@@ -102,16 +102,12 @@ class GutterParameters:
         ),
         picture="lids/most",
     )
-    least_confidence: float = ratio(
+    least_confidence: float = least_confidence(
         0.5,
-        low=0.0,
-        high=1.0,
-        name=Text("Least confidence", "信頼度の下限"),
-        explanation=Text(
+        Text(
             "Lids that are less likely to be right are left out.",
             "正しい見込みがこの値より低い蓋は出力しません。",
         ),
-        picture="confidence/least",
     )
 
 

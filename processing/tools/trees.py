@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from processing.core.monitor import Monitor
-from processing.core.parameters import length, ratio
+from processing.core.parameters import least_confidence, length
 from processing.core.text import Text
 from processing.methods.road.trees.street_trees import StreetTree, TreeSettings, street_trees
 from processing.recording.drive import Drive
@@ -39,16 +39,12 @@ class TreeParameters:
             "地上1.2 mでこれより太いものは、街路樹の幹とみなしません。",
         ),
     )
-    least_confidence: float = ratio(
+    least_confidence: float = least_confidence(
         0.5,
-        low=0.0,
-        high=1.0,
-        name=Text("Least confidence", "信頼度の下限"),
-        explanation=Text(
+        Text(
             "What is less likely to be a tree is left out.",
             "樹木である見込みがこの値より低いものは出力しません。",
         ),
-        picture="confidence/least",
     )
 
 

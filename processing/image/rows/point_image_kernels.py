@@ -38,7 +38,7 @@ class PixelLayout(NamedTuple):
 
 
 @kernel
-def first_at(pulses: Integers, start: int, stop: int, pulse: int) -> int:
+def first_at(pulses: Integers | NDArray[np.int32], start: int, stop: int, pulse: int) -> int:
     """The first of the points ``start … stop − 1`` whose pulse isn't less; else ``stop``."""
     low, high = start, stop
     while low < high:

@@ -38,7 +38,7 @@ from processing.laboratory.accuracy.road.road_tables import (
 )
 from processing.recording.passes import passes_of
 from processing.scoring.gutters import gutter_score, score_gutters
-from processing.scoring.reliability import Reliability, reliability_of
+from processing.scoring.reliability import Reliability, reliability_of_pairs
 
 SEEDS = range(2200, 2210)
 LENGTH_M = 60.0
@@ -86,13 +86,7 @@ class MountingScores:
 
     def reliabilities(self) -> dict[str, Reliability]:
         """Of each simulator's streets."""
-        return {
-            name: reliability_of(
-                np.array([one for one, _ in pairs], np.float64),
-                np.array([is_right for _, is_right in pairs], np.bool_),
-            )
-            for name, pairs in self.judged.items()
-        }
+        return {name: reliability_of_pairs(pairs) for name, pairs in self.judged.items()}
 
     def section(self) -> str:
         """Of the page."""

@@ -15,8 +15,6 @@ from dataclasses import dataclass, field
 from itertools import chain
 from pathlib import Path
 
-import numpy as np
-
 from processing.core.output_streams import write_every_character
 from processing.core.safe_write import write_safely
 from processing.formats.vectors.mapped_shapes import read_mapped
@@ -53,7 +51,7 @@ from processing.laboratory.accuracy.road.road_tables import (
 from processing.scoring.curb_lines import curb_score, score_edges
 from processing.scoring.gutters import gutter_score, score_gutters
 from processing.scoring.mapped_features import MappedFile
-from processing.scoring.reliability import Reliability, reliability_of
+from processing.scoring.reliability import Reliability, reliability_of_pairs
 
 SEEDS = range(1007, 1019)
 TOOLS = ("curbs", "gutters")
@@ -119,13 +117,7 @@ class RoadScores:
 
     def reliabilities(self) -> dict[str, Reliability]:
         """Of each tool, over all streets."""
-        return {
-            tool: reliability_of(
-                np.array([one for one, _ in pairs], np.float64),
-                np.array([is_right for _, is_right in pairs], np.bool_),
-            )
-            for tool, pairs in self.judged.items()
-        }
+        return {tool: reliability_of_pairs(pairs) for tool, pairs in self.judged.items()}
 
     def _add_failures(
         self,

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from processing.core.kernels import kernel
 from processing.core.monitor import Monitor
+from processing.image.rows.point_image_kernels import first_at
 from processing.methods.noise.beams.beam_kernels import PointBeams
 from processing.methods.noise.neighbours.sharing import share_out
 
@@ -146,7 +147,7 @@ def _is_accompanied(beams: PointBeams, point: int, row: int, reach: int, limit: 
         if beams.segments[other] != beams.segments[row]:
             continue
         end = beams.row_starts[other + 1]
-        at = _first_from(beams.columns, beams.row_starts[other], end, column - aside)
+        at = first_at(beams.columns, beams.row_starts[other], end, column - aside)
         while at < end and beams.columns[at] <= column + aside:
             is_near = at != point and abs(beams.ranges[at] - beams.ranges[point]) <= limit
             if is_near and _square_away(beams, at, point) <= square:
@@ -219,7 +220,7 @@ def _beside_in_next(beams: PointBeams, point: int, row: int, way: int) -> float:
     if other < 0 or other >= beams.segments.size or beams.segments[other] != beams.segments[row]:
         return math.nan
     end, column = beams.row_starts[other + 1], beams.columns[point]
-    at = _first_from(beams.columns, beams.row_starts[other], end, column - 1)
+    at = first_at(beams.columns, beams.row_starts[other], end, column - 1)
     best = math.nan
     while at < end and beams.columns[at] <= column + 1:
         reach: float = beams.ranges[at]
@@ -227,18 +228,6 @@ def _beside_in_next(beams: PointBeams, point: int, row: int, way: int) -> float:
             best = reach
         at += 1
     return best
-
-
-@kernel
-def _first_from(columns: NDArray[np.int32], first: int, end: int, column: int) -> int:
-    """The first place of a rising stretch from which columns are at least so high."""
-    while first < end:
-        middle = (first + end) // 2
-        if columns[middle] < column:
-            first = middle + 1
-        else:
-            end = middle
-    return first
 
 
 def warm_up() -> None:

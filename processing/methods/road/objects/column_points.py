@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 from processing.core.arrays import Floats, Integers
 from processing.core.kernels import kernel
 from processing.core.monitor import Monitor
-from processing.methods.road.objects.columns import FoundColumns
 from processing.methods.road.objects.drive_chunks import chunks_of
 from processing.methods.road.objects.sparse_plan import (
     CELL_M,
@@ -51,7 +50,7 @@ class ColumnPoints:
 def points_about(
     drives: Sequence[Drive],
     plan: SparsePlan,
-    columns: FoundColumns,
+    middles: Floats,
     radius_m: float,
     monitor: Monitor,
 ) -> ColumnPoints:
@@ -59,15 +58,15 @@ def points_about(
 
     Parameters
     ----------
+    middles : (k, 2) float64
+        Of the columns, m about the origin of the plan.
     radius_m : float
     """
-    nearest = _nearest_columns(plan, columns, radius_m)
+    nearest = _nearest_columns(plan, middles, radius_m)
     parts: list[tuple[Integers, Floats, Integers, Integers]] = []
     for chunk in chunks_of(drives, plan.origin, monitor):
         owners = np.empty(len(chunk.local), np.int32)
-        owners_kernel(
-            chunk.local, plan.table, nearest.reshape(-1), columns.middles, radius_m, owners
-        )
+        owners_kernel(chunk.local, plan.table, nearest.reshape(-1), middles, radius_m, owners)
         owners[chunk.is_noise] = -1
         kept = np.flatnonzero(owners >= 0)
         numbers = np.full(kept.size, chunk.drive, np.int64)
@@ -76,11 +75,11 @@ def points_about(
         )
     if not parts:
         none = np.empty(0, np.int64)
-        return ColumnPoints(np.zeros(len(columns) + 1, np.int64), np.empty((0, 3)), none, none)
+        return ColumnPoints(np.zeros(len(middles) + 1, np.int64), np.empty((0, 3)), none, none)
     owner = np.concatenate([one[0] for one in parts])
     order = np.argsort(owner, kind="stable")
     return ColumnPoints(
-        np.searchsorted(owner[order], np.arange(len(columns) + 1)),
+        np.searchsorted(owner[order], np.arange(len(middles) + 1)),
         np.concatenate([one[1] for one in parts])[order],
         np.concatenate([one[2] for one in parts])[order],
         np.concatenate([one[3] for one in parts])[order],
@@ -108,12 +107,12 @@ def owners_kernel(
         owners[point] = column
 
 
-def _nearest_columns(plan: SparsePlan, columns: FoundColumns, radius_m: float) -> NDArray[np.int32]:
+def _nearest_columns(plan: SparsePlan, middles: Floats, radius_m: float) -> NDArray[np.int32]:
     """(tiles, 64, 64) the column nearest to each cell; −1 where none is near."""
     nearest = np.full((len(plan), TILE, TILE), -1, np.int32)
     away = np.full((len(plan), TILE, TILE), np.inf, np.float32)
     reach = int(np.ceil(radius_m / CELL_M)) + 1
-    nearest_kernel(columns.middles, reach, plan.table, nearest.reshape(-1), away.reshape(-1))
+    nearest_kernel(middles, reach, plan.table, nearest.reshape(-1), away.reshape(-1))
     return nearest
 
 

@@ -171,10 +171,9 @@ def _ring_steps() -> list[tuple[int, int]]:
 def _columns_of(slabs: NDArray[np.uint32]) -> list[tuple[Floats, int]]:
     """Middles of columns in cells of the tile inside the window, and where they stand free."""
     free = free_slabs(slabs)
-    height = _longest_run(free & _BEGINS) + _longest_run(free)
-    is_column = _longest_run(free) >= _FEWEST_SLABS
-    is_column &= _longest_run(free & _BEGINS) >= _FEWEST_SLABS
-    weights = np.where(is_column, height, 0).astype(np.float64)
+    low = _longest_run(free & _BEGINS)
+    is_column = low >= _FEWEST_SLABS
+    weights = np.where(is_column, low + _longest_run(free), 0).astype(np.float64)
     about = ndimage.uniform_filter(weights, 3, mode="constant")
     # Of cells that are alike, the weights themselves tell.
     about += 1e-3 * weights

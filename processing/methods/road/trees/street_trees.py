@@ -106,9 +106,8 @@ def street_trees(
     trunks = _standing_trunks(drives, plan, settings, PartMonitor(monitor, 0.0, 0.8))
     if not trunks:
         return ()
-    feet = np.array([one.foot for one in trunks])
-    stands = FoundColumns(feet[:, :2].copy(), feet[:, 2].copy(), np.zeros(len(feet), np.uint32))
-    around = points_about(drives, plan, stands, CROWN_M, PartMonitor(monitor, 0.8, 1.0))
+    feet = np.array([one.foot[:2] for one in trunks])
+    around = points_about(drives, plan, feet, CROWN_M, PartMonitor(monitor, 0.8, 1.0))
     trees: list[StreetTree] = []
     for number, one in enumerate(trunks):
         monitor.check()
@@ -126,7 +125,9 @@ def _standing_trunks(
     ground = ground_heights(drives, plan, PartMonitor(monitor, 0.0, 0.25))
     found = find_columns(drives, plan, ground, PartMonitor(monitor, 0.25, 0.5))
     columns = _joined(found)
-    gathered = points_about(drives, plan, columns, _TRUNK_M, PartMonitor(monitor, 0.5, 0.75))
+    gathered = points_about(
+        drives, plan, columns.middles, _TRUNK_M, PartMonitor(monitor, 0.5, 0.75)
+    )
     trunks: list[_StandingTrunk] = []
     for number in range(len(columns)):
         monitor.check()
