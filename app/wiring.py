@@ -12,7 +12,7 @@ from app.importing.drive_wiring import connect_drives
 from app.importing.import_wiring import connect_imports
 from app.jobs.jobs import JobState, JobStatus
 from app.review.review_wiring import connect_review
-from app.runs.process_actions import one_click_buttons, run_action_of
+from app.runs.process_actions import FIND_ALL, one_click_buttons, run_action_of
 from app.templates.template_wiring import connect_templates
 from app.views.view_wiring import connect_views
 from app.volumes.volume_wiring import connect_volumes
@@ -20,6 +20,7 @@ from app.window.window_parts import WindowParts, take_down
 from processing.core.errors import Unsuitable
 from processing.core.text import Text
 from processing.map.change import Change
+from processing.tools.registry import extractors
 from processing.tools.runner import check_needs, tool_of
 from widgets.parts.job_view import JobView
 from widgets.parts.literal_text import literal
@@ -124,6 +125,9 @@ class _Wiring(QObject):
         for tool in one_click_buttons():
             reason = self.reason_against_tool(tool)
             self._parts.window.actions_made.forbid(run_action_of(tool), reason)
+        reasons = [self.reason_against_tool(tool) for tool in extractors()]
+        against_all = reasons[0] if reasons and all(reasons) else None
+        self._parts.window.actions_made.forbid(FIND_ALL, against_all)
 
     def remark_on_tool(self, tool: str) -> Text | None:
         """What must be given for a tool on the drive shown; None where nothing must."""

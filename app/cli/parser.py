@@ -64,6 +64,7 @@ def read_arguments(arguments: Sequence[str]) -> tuple[Command, argparse.Namespac
         _add_reading_commands,
         _add_working_commands,
         _add_run,
+        _add_extract,
         _add_simulate,
     ):
         add(commands)
@@ -181,6 +182,23 @@ def _add_run(commands: _Commands[_Parser]) -> None:
         help="of what the project stores: candidates that need no review",
     )
     running.set_defaults(module="run")
+
+
+def _add_extract(commands: _Commands[_Parser]) -> None:
+    extracting = commands.add_parser("extract", help="find all: every extractor, one after another")
+    _add_inputs(extracting)
+    extracting.add_argument(
+        "--tools", default="", metavar="TOOL,TOOL...", help="without it all that find things"
+    )
+    extracting.add_argument("--set", action="append", default=[], metavar="TOOL.NAME=VALUE")
+    extracting.add_argument(
+        "--out",
+        type=Path,
+        metavar="DIR",
+        help="a GeoJSON file of each tool; without it the project stores the results",
+    )
+    extracting.add_argument("--accept-above", type=float, metavar="CONFIDENCE")
+    extracting.set_defaults(module="extract")
 
 
 def _add_simulate(commands: _Commands[_Parser]) -> None:

@@ -8,7 +8,7 @@ from dataclasses import replace
 from app.window.action import Action
 from app.window.window_parts import WindowParts
 from processing.core.text import Text
-from processing.tools.registry import TOOLS
+from processing.tools.registry import TOOLS, extractors
 from processing.tools.tool import ToolButton
 from processing.tools.volume import VOLUME
 
@@ -23,6 +23,10 @@ _WAY = Text(
 def one_click_buttons() -> Mapping[str, ToolButton]:
     """The buttons of the tools that have one, by the tools' ids."""
     return {tool.id: tool.button for tool in TOOLS.values() if tool.button is not None}
+
+
+FIND_ALL = "run-extractors"
+"""Id of the action that runs all of them that find things."""
 
 
 def run_action_of(tool: str) -> str:
@@ -71,10 +75,37 @@ def process_actions(parts: WindowParts) -> tuple[Action, ...]:
         "cancel-jobs", Text("Cancel all jobs", "すべてのジョブを中止"), cancel_all, "process"
     )
     return (
+        _find_all_action(parts),
         *(running(tool, button) for tool, button in one_click_buttons().items()),
         *(showing(tool) for tool in TOOLS),
         *_volume_actions(parts),
         cancel,
+    )
+
+
+def _find_all_action(parts: WindowParts) -> Action:
+    """All extractors, queued one after another; those that can't run are passed over."""
+
+    def find_all() -> None:
+        for tool in extractors():
+            parts.processing_panel.run_tool(tool)
+
+    return Action(
+        FIND_ALL,
+        Text("Find all", "すべて抽出"),
+        find_all,
+        "process",
+        ("Ctrl+F10",),
+        "mdi6.auto-fix",
+        toolbar=_TOOLBAR,
+        hint=_HINT.filled(
+            explanation=Text(
+                "Looks for everything that can be found along a street, one kind after another.",
+                "道路沿いで抽出できる地物を、種類ごとに順に抽出します。",
+            ),
+            way=_WAY,
+        ),
+        needs_project=True,
     )
 
 

@@ -16,6 +16,7 @@ from processing.core.monitor import Monitor
 from processing.core.parameters import ParameterValue, parameters_of
 from processing.core.safe_write import write_safely
 from processing.core.text import Text
+from processing.operations.extraction import ExtractOperation, extract
 from processing.operations.import_files import ImportOperation, import_files
 from processing.operations.project_export import ExportOperation, export_project
 from processing.operations.project_volumes import KeepVolumeOperation, keep_volume
@@ -61,6 +62,7 @@ OPERATIONS: Kinds = {
     for one in (
         OperationKind("import", ImportOperation, import_files),
         OperationKind("run", RunOperation, run_operation),
+        OperationKind("extract", ExtractOperation, extract),
         OperationKind("undo", UndoOperation, undo_step),
         OperationKind("export", ExportOperation, export_project),
         OperationKind("score", ScoreOperation, score_result),

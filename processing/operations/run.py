@@ -188,9 +188,41 @@ def run_operation(operation: RunOperation, monitor: Monitor) -> RunOutcome:
         return _stored(operation, monitor)
     output = operation.output
     with opened_inputs(operation.inputs, monitor, beside=output.parent) as opened:
-        tool, parameters = _what(operation)
-        _check_needs(tool, opened.chosen)
-        return RunOutcome(paths=write_run(tool, parameters, opened, output, monitor))
+        return run_to_file(operation, opened, output, monitor)
+
+
+def run_to_file(
+    operation: RunOperation, opened: OpenedInputs, output: Path, monitor: Monitor
+) -> RunOutcome:
+    """Run a tool on inputs that are open already, and write what it gives.
+
+    Raises
+    ------
+    UserError, Cancelled
+        Nothing was written.
+    """
+    tool, parameters = _what(operation)
+    _check_needs(tool, opened.chosen)
+    return RunOutcome(paths=write_run(tool, parameters, opened, output, monitor))
+
+
+def run_in_project(operation: RunOperation, project: Project, monitor: Monitor) -> RunOutcome:
+    """Run a tool on drives of a project that is open for writing, and store what it gives.
+
+    All runs are finished before the first is stored: a failure leaves the project as it was.
+
+    Raises
+    ------
+    UserError, Cancelled
+        As :func:`run_operation`.
+    """
+    opened = inputs_in(project, operation.inputs.drives)
+    folders = RunFolders.of(project, len(opened.chosen))
+    done = finish_runs(operation, opened, folders, PartMonitor(monitor, 0.0, _RUNNING))
+    stored = tuple(store_run(project, one) for one in done)
+    least = operation.accept_above
+    accepted = 0 if least is None else accept_above(project, stored, least)
+    return RunOutcome(stored=stored, accepted=accepted)
 
 
 def finish_runs(
@@ -266,19 +298,11 @@ def no_single_input(tool: str) -> MissingInput:
 
 
 def _stored(operation: RunOperation, monitor: Monitor) -> RunOutcome:
-    """All runs are finished before the first is stored: a failure leaves the project as it was."""
     folder = operation.inputs.project
     if folder is None:
         raise TypeError(operation)
     with opened_project(folder, writing=True) as project:
-        opened = inputs_in(project, operation.inputs.drives)
-        folders = RunFolders.of(project, len(opened.chosen))
-        running = PartMonitor(monitor, 0.0, _RUNNING)
-        done = finish_runs(operation, opened, folders, running)
-        stored = tuple(store_run(project, one) for one in done)
-        least = operation.accept_above
-        accepted = 0 if least is None else accept_above(project, stored, least)
-    return RunOutcome(stored=stored, accepted=accepted)
+        return run_in_project(operation, project, monitor)
 
 
 def _what(operation: RunOperation) -> tuple[Tool, object]:

@@ -57,6 +57,11 @@ def point_tools() -> Mapping[str, Tool]:
     return {tool.id: tool for tool in TOOLS.values() if tool.outputs}
 
 
+def extractors() -> Mapping[str, Tool]:
+    """Those that find things of the catalogue by themselves, in the order of “find all”."""
+    return {tool.id: tool for tool in TOOLS.values() if tool.makes and tool.button is not None}
+
+
 def asked_classes() -> Mapping[str, AskedClass]:
     """What the tools that can be judged on points are asked, by their ids."""
     return {tool.id: tool.asked for tool in TOOLS.values() if tool.asked is not None}

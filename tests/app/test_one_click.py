@@ -18,7 +18,7 @@ from processing.core.monitor import Monitor
 from processing.project.importing.importing import ImportRequest
 from processing.recording.drive import Drive
 from processing.tools.normals import NormalsParameters
-from processing.tools.registry import TOOLS
+from processing.tools.registry import TOOLS, extractors
 from processing.tools.tool import Candidate, CandidateResult, Finder, Needs
 from tests.app.conftest import shown_window
 from tests.builders import simulated_drive, write_laz, write_trajectory_csv
@@ -154,3 +154,25 @@ def test_without_a_trajectory_the_button_is_disabled_and_says_why(
     (entry,) = (one for one in parts.window.actions_made.entries if one.made is action)
     assert "trajectory" in parts.window.actions_made.why_disabled(entry).en
     assert not parts.processing_panel.run_tool("gutters")
+
+
+def test_find_all_runs_each_tool_into_one_queue(
+    parts: WindowParts, tmp_path: Path, qtbot: QtBot, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for tool in [one for one in extractors() if one != "gutters"]:
+        monkeypatch.delitem(TOOLS, tool)
+    both = replace(TOOLS["gutters"], makes=("gutter_lid",))
+    monkeypatch.setitem(TOOLS, "gutters", both)
+    monkeypatch.setitem(TOOLS, "trees", replace(both, id="trees"))
+    open_street(parts, tmp_path, qtbot)
+    found = parts.document.shared.map_changes.candidates_found
+    with qtbot.waitActive(parts.window):
+        parts.window.activateWindow()
+    parts.image_view.setFocus()
+    with qtbot.waitSignals([found, found], timeout=WAIT_MS):
+        qtbot.keyClick(parts.image_view, Qt.Key.Key_F10, Qt.KeyboardModifier.ControlModifier)
+    parts.window.actions_by_id["review-start"].trigger()
+    assert parts.of(Review).progress.total == 10
+    project = parts.document.project
+    assert project is not None
+    assert {one.provenance.tool for one in project.features.all()} == {"gutters", "trees"}

@@ -14,7 +14,7 @@ from pytestqt.qtbot import QtBot
 from app.application import build_window, make_application
 from app.keys.shortcut_editing import shortcuts_of
 from app.review.review_wiring import QUEUE_ACTIONS
-from app.runs.process_actions import one_click_buttons, run_action_of
+from app.runs.process_actions import FIND_ALL, one_click_buttons, run_action_of
 from app.settings.settings import Settings
 from app.window.window_parts import WindowParts
 from widgets.dialogs.shortcuts import ShortcutsForm
@@ -92,7 +92,7 @@ def test_what_needs_a_project_is_disabled_until_one_is_open(
     assert parts.document.create(tmp_path / "p.zuka", "EPSG:6677")
     # An empty project has no drive to run on.
     drives = {run_action_of(tool) for tool in one_click_buttons()}
-    nothing_to_do = {"undo", "redo", *QUEUE_ACTIONS, *drives}
+    nothing_to_do = {"undo", "redo", FIND_ALL, *QUEUE_ACTIONS, *drives}
     assert all(actions[name].isEnabled() for name in needing if name not in nothing_to_do)
     assert not any(actions[name].isEnabled() for name in nothing_to_do)
     parts.document.close()
