@@ -19,11 +19,11 @@ from processing.methods.road.gutters.gutter_confidence import CoverFacts, chance
 from processing.methods.road.gutters.gutter_gratings import RatedCovers, add_gratings
 from processing.methods.road.gutters.gutter_lids import POINTS_WITHIN_M, GutterCover, covers_of
 from processing.methods.road.gutters.gutter_lines import REACH_M
-from processing.methods.road.gutters.gutter_notches import notches_of
 from processing.methods.road.gutters.gutter_outline import edge_lines
 from processing.methods.road.gutters.gutter_runs import GutterRun, gutter_runs
-from processing.methods.road.gutters.notch_diagnostics import notch_diagnostics
-from processing.methods.road.gutters.notches import Notches, NotchParameters
+from processing.methods.road.gutters.notches.gutter_notches import notches_of
+from processing.methods.road.gutters.notches.notch_diagnostics import notch_diagnostics
+from processing.methods.road.gutters.notches.notches import Notches, NotchParameters
 from processing.methods.road.requested_position import RequestedPosition
 from processing.recording.drive import Drive
 from processing.recording.passes import passes_of

@@ -17,8 +17,8 @@ from processing.image.neighbourhoods.segments import OVERLAP_ROWS
 from processing.image.point_image import PointCloudImage
 from processing.methods.road.curbs.edges.approximate_lines import ApproximateLine, outwards_of
 from processing.methods.road.curbs.edges.curb_points import LineCells
-from processing.methods.road.gutters.gutter_notches import notches_of
-from processing.methods.road.gutters.notches import NotchParameters
+from processing.methods.road.gutters.notches.gutter_notches import notches_of
+from processing.methods.road.gutters.notches.notches import NotchParameters
 from processing.methods.templates.fit import FitSettings, fit_along
 from processing.methods.templates.fitted_lines import FittedLine, fitted_lines
 from processing.recording.camera_images.image_list import ImageList

@@ -23,7 +23,7 @@ from processing.methods.road.gutters.grating_facts import (
     in_rectangle,
     inside,
 )
-from processing.methods.road.gutters.notches import Notches
+from processing.methods.road.gutters.notches.notches import Notches
 from processing.recording.drive import Drive
 from processing.recording.passes import Pass, passes_of
 

@@ -11,7 +11,7 @@ import numpy as np
 from processing.methods.road.gutters.gutter_contrast import Contrast, contrast_of
 from processing.methods.road.gutters.gutter_lids import GutterCover
 from processing.methods.road.gutters.gutter_runs import GutterRun
-from processing.methods.road.gutters.notches import Notches
+from processing.methods.road.gutters.notches.notches import Notches
 
 # Bounds of facts, so that none outweighs all others; set before the weights were fitted.
 

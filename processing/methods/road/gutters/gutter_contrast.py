@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from processing.methods.road.gutters.gutter_joints import LID
 from processing.methods.road.gutters.gutter_runs import GutterRun
-from processing.methods.road.gutters.notches import Notches
+from processing.methods.road.gutters.notches.notches import Notches
 
 _Floats = NDArray[np.float64]
 _Bools = NDArray[np.bool_]

@@ -24,7 +24,7 @@ from processing.methods.road.gutters.gutter_kernels import (
     near_kernel,
     waves_kernel,
 )
-from processing.methods.road.gutters.notches import Notches
+from processing.methods.road.gutters.notches.notches import Notches
 from processing.recording.passes import Pass
 
 _Floats = NDArray[np.float64]

@@ -27,7 +27,7 @@ from processing.methods.road.gutters.gutter_lines import (
     GutterLine,
     gutter_lines,
 )
-from processing.methods.road.gutters.notches import Notches, join_notches
+from processing.methods.road.gutters.notches.notches import Notches, join_notches
 from processing.recording.passes import Pass
 
 _Floats = NDArray[np.float64]

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.methods.road.gutters.notch_kernels import Sweeps
+from processing.methods.road.gutters.notches.notch_kernels import Sweeps
 
 Floats = NDArray[np.float64]
 Openings = Callable[[Floats, Floats], NDArray[np.bool_]]

@@ -9,7 +9,7 @@ import pytest
 
 from processing.methods.road.gutters.grating_facts import GratingFound, one_of_each
 from processing.methods.road.gutters.gratings import GratingParameters, gratings_among
-from processing.methods.road.gutters.notches import OPENING, Notches
+from processing.methods.road.gutters.notches.notches import OPENING, Notches
 from processing.recording.passes import Pass, passes_of_trajectory
 from processing.recording.vehicle_path.trajectory import Trajectory
 

@@ -12,7 +12,7 @@ from processing.methods.road.gutters.gutter_holes import JointNotches, hole_fit
 from processing.methods.road.gutters.gutter_joints import LID, JointRow
 from processing.methods.road.gutters.gutter_lids import GutterCover
 from processing.methods.road.gutters.gutter_runs import GutterRun
-from processing.methods.road.gutters.notches import OPENING, Notches
+from processing.methods.road.gutters.notches.notches import OPENING, Notches
 
 LID_M, COUNT = 0.6, 20
 STARTS = 1.0 + LID_M * np.arange(COUNT)

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from processing.methods.road.gutters import notch_kernels
-from processing.methods.road.gutters.notch_kernels import FOUND, Limits, notches_kernel
-from processing.methods.road.gutters.notches import LOST, OPENING
+from processing.methods.road.gutters.notches import notch_kernels
+from processing.methods.road.gutters.notches.notch_kernels import FOUND, Limits, notches_kernel
+from processing.methods.road.gutters.notches.notches import LOST, OPENING
 from tests.processing.methods.road.notch_rows import (
     DEEP_M,
     HOLE_LONG_M,

@@ -14,7 +14,7 @@ from processing.methods.road.gutters.gutter_joints import GRATING, RowNotches, j
 from processing.methods.road.gutters.gutter_lids import covers_of
 from processing.methods.road.gutters.gutter_outline import edge_lines
 from processing.methods.road.gutters.gutter_runs import GutterRun, gutter_runs
-from processing.methods.road.gutters.notches import OPENING, Notches
+from processing.methods.road.gutters.notches.notches import OPENING, Notches
 from processing.recording.passes import Pass, passes_of_trajectory
 from processing.recording.vehicle_path.trajectory import Trajectory
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from processing.core.monitor import SilentMonitor
-from processing.methods.road.gutters.head_position import head_position
+from processing.methods.road.gutters.notches.head_position import head_position
 from processing.project.importing.importing import ImportRequest, import_drives
 from processing.recording.drive import Drive
 from tests.builders import simulated_drive, write_laz, write_trajectory_csv

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from processing.methods.road.gutters.road_below import RowsOfBlock, road_below
+from processing.methods.road.gutters.notches.road_below import RowsOfBlock, road_below
 from processing.recording.passes import Pass, passes_of_trajectory
 from processing.recording.vehicle_path.trajectory import Trajectory
 

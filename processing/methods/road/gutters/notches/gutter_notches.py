@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from processing.core.monitor import Monitor
 from processing.core.worked_ahead import in_order
-from processing.methods.road.gutters.head_position import head_position
-from processing.methods.road.gutters.notch_kernels import (
+from processing.methods.road.gutters.notches.head_position import head_position
+from processing.methods.road.gutters.notches.notch_kernels import (
     DEPTH,
     FOUND,
     LOST_PULSES,
@@ -28,14 +28,14 @@ from processing.methods.road.gutters.notch_kernels import (
     Sweeps,
     notches_kernel,
 )
-from processing.methods.road.gutters.notches import (
+from processing.methods.road.gutters.notches.notches import (
     DENT,
     OPENING,
     Notches,
     NotchParameters,
     join_notches,
 )
-from processing.methods.road.gutters.road_below import RowsOfBlock, road_below
+from processing.methods.road.gutters.notches.road_below import RowsOfBlock, road_below
 from processing.recording.drive import Drive
 from processing.recording.passes import Pass, passes_of
 from processing.recording.revolutions.revolutions import Revolutions

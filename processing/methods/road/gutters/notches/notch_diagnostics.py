@@ -6,8 +6,8 @@ import numpy as np
 
 from processing.core.text import Text
 from processing.methods.road.diagnostics import Diagnostic, DiagnosticTest
-from processing.methods.road.gutters.gutter_notches import notches_about
-from processing.methods.road.gutters.notches import DENT, OPENING, Notches, NotchParameters
+from processing.methods.road.gutters.notches.gutter_notches import notches_about
+from processing.methods.road.gutters.notches.notches import DENT, OPENING, Notches, NotchParameters
 from processing.methods.road.requested_position import RequestedPosition
 
 ABOUT_M = 1.0
