@@ -55,7 +55,11 @@ trial."""
 _LEAST_SUM = 1e-9
 """Guard of a division."""
 
-_EDGES_M = np.arange(-_REACH_M, _REACH_M + _BIN_M, _BIN_M)
+EDGES_M: _Floats = np.arange(-_REACH_M, _REACH_M + _BIN_M, _BIN_M)
+"""Edges of the bins across a gutter, m from its axis."""
+
+OFFSETS_M: _Floats = np.arange(-_MOST_OFFSET_M, _MOST_OFFSET_M + _BIN_M / 100, _BIN_M)
+"""Where the middle of the lids is looked for, m from the axis."""
 
 
 @dataclass(frozen=True)
@@ -146,44 +150,65 @@ def hole_fit(notches: JointNotches) -> HoleFit:
     A joint is a groove as wide as the lids, with the holes in it: narrow openings lie in either,
     wide ones in holes alone, and the wider the nearer to a hole's middle.
     """
-    positions, likelihood = _fits()
-    counts = np.zeros((len(_USUAL_M), _EDGES_M.size - 1))
-    kinds = np.searchsorted(_EXTENTS_M, notches.extent_m)
-    for kind in range(len(_USUAL_M)):
-        chosen = kinds == kind
-        counts[kind] = np.histogram(
-            notches.across_m[chosen], _EDGES_M, weights=notches.worth[chosen]
-        )[0]
+    likelihood = _fits()
+    counts = counts_across(notches, np.zeros(notches.worth.size, np.int64), 1)[0]
     of_shares = np.tensordot(likelihood, counts, axes=2)
     gains = of_shares[:, :, :-1].max(axis=2) + np.log([[one.share] for one in LID_TYPES])
     in_groove = max(of_shares[:, :, -1].max(), np.tensordot(_of_stones(), counts, axes=2).max())
     over_groove = float(gains.max() - in_groove)
     gains /= max(1.0, float(counts.sum()))
-    which, at = divmod(int(gains.argmax()), positions.size)
+    which, at = divmod(int(gains.argmax()), OFFSETS_M.size)
     gain = float(gains[which, at])
     return HoleFit(
         LID_TYPES[which],
-        float(positions[at]),
+        float(OFFSETS_M[at]),
         gain,
         max(0, round(float(counts.sum()))),
         over_groove,
     )
 
 
-@cache
-def _fits() -> tuple[_Floats, _Floats]:
-    """Places of a lid's middle (k,), and how much likelier than by chance notches are.
+def counts_across(notches: JointNotches, at: NDArray[np.int64], count: int) -> _Floats:
+    """(count, classes, bins) what notches are worth, by how wide their openings are and where.
 
-    The latter (types, k, grooves, classes, bins), as logarithms. A hole may be seen narrower than
-    it is, for few rows cross all of it: 3 cm along let a row stay in it for 11 cm across at 75°.
+    Parameters
+    ----------
+    notches : JointNotches
+    at : (n,) int64
+        The station along the gutter that each counts at.
+    count : int
+        Of stations.
     """
-    positions: _Floats = np.arange(-_MOST_OFFSET_M, _MOST_OFFSET_M + _BIN_M / 100, _BIN_M)
-    middles = (_EDGES_M[1:] + _EDGES_M[:-1]) / 2
-    shape = (len(LID_TYPES), positions.size, len(_GROOVES), len(_USUAL_M), middles.size)
+    bins, classes = EDGES_M.size - 1, len(_USUAL_M)
+    kinds = np.searchsorted(_EXTENTS_M, notches.extent_m)
+    bin_of = np.searchsorted(EDGES_M, notches.across_m) - 1
+    is_in = (kinds < classes) & (bin_of >= 0) & (bin_of < bins)
+    keys = ((at * classes + kinds) * bins + bin_of)[is_in]
+    counts = np.bincount(keys, notches.worth[is_in], minlength=count * classes * bins)
+    return np.asarray(counts.reshape(count, classes, bins), np.float64)
+
+
+def hole_likelihoods() -> _Floats:
+    """(types, offsets, grooves, classes, bins) how much likelier than by chance notches are.
+
+    As logarithms; of lids whose joints are not open all along alike.
+    """
+    return _fits()[:, :, :-1]
+
+
+@cache
+def _fits() -> _Floats:
+    """As `hole_likelihoods`; the last of the grooves is open alike all across the lids.
+
+    A hole may be seen narrower than it is, for few rows cross all of it: 3 cm along let a row stay
+    in it for 11 cm across at 75°.
+    """
+    middles = (EDGES_M[1:] + EDGES_M[:-1]) / 2
+    shape = (len(LID_TYPES), OFFSETS_M.size, len(_GROOVES), len(_USUAL_M), middles.size)
     mix = np.zeros(shape)
     shares = np.array(_GROOVES)[:, None]
     for number, one in enumerate(LID_TYPES):
-        for at, position in enumerate(positions):
+        for at, position in enumerate(OFFSETS_M):
             for kind, usual in enumerate(_USUAL_M):
                 joint = _box(middles - position, max(one.width_m - usual, _BIN_M) / 2)
                 holes = _JOINED * joint
@@ -191,18 +216,17 @@ def _fits() -> tuple[_Floats, _Floats]:
                     holes = _holes(one, middles - position, kind)
                 mix[number, at, :, kind] = (1 - shares) * holes + shares * joint
     mix = (1 - _CHANCE) * mix + _CHANCE / (2 * _REACH_M)
-    return positions, np.log(mix * 2 * _REACH_M)
+    return np.asarray(np.log(mix * 2 * _REACH_M), np.float64)
 
 
 @cache
 def _of_stones() -> _Floats:
     """(widths, k, classes, bins) as of :func:`_fits` for joints of curb stones at its places."""
-    middles = (_EDGES_M[1:] + _EDGES_M[:-1]) / 2
-    positions = np.arange(-_MOST_OFFSET_M, _MOST_OFFSET_M + _BIN_M / 100, _BIN_M)
+    middles = (EDGES_M[1:] + EDGES_M[:-1]) / 2
     density = [
         [
             [_box(middles - at, max(wide - usual, _BIN_M) / 2) for usual in _USUAL_M]
-            for at in positions
+            for at in OFFSETS_M
         ]
         for wide in _STONES_M
     ]
