@@ -15,6 +15,7 @@ from processing.methods.road.curbs.edges.curb_points import LineCells
 from processing.methods.road.diagnostics import Diagnostic
 from processing.methods.road.gutters.grating_facts import GratingFound, one_of_each
 from processing.methods.road.gutters.gratings import GratingParameters, gratings_of
+from processing.methods.road.gutters.gutter_bars import barred_run
 from processing.methods.road.gutters.gutter_confidence import CoverFacts, chance_of, facts_of
 from processing.methods.road.gutters.gutter_gratings import RatedCovers, add_gratings
 from processing.methods.road.gutters.gutter_lids import POINTS_WITHIN_M, GutterCover, covers_of
@@ -180,8 +181,10 @@ def _evidence(
     parts = parts_of(monitor, [drive.count for drive in drives])
     about = [cells.about(drive, part) for drive, part in zip(drives, parts, strict=True)]
     laid = []
-    for number, run in enumerate(runs):
+    for number, found in enumerate(runs):
         monitor.check()
+        own = [(one, slice(one.starts[number], one.starts[number + 1])) for one in about]
+        run = barred_run(found, drives, own, missed)
         covers = covers_of(run, number, about)
         laid.append(CoveredGutter(run, covers, tuple(facts_of(run, covers, notches))))
     return laid, gratings

@@ -10,16 +10,23 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import solveh_banded
-from scipy.ndimage import gaussian_filter1d, maximum_filter1d, uniform_filter1d
+from scipy.ndimage import (
+    gaussian_filter1d,
+    maximum_filter1d,
+    minimum_filter1d,
+    uniform_filter1d,
+)
 
 from processing.methods.road.gutters.gutter_kernels import (
     BestRows,
     GapCost,
     OpenPlaces,
+    Steps,
     joints_kernel,
 )
 
@@ -36,7 +43,7 @@ trial."""
 
 # "By trial": chosen while the tool was made; no measurement of the single value is recorded.
 
-_POSITION_M, _ROUGHLY_M = 0.005, 0.01
+POSITION_M, _ROUGHLY_M = 0.005, 0.01
 """How finely joints are placed, and where rows are only compared, in half the time: holes are seen
 within some 12 mm."""
 
@@ -55,9 +62,10 @@ _LEAST, _MOST = -0.8, 2.5
 """What one joint is worth at least and at most, as logarithms, so that no single joint decides. By
 trial."""
 
-_UNSEEN = 0.35
-"""What a joint costs that nothing was seen of: a third of the joints being seen, rows go on. By
-trial."""
+_LEAST_SEEN, _MOST_SEEN = 0.3, 0.45
+"""Share of a gutter's joints that are seen, at least and at most: what a joint costs that nothing
+was seen of follows from it (see `_evidence`). A third being seen rows go on; a fourth may be filled
+with soil anywhere."""
 
 _WIDEST_JOINT_M = 0.04
 """Widest joint between two lids that are of one row. By trial."""
@@ -69,13 +77,19 @@ _OTHER_LENGTH_COST, _GAP_COST = 2.5, 5.0
 """What a lid of another length than most costs, and a stretch without lids: logarithms. By
 trial."""
 
+_CHANGE_COST = 5.0
+"""What it costs that lids of other lengths follow, as a logarithm: as much as two odd ones."""
+
 _LEAST_GAP_M, _MOST_GAP_M = 0.25, 6.0
 """Length of a stretch without lids within one row, m: longer ones part rows, as entrances do."""
 
 _OCCUPIED_M, _OCCUPIED_WORTH, _GRATING_WORTH = 0.04, 0.04, 0.02
-"""A notch makes so much to either side of it open; each place of `_POSITION_M` that is open is
-worth so much for a grating, and costs a quarter of it on a lid; a place of a grating must be worth
-so much. By trial."""
+"""A notch makes so much to either side of it open; each place of `POSITION_M` that is open is
+worth so much for a grating; a place of a grating must be worth so much. By trial."""
+
+_OPEN_COST = 0.25
+"""What each open place costs on a lid, against what it is worth for a grating: weeds and dirt make
+a lid's surface seem open too. By trial; no measurement is recorded."""
 
 _SEEN_M = 0.03
 """Notches so near to a joint are of it: as in `gutter_contrast`."""
@@ -113,6 +127,10 @@ _BAND_REACH_M, _SHORTEST_M = 1.5, 0.5
 """So far to each side a band is asked how open it is, three joints of the shortest lids: more than
 their openings is a groove. What is open k times as often as joints are is worth 1/k² of one, near
 the logarithm of the likelihoods."""
+
+_BETWEEN_BARS_M = 0.1
+"""So far inside what is barred notches are bars', and no joints: more than a joint's place and the
+window are unsure (`gutter_bars`)."""
 
 _LEAST_SUM = 1e-9
 """Guard of a division."""
@@ -215,6 +233,12 @@ class JointRow:
     is_bridged: _Bools
     value: float
 
+    @property
+    def share_seen(self) -> float:
+        """Share of the joints of its lids that notches show."""
+        seen = self.seen[self.what == LID]
+        return float((seen > 0).mean()) if seen.size else 0.0
+
     def chosen(self, which: _Bools) -> JointRow:
         """Some of its covers."""
         return JointRow(
@@ -227,47 +251,75 @@ class JointRow:
         )
 
 
+class RowKnown(NamedTuple):
+    """What is known of a gutter before its row of joints is looked for.
+
+    Attributes
+    ----------
+    most_missed : int
+        Lids in a row whose joints may all be unseen.
+    seen : float
+        Share of its joints that notches show.
+    barred : (n,) float64, optional
+        Of every ``POSITION_M``, the chance that the gutter is barred there as gratings are; without
+        it, what is open by the notches.
+    """
+
+    most_missed: int
+    seen: float = _LEAST_SEEN
+    barred: _Floats | None = None
+
+
 def joint_row(
-    notches: RowNotches, lids: Mapping[float, float], end_m: float, most_missed: int
+    notches: RowNotches, mixes: Sequence[Mapping[float, float]], end_m: float, known: RowKnown
 ) -> JointRow | None:
     """The covers along a gutter, by the places of its notches.
 
     Parameters
     ----------
     notches : RowNotches
-    lids : mapping of float
-        What lids of each length cost: see `lengths_of`.
+    mixes : sequence of mapping of float
+        What the lids may be like: what those of each length cost, see `lengths_of`. Others may
+        follow, as where a gutter was laid on later.
     end_m : float
         Where the axis ends.
-    most_missed : int
-        Lids in a row whose joints may all be unseen.
+    known : RowKnown
     """
-    best, kinds, lengths = _best(notches, lids, end_m, _POSITION_M)
-    positions, taken = _trace(best)
+    best, kinds, lengths = _best(notches, mixes, (end_m, POSITION_M), known)
+    positions, taken, _ = _trace(best)
     if positions.size < _LEAST_JOINTS:
         return None
     what = np.where(taken < 0, GAP, kinds[taken])
     long = np.where(taken < 0, np.nan, lengths[taken])
     return _row(
         notches,
-        (positions * _POSITION_M).astype(np.float64),
+        (positions * POSITION_M).astype(np.float64),
         (what, long),
-        (float(best.value.max()), most_missed),
+        (float(best.value.max()), known.most_missed),
     )
 
 
-def joint_worth(notches: RowNotches, lids: Mapping[float, float], end_m: float) -> float:
-    """The value of the best row, roughly: for comparison with other lids' (see `joint_row`)."""
-    (value, before, _), _, _ = _best(notches, lids, end_m, _ROUGHLY_M)
-    last = int(value.argmax())
-    is_row = before[last] >= 0 and before[before[last]] >= 0
-    return float(value[last]) if is_row else 0.0
+def joint_worth(
+    notches: RowNotches, mixes: Sequence[Mapping[float, float]], end_m: float
+) -> tuple[float, tuple[int, ...]]:
+    """The value of the best row, roughly, and the numbers of the mixes that it is of.
+
+    For comparison with other lids': see `joint_row`.
+    """
+    best, _, _ = _best(notches, mixes, (end_m, _ROUGHLY_M), RowKnown(1))
+    positions, _, used = _trace(best)
+    is_row = positions.size >= _LEAST_JOINTS
+    return float(best.value.max()) if is_row else 0.0, tuple(np.unique(used).tolist())
 
 
 def _best(
-    notches: RowNotches, lids: Mapping[float, float], end_m: float, position_m: float
+    notches: RowNotches,
+    mixes: Sequence[Mapping[float, float]],
+    line: tuple[float, float],
+    known: RowKnown,
 ) -> tuple[BestRows, _Integers, _Floats]:
     """For each place the best row that ends there; what steps between joints cover, how long."""
+    end_m, position_m = line
     count = int(end_m / position_m) + 1
     at = np.round(notches.along_m / position_m).astype(np.int64)
     is_in = (at >= 0) & (at < count)
@@ -275,61 +327,70 @@ def _best(
         np.bincount(at[is_in], one[is_in], minlength=count).astype(np.float64)
         for one in (notches.joints, notches.covers)
     )
-    steps, costs, kinds, lengths = _covers(lids, position_m)
-    occupied = maximum_filter1d(np.minimum(hits, 1.0), 2 * round(_OCCUPIED_M / position_m) + 1)
-    worth = position_m / _POSITION_M
+    steps, kinds, lengths = _covers(mixes, position_m)
+    of_lids = _OPEN_COST
+    if known.barred is None:
+        occupied = maximum_filter1d(np.minimum(hits, 1.0), 2 * round(_OCCUPIED_M / position_m) + 1)
+    else:
+        # Lids that are dirty or worn are rough too: of points only gratings are asked.
+        occupied, of_lids = known.barred, 0.0
+        joints *= 1.0 - minimum_filter1d(occupied, 2 * round(_BETWEEN_BARS_M / position_m) + 1)
+    worth = position_m / POSITION_M
     summed = np.concatenate([[0.0], np.cumsum(occupied * _OCCUPIED_WORTH * worth)])
-    best = BestRows(np.empty(count), np.empty(count, np.int64), np.empty(count, np.int64))
+    shape = len(mixes), count
+    best = BestRows(np.empty(shape), np.empty(shape, np.int64), np.empty(shape, np.int64))
     joints_kernel(
-        _evidence(joints, position_m),
+        _evidence(joints, position_m, known.seen),
         steps,
-        costs,
         GapCost(round(_LEAST_GAP_M / position_m), round(_MOST_GAP_M / position_m), _GAP_COST),
-        OpenPlaces(summed, (kinds == GRATING).astype(np.int64), _GRATING_WORTH * worth),
+        OpenPlaces(summed, (kinds == GRATING).astype(np.int64), _GRATING_WORTH * worth, of_lids),
         best,
     )
     return best, kinds, lengths
 
 
-def _evidence(hits: _Floats, position_m: float) -> _Floats:
-    """What a joint at each place is worth: notches there against notches about."""
+def _evidence(hits: _Floats, position_m: float, seen: float) -> _Floats:
+    """What a joint at each place is worth: notches there against notches about.
+
+    One that nothing was seen of costs what it says that it is none: the more of a gutter's joints
+    are seen, the more.
+    """
     here = gaussian_filter1d(hits, _HOLE_M / position_m) * _HOLE_M / position_m * np.sqrt(2 * np.pi)
     about = uniform_filter1d(here, round(_ABOUT_M / position_m), mode="nearest")
     ratio = np.log((here + _LITTLE) / (about + _LITTLE))
-    unseen = _UNSEEN * np.exp(-here / _LITTLE)
+    unseen = -np.log(1.0 - np.clip(seen, _LEAST_SEEN, _MOST_SEEN)) * np.exp(-here / _LITTLE)
     worth: _Floats = np.clip(ratio - unseen, _LEAST, _MOST)
     return worth
 
 
 def _covers(
-    lids: Mapping[float, float], position_m: float
-) -> tuple[_Integers, _Floats, _Integers, _Floats]:
-    """Steps from joint to joint, their costs, what they are, and how long the cover is."""
+    mixes: Sequence[Mapping[float, float]], position_m: float
+) -> tuple[Steps, _Integers, _Floats]:
+    """Steps from joint to joint with their costs, what they are, and how long the cover is."""
+    lids = sorted({one for mix in mixes for one in mix})
+    kinds = [(LID, one, [mix.get(one, np.inf) for mix in mixes]) for one in lids]
+    kinds += [(GRATING, one, [cost] * len(mixes)) for one, cost in GRATING_LENGTHS_M.items()]
     made = []
-    kinds = [(LID, one, cost) for one, cost in lids.items()]
-    kinds += [(GRATING, one, cost) for one, cost in GRATING_LENGTHS_M.items()]
-    for kind, long, cost in kinds:
+    for kind, long, costs in kinds:
         for joint in np.arange(0.0, _WIDEST_JOINT_M + _ROUNDING_M, position_m):
             wide = max(0.0, float(joint) - _WIDE_JOINT_M) * _WIDE_COST
-            made.append((round((long + joint) / position_m), cost + wide, kind, long))
-    steps, costs, what, lengths = zip(*made, strict=True)
-    return (
-        np.array(steps, np.int64),
-        np.array(costs),
-        np.array(what, np.int64),
-        np.array(lengths),
-    )
+            made.append((round((long + joint) / position_m), np.add(costs, wide), kind, long))
+    places, all_costs, what, lengths = zip(*made, strict=True)
+    steps = Steps(np.array(places, np.int64), np.column_stack(all_costs), _CHANGE_COST)
+    return steps, np.array(what, np.int64), np.array(lengths)
 
 
-def _trace(best: BestRows) -> tuple[_Integers, _Integers]:
-    """Places of the best row's joints, and the step behind each but the last."""
-    value, before, taken = best
-    at, positions, steps = int(value.argmax()), [], []
+def _trace(best: BestRows) -> tuple[_Integers, _Integers, _Integers]:
+    """Places of the best row's joints, the step behind each but the last, and each one's mix."""
+    count = best.value.shape[1]
+    before, all_taken = best.before.ravel(), best.taken.ravel()
+    at, positions, steps = int(best.value.argmax()), [], []
     while at >= 0:
         positions.append(at)
-        steps.append(int(taken[at]))
+        steps.append(int(all_taken[at]))
         at = int(before[at])
-    return np.array(positions[::-1]), np.array(steps[-2::-1], np.int64)
+    joints = np.array(positions[::-1])
+    return joints % count, np.array(steps[-2::-1], np.int64), joints // count
 
 
 def _row(

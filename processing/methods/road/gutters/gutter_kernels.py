@@ -13,10 +13,6 @@ from processing.core.kernels import kernel
 _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
 
-_OPEN_COST = 0.25
-"""What each open place costs on a lid, against what it is worth for a grating: weeds and dirt make
-a lid's surface seem open too. By trial; no measurement is recorded."""
-
 
 class Notched(NamedTuple):
     """Notches: (n,) along, m, rising; (n,) cells across; (n,) values."""
@@ -66,22 +62,43 @@ class OpenPlaces(NamedTuple):
         Which of the steps between joints are gratings.
     worth : float
         What a place of a grating must be worth to pay for it.
+    of_lids : float
+        What an open place costs on a lid, against what it is worth for a grating.
     """
 
     summed: _Floats
     is_grating: _Integers
     worth: float
+    of_lids: float
 
 
-class BestRows(NamedTuple):
-    """The best row of joints that ends at each place.
+class Steps(NamedTuple):
+    """Steps from joint to joint.
 
     Attributes
     ----------
-    value : (n,) float64
-    before : (n,) int64
-        Where its last joint before is; −1: none.
-    taken : (n,) int64
+    places : (k,) int64
+        Lengths of covers with their joint.
+    costs : (m, k) float64
+        What each costs a row in each mix of lids.
+    change : float
+        What it costs that lids of another mix follow.
+    """
+
+    places: _Integers
+    costs: _Floats
+    change: float
+
+
+class BestRows(NamedTuple):
+    """The best row of joints that ends at each place in each mix of lids, mix by mix.
+
+    Attributes
+    ----------
+    value : (m, n) float64
+    before : (m, n) int64
+        Where its last joint before is, as a place of all mixes; −1: none.
+    taken : (m, n) int64
         The step from there; −1: a gap.
     """
 
@@ -165,12 +182,7 @@ def waves_kernel(
 
 @kernel
 def joints_kernel(
-    evidence: _Floats,
-    steps: _Integers,
-    costs: _Floats,
-    gap: GapCost,
-    inside: OpenPlaces,
-    best: BestRows,
+    evidence: _Floats, steps: Steps, gap: GapCost, inside: OpenPlaces, best: BestRows
 ) -> None:
     """The dearest row of joints up to each place of an evenly divided line.
 
@@ -178,37 +190,70 @@ def joints_kernel(
     ----------
     evidence : (n,) float64
         What a joint at each place is worth.
-    steps, costs : (k,)
-        Lengths of covers with their joint, in places, and what each costs.
+    steps : Steps
     gap : GapCost
     inside : OpenPlaces
     best : BestRows
         Filled.
     """
-    summed, is_grating, worth = inside
-    value, before, taken = best
-    lead, lead_at = -math.inf, -1
-    for i in range(evidence.shape[0]):
-        value[i], before[i], taken[i] = evidence[i], -1, -1
-        for k in range(steps.shape[0]):
-            j = i - steps[k]
-            if j < 0:
-                continue
-            full = summed[i] - summed[j]
-            gain = full - worth * steps[k] if is_grating[k] else -_OPEN_COST * full
-            total = value[j] + evidence[i] - costs[k] + gain
-            if total > value[i]:
-                value[i], before[i], taken[i] = total, j, k
-        enters = i - gap.least
-        if enters >= 0 and (lead_at < i - gap.most or value[enters] > lead):
-            lead, lead_at = -math.inf, -1
-            for j in range(max(0, i - gap.most), enters + 1):
-                if value[j] >= lead:
-                    lead, lead_at = value[j], j
-        if lead_at >= 0:
-            total = lead + evidence[i] - gap.cost
-            if total > value[i]:
-                value[i], before[i], taken[i] = total, lead_at, -1
+    mixes, count = best.value.shape
+    lead, lead_at = np.full(mixes, -math.inf), np.full(mixes, -1, np.int64)
+    for i in range(count):
+        top = 0
+        for mix in range(mixes):
+            _best_at_kernel(evidence[i], (mix, i), steps, inside, best)
+            _gap_kernel(evidence[i], (mix, i), gap, (lead, lead_at), best)
+            if best.value[mix, i] > best.value[top, i]:
+                top = mix
+        for mix in range(mixes):
+            if best.value[top, i] - steps.change > best.value[mix, i]:
+                best.value[mix, i] = best.value[top, i] - steps.change
+                best.before[mix, i] = best.before[top, i]
+                best.taken[mix, i] = best.taken[top, i]
+
+
+@kernel
+def _best_at_kernel(
+    evidence: float, at: tuple[int, int], steps: Steps, inside: OpenPlaces, best: BestRows
+) -> None:
+    """The dearest row that ends at a place with a cover of a mix."""
+    mix, i = at
+    value, count = best.value[mix], best.value.shape[1]
+    summed, is_grating, worth, of_lids = inside
+    most, before, taken = evidence, -1, -1
+    for k in range(steps.places.shape[0]):
+        j = i - steps.places[k]
+        if j < 0:
+            continue
+        full = summed[i] - summed[j]
+        gain = full - worth * steps.places[k] if is_grating[k] else -of_lids * full
+        total = value[j] + evidence - steps.costs[mix, k] + gain
+        if total > most:
+            most, before, taken = total, mix * count + j, k
+    value[i], best.before[mix, i], best.taken[mix, i] = most, before, taken
+
+
+@kernel
+def _gap_kernel(
+    evidence: float,
+    at: tuple[int, int],
+    gap: GapCost,
+    leads: tuple[_Floats, _Integers],
+    best: BestRows,
+) -> None:
+    """The dearest row that goes on at a place behind a stretch without covers, if dearer."""
+    mix, i = at
+    value, (lead, lead_at) = best.value[mix], leads
+    enters = i - gap.least
+    if enters >= 0 and (lead_at[mix] < i - gap.most or value[enters] > lead[mix]):
+        lead[mix], lead_at[mix] = -math.inf, -1
+        for j in range(max(0, i - gap.most), enters + 1):
+            if value[j] >= lead[mix]:
+                lead[mix], lead_at[mix] = value[j], j
+    if lead_at[mix] >= 0 and lead[mix] + evidence - gap.cost > value[i]:
+        value[i] = lead[mix] + evidence - gap.cost
+        best.before[mix, i] = mix * best.value.shape[1] + lead_at[mix]
+        best.taken[mix, i] = -1
 
 
 def warm_up() -> None:
@@ -227,9 +272,8 @@ def warm_up() -> None:
     )
     joints_kernel(
         zeros,
-        np.ones(1, np.int64),
-        np.zeros(1),
+        Steps(np.ones(1, np.int64), np.zeros((1, 1)), 1.0),
         GapCost(1, 2, 1.0),
-        OpenPlaces(np.zeros(3), np.zeros(1, np.int64), 1.0),
-        BestRows(np.zeros(2), np.zeros(2, np.int64), np.zeros(2, np.int64)),
+        OpenPlaces(np.zeros(3), np.zeros(1, np.int64), 1.0, 0.25),
+        BestRows(np.zeros((1, 2)), np.zeros((1, 2), np.int64), np.zeros((1, 2), np.int64)),
     )

@@ -11,7 +11,7 @@ from scipy.spatial import cKDTree
 
 from processing.methods.road.curbs.edges.curb_points import PointsAbout
 from processing.methods.road.gutters.gutter_axis import STEP_M
-from processing.methods.road.gutters.gutter_joints import GRATING, LID
+from processing.methods.road.gutters.gutter_joints import GRATING
 from processing.methods.road.gutters.gutter_runs import GutterRun
 
 _Floats = NDArray[np.float64]
@@ -35,9 +35,6 @@ _ROUNDS = 3
 
 _LEAST_POINTS = 6
 """With fewer points a top has no height of its own: twice a plane's unknowns."""
-
-_BARRED = 1.25
-"""How much rougher the top of a grating is than a lid. By trial."""
 
 _STEEPEST = 0.05
 """Slope of a lid against its neighbours, m per m: what lies steeper would rock under traffic. By
@@ -122,7 +119,7 @@ def covers_of(run: GutterRun, number: int, about: Sequence[PointsAbout]) -> tupl
         [middles[which], *np.tile([[wide], [0.0]], which.size)]
     )
     planes = _Planes.fitted(which, local, row.starts_m.size)
-    is_grating = (row.what == GRATING) & planes.are_barred(row.what == LID)
+    is_grating = row.what == GRATING
     nearest = _nearest_to(_corners_about(run, planes), positions)
     point = np.concatenate([one.point[part] for one, part in zip(about, parts, strict=True)])
     drive = np.repeat(np.arange(len(about)), [part.stop - part.start for part in parts])
@@ -189,13 +186,6 @@ class _Planes:
         squares = np.bincount(which[is_on], off[is_on] ** 2, minlength=count)
         below = np.bincount(which[off < -2 * _ON_M], minlength=count)
         return _Planes(planes, on_top, below, np.sqrt(squares / np.maximum(on_top, 1)))
-
-    def are_barred(self, are_lids: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """Tops that are rougher than the lids', as bars and what lies between them are."""
-        is_known = self.on_top >= _LEAST_POINTS
-        chosen = are_lids & is_known
-        usual = float(np.median(self.rough_m[chosen])) if chosen.any() else 0.0
-        return np.asarray(~is_known | (self.rough_m > _BARRED * usual))
 
 
 def _middle_heights(which: _Integers, above: _Floats, count: int) -> _Floats:

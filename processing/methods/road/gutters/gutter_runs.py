@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -20,6 +20,7 @@ from processing.methods.road.gutters.gutter_holes import (
 from processing.methods.road.gutters.gutter_joints import (
     LID,
     JointRow,
+    RowKnown,
     RowNotches,
     joint_row,
     joint_worth,
@@ -132,6 +133,12 @@ class GutterRun:
     over_chance : float
         What its joints are worth more than the best row of lengths that no lid has, by the same
         notches: a logarithm. So much is left of it wherever dents come often.
+    notches : RowNotches
+        That its joints were found by.
+    depths : JointDepths
+        Of those that are strong.
+    mixes : tuple of mapping of float
+        What its lids are like: see `joint_row`.
     """
 
     axis: GutterAxis
@@ -139,6 +146,9 @@ class GutterRun:
     holes: HoleFit
     length_m: float
     over_chance: float
+    notches: RowNotches
+    depths: JointDepths
+    mixes: tuple[Mapping[float, float], ...]
 
     @property
     def edges(self) -> tuple[float, float]:
@@ -266,15 +276,16 @@ def _run_of(line: GutterLine, notches: Notches, most_missed: int) -> GutterRun |
     axis = smooth_axis(line.axis)
     near = _about(axis, notches)
     lids = _lids_along(axis, near)
-    if lids is None:
+    if not lids:
         return None
-    kind: LidType | None = None
+    kind, known = None, RowKnown(most_missed)
     for _ in range(_ROUNDS):
         along, across, is_on = _on_lids(axis, near, kind)
         on_row = _row_notches(along, across, near, is_on)
-        row = joint_row(on_row, lids, axis.length_m, most_missed)
+        row = joint_row(on_row, lids, axis.length_m, known)
         if row is None or row.starts_m.size < _LEAST_COVERS:
             return None
+        known = RowKnown(most_missed, row.share_seen)
         worth = _worths(along, _alone(on_row, is_on, near), row)
         if not (worth > 0.0).any():
             return None
@@ -285,7 +296,7 @@ def _run_of(line: GutterLine, notches: Notches, most_missed: int) -> GutterRun |
         return None
     along, across, is_on = _on_lids(axis, near, kind)
     on_row = _row_notches(along, across, near, is_on)
-    row = joint_row(on_row, lids, axis.length_m, most_missed)
+    row = joint_row(on_row, lids, axis.length_m, known)
     if row is None or row.starts_m.size < _LEAST_COVERS:
         return None
     is_on &= near.strength >= _STRONG
@@ -295,8 +306,10 @@ def _run_of(line: GutterLine, notches: Notches, most_missed: int) -> GutterRun |
     row = row.chosen(are_deep(row, depths, holes))
     if row.starts_m.size < _LEAST_COVERS:
         return None
-    over_chance = joint_worth(on_row, lids, axis.length_m) - _by_chance(on_row, axis.length_m)
-    return GutterRun(axis, row, replace(holes, type=kind), _length_of(row), over_chance)
+    worth_of_lids, _ = joint_worth(on_row, lids, axis.length_m)
+    over_chance = worth_of_lids - _by_chance(on_row, axis.length_m)
+    holes = replace(holes, type=kind)
+    return GutterRun(axis, row, holes, length_of(row), over_chance, on_row, depths, lids)
 
 
 def _joint_notches(
@@ -361,35 +374,30 @@ def _alone(on_row: RowNotches, which: NDArray[np.bool_], notches: Notches) -> _F
     return np.where(notches.strength >= _STRONG, alone, 0.0)
 
 
-def _lids_along(axis: GutterAxis, notches: Notches) -> dict[float, float] | None:
-    """The lengths of lids that explain the notches best; None if no better than by chance.
+def _lids_along(axis: GutterAxis, notches: Notches) -> tuple[Mapping[float, float], ...]:
+    """What lids explain the notches best; nothing if no better than by chance.
 
     What chance does is asked of the same notches: rows of lengths that no lid has are fitted too.
     """
     along, across, is_on = _on_lids(axis, notches, None)
     those = _row_notches(along, across, notches, is_on)
     if those.joints.sum() < _LEAST_WORTH:
-        return None
-
-    def worth(lids: dict[float, float]) -> float:
-        return joint_worth(those, lids, axis.length_m)
-
-    worths = [worth(one) for one in _LIDS]
-    best = max(worths)
-    if best < _LEAST_WORTH:
-        return None
-    if best < _SURE_WORTH and best < _MORE_WORTH + _by_chance(those, axis.length_m):
-        return None
-    return _LIDS[worths.index(best)]
+        return ()
+    worth, used = joint_worth(those, _LIDS, axis.length_m)
+    if worth < _LEAST_WORTH:
+        return ()
+    if worth < _SURE_WORTH and worth < _MORE_WORTH + _by_chance(those, axis.length_m):
+        return ()
+    return tuple(_LIDS[number] for number in used)
 
 
 def _by_chance(notches: RowNotches, end_m: float) -> float:
     """What the best row of lengths that no lid has is worth."""
-    return max(joint_worth(notches, one, end_m) for one in _BY_CHANCE)
+    return joint_worth(notches, _BY_CHANCE, end_m)[0]
 
 
-def _length_of(row: JointRow) -> float:
-    """Of most of its lids, m."""
+def length_of(row: JointRow) -> float:
+    """How long most lids of a row are, m; 0 where it has none."""
     lengths = np.round((row.ends_m - row.starts_m)[row.what == LID], 1)
     found, count = np.unique(lengths, return_counts=True)
     return float(found[count.argmax()]) if found.size else 0.0

@@ -10,7 +10,13 @@ from numpy.typing import NDArray
 
 from processing.methods.road.curbs.edges.curb_points import PointsAbout
 from processing.methods.road.gutters.gutter_axis import STEP_M, GutterAxis
-from processing.methods.road.gutters.gutter_joints import GRATING, RowNotches, joint_row, lengths_of
+from processing.methods.road.gutters.gutter_joints import (
+    GRATING,
+    RowKnown,
+    RowNotches,
+    joint_row,
+    lengths_of,
+)
 from processing.methods.road.gutters.gutter_lids import covers_of
 from processing.methods.road.gutters.gutter_outline import edge_lines
 from processing.methods.road.gutters.gutter_runs import GutterRun, gutter_runs
@@ -23,7 +29,7 @@ HOLES_M = 0.095
 ASIDE_M = 3.4
 COUNT = 60
 BEGIN_M = 10.0
-LIDS = lengths_of((LID_M,), (0.5, 1.0))
+LIDS = (lengths_of((LID_M,), (0.5, 1.0)),)
 
 Floats = NDArray[np.float64]
 
@@ -193,7 +199,7 @@ def test_a_joint_that_nobody_saw_is_laid_by_its_neighbours() -> None:
     known = np.repeat(joints(20), 3)
     hidden = joints(20)[9:11]
     is_seen = ~np.isin(known, hidden)
-    row = joint_row(alone_at(known[is_seen]), LIDS, 12.5, 5)
+    row = joint_row(alone_at(known[is_seen]), LIDS, 12.5, RowKnown(5))
     assert row is not None
     assert row.starts_m.size == 20
     ends = row.ends_m[8:10] + JOINT_M / 2
@@ -204,7 +210,7 @@ def test_a_joint_that_nobody_saw_is_laid_by_its_neighbours() -> None:
 def test_more_lids_than_allowed_without_a_hole_are_a_gap() -> None:
     known = np.repeat(joints(30), 3)
     is_seen = (known < joints(30)[10] + 0.01) | (known > joints(30)[20] - 0.01)
-    row = joint_row(alone_at(known[is_seen]), LIDS, 18.5, 3)
+    row = joint_row(alone_at(known[is_seen]), LIDS, 18.5, RowKnown(3))
     assert row is not None
     assert np.diff(row.starts_m).max() > 3.0
 
@@ -213,7 +219,7 @@ def test_a_grating_between_lids_is_one() -> None:
     before, behind = joints(10), joints(10)[-1] + 0.506 + joints(10)
     bars = np.arange(before[-1] + 0.01, behind[0] - 0.01, 0.03)
     along = np.concatenate([np.repeat(before, 3), bars, np.repeat(behind, 3)])
-    row = joint_row(alone_at(along), LIDS, float(behind[-1]) + 0.2, 5)
+    row = joint_row(alone_at(along), LIDS, float(behind[-1]) + 0.2, RowKnown(5))
     assert row is not None
     (grating,) = np.flatnonzero(row.what == GRATING)
     assert row.starts_m[grating] == pytest.approx(before[-1], abs=0.02)
