@@ -42,7 +42,7 @@ _LEAST_SPREAD_M = 0.0003
 _WINDOW_M = 0.15
 """Over which points are counted: five bars and gaps of 3 cm."""
 
-_OF_LIDS, _LEAST_OF_LIDS, _MOST_OF_LIDS = 1.5, 0.08, 0.3
+_OF_LIDS, _LEAST_OF_LIDS, _MOST_OF_LIDS = 1.5, 0.05, 0.3
 """Share of rough points on a dirty or worn lid, in times the usual lid's; at least and at most. Of
 3,026 lids with more than 90 % of them free one in ten has more than .15, and one in ten of 216
 gratings less than .16; half of the gratings have more than .46."""

@@ -280,7 +280,7 @@ def _run_of(line: GutterLine, notches: Notches, most_missed: int) -> GutterRun |
         return None
     kind, known = None, RowKnown(most_missed)
     for _ in range(_ROUNDS):
-        along, across, is_on = _on_lids(axis, near, kind)
+        along, across, is_on = _on_lids(axis, near, None)
         on_row = _row_notches(along, across, near, is_on)
         row = joint_row(on_row, lids, axis.length_m, known)
         if row is None or row.starts_m.size < _LEAST_COVERS:
