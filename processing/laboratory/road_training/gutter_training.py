@@ -39,8 +39,8 @@ _FACTS = {"lids": CoverFacts._fields, "gratings": GratingTerms._fields}
 _SEEDS = "2000-2023", "2100-2111"
 _EXPECTED = {
     "lids": WeightPrior(
-        (-4.0, *CoverFacts(1.0, 1.0, 1.0, 0.5, -10.0, -0.5, -0.5, -0.5, -0.5, -10.0)),
-        (3.0, *CoverFacts(0.5, 0.7, 0.7, 0.4, 10.0, 0.5, 0.5, 0.5, 0.5, 5.0)),
+        (-4.0, *CoverFacts(1.0, 1.0, 1.0, 0.5, -10.0, -0.5, -0.5, -0.5, -1.5, -0.5, -10.0)),
+        (3.0, *CoverFacts(0.5, 0.7, 0.7, 0.4, 10.0, 0.5, 0.5, 0.5, 1.0, 0.5, 5.0)),
     ),
     "gratings": WeightPrior(
         (-12.0, *GratingTerms(2.0, 0.5, 4.0, 2.0, 1.5, -10.0)),

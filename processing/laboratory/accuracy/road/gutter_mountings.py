@@ -40,7 +40,7 @@ from processing.recording.passes import passes_of
 from processing.scoring.gutters import gutter_score, score_gutters
 from processing.scoring.reliability import Reliability, reliability_of_pairs
 
-SEEDS = range(2200, 2210)
+SEEDS = range(2210, 2220)
 LENGTH_M = 60.0
 _TOOL = "gutters"
 _BANDS_M = (0.0, 4.0, 5.0, 5.5, 6.0, 6.5, np.inf)

@@ -17,7 +17,13 @@ from scipy.ndimage import median_filter, uniform_filter1d
 from processing.methods.road.curbs.edges.curb_points import PointsAbout
 from processing.methods.road.gutters.gutter_axis import STEP_M
 from processing.methods.road.gutters.gutter_depths import are_deep
-from processing.methods.road.gutters.gutter_joints import LID, POSITION_M, RowKnown, joint_row
+from processing.methods.road.gutters.gutter_joints import (
+    LID,
+    POSITION_M,
+    JointRow,
+    RowKnown,
+    joint_row,
+)
 from processing.methods.road.gutters.gutter_runs import GutterRun, length_of
 from processing.recording.drive import Drive
 
@@ -83,7 +89,19 @@ def barred_run(
     if row is None:
         return run
     row = row.chosen(are_deep(row, run.depths, run.holes))
-    return replace(run, row=row, length_m=length_of(row)) if row.starts_m.size else run
+    if row.starts_m.size == 0:
+        return run
+    return replace(run, row=row, length_m=length_of(row), barred=_means(row, barred))
+
+
+def _means(row: JointRow, values: _Floats) -> _Floats:
+    """(k,) means over the covers of a row of values every `POSITION_M`."""
+    summed = np.concatenate([[0.0], np.cumsum(values)])
+    first, stop = (
+        np.clip(np.round(ends / POSITION_M).astype(np.int64), 0, values.size)
+        for ends in (row.starts_m, row.ends_m)
+    )
+    return np.asarray((summed[stop] - summed[first]) / np.maximum(stop - first, 1), np.float64)
 
 
 def _rough_points(

@@ -64,6 +64,9 @@ class CoverFacts(NamedTuple):
         1 where it is not as long as most lids of its gutter.
     grating : float
         1 where the row of joints says that it is a grating.
+    mistaken : float
+        How sure its points are, 0 to 1, that it is no lid, or no grating where the row says that
+        it is one.
     few_points : float
         1 where hardly a point lies on its top.
     hollow : float
@@ -78,30 +81,32 @@ class CoverFacts(NamedTuple):
     unseen: float
     other_length: float
     grating: float
+    mistaken: float
     few_points: float
     hollow: float
 
 
 WEIGHTS = CoverFacts(
-    over_chance=0.77,
-    holes=0.67,
-    lids=0.37,
-    beside=0.61,
+    over_chance=0.89,
+    holes=0.59,
+    lids=0.31,
+    beside=0.62,
     raised_m=-10.00,
-    unseen=-0.91,
-    other_length=-0.72,
-    grating=-0.61,
-    few_points=-0.54,
-    hollow=-7.20,
+    unseen=-0.89,
+    other_length=-0.74,
+    grating=-0.72,
+    mistaken=-1.43,
+    few_points=-0.55,
+    hollow=-8.46,
 )
 """What each fact is worth: see `processing.laboratory.road_training.gutter_training`, which also
 says how reliable they are. Learnt from 24 streets, each recorded by other heads (`any_mounting`,
-seeds 2000 to 2023). Of these left out one by one, 1,247 of 1,290 covers given 0.9 and more were
-right, 163 of 194 of those from 0.7, 36 of 47 of those from 0.5 and 5 of 8 of those below; of twelve
-others (2100 to 2111) 841 of 854, 141 of 167, 32 of 43 and 6 of 16; of four streets of another
-simulator, from which nothing was learnt, 225 of 230, 54 of 63 and 9 of 13."""
+seeds 2000 to 2023). Of these left out one by one, 1,295 of 1,336 covers given 0.9 and more were
+right, 144 of 167 of those from 0.7, 21 of 28 of those from 0.5 and 6 of 18 of those below; of
+twelve others (2100 to 2111) 898 of 919, 97 of 115, 19 of 30 and 7 of 23; of four streets of another
+simulator, from which nothing was learnt, 242 of 244, 51 of 55, 8 of 12 and none of 7."""
 
-CONSTANT = -3.21
+CONSTANT = -3.14
 """Log-odds of a cover of which nothing is known; fitted with `WEIGHTS`."""
 
 
@@ -123,7 +128,10 @@ def facts_of(
     believed = run.holes.count / (run.holes.count + _FEW_HOLES)
     holes = believed * float(np.clip(run.holes.gain, _LEAST_GAIN, _MOST_GAIN))
     of_run = _RunFacts(over, holes, run.length_m)
-    return [_facts(one, of_run, contrast, k) for k, one in enumerate(covers)]
+    return [
+        _facts((one, mistaken), of_run, contrast, k)
+        for k, (one, mistaken) in enumerate(zip(covers, _mistaken(run, covers), strict=True))
+    ]
 
 
 class _RunFacts(NamedTuple):
@@ -134,7 +142,17 @@ class _RunFacts(NamedTuple):
     length_m: float
 
 
-def _facts(cover: GutterCover, of_run: _RunFacts, contrast: Contrast, number: int) -> CoverFacts:
+def _mistaken(run: GutterRun, covers: tuple[GutterCover, ...]) -> list[float]:
+    """How sure points are of each cover that it is of the other kind."""
+    is_grating = np.array([one.is_grating for one in covers], np.float64)
+    barred = is_grating if run.barred is None else run.barred
+    return [float(one) for one in np.abs(barred - is_grating)]
+
+
+def _facts(
+    known: tuple[GutterCover, float], of_run: _RunFacts, contrast: Contrast, number: int
+) -> CoverFacts:
+    cover, mistaken = known
     lids, beside = (
         min(max(float(one[number]), _LEAST_CONTRAST), _MOST_CONTRAST)
         for one in (contrast.lids, contrast.beside)
@@ -148,6 +166,7 @@ def _facts(cover: GutterCover, of_run: _RunFacts, contrast: Contrast, number: in
         float((np.array(cover.seen) == 0).sum()),
         float(abs(cover.length_m - of_run.length_m) > _OTHER_LENGTH_M),
         float(cover.is_grating),
+        mistaken,
         float(cover.on_top < _FEW_POINTS),
         min(cover.below / max(cover.on_top + cover.below, 1), _MOST_HOLLOW),
     )

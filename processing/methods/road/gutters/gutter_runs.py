@@ -139,6 +139,8 @@ class GutterRun:
         Of those that are strong.
     mixes : tuple of mapping of float
         What its lids are like: see `joint_row`.
+    barred : (k,) float64, optional
+        Of each cover, how sure its points are that it is barred (see `gutter_bars`).
     """
 
     axis: GutterAxis
@@ -149,6 +151,7 @@ class GutterRun:
     notches: RowNotches
     depths: JointDepths
     mixes: tuple[Mapping[float, float], ...]
+    barred: _Floats | None = None
 
     @property
     def edges(self) -> tuple[float, float]:

@@ -8,8 +8,9 @@ import pytest
 from processing.methods.road.gutters.gutter_axis import GutterAxis
 from processing.methods.road.gutters.gutter_confidence import chance_of, facts_of
 from processing.methods.road.gutters.gutter_contrast import contrast_of
+from processing.methods.road.gutters.gutter_depths import JointDepths
 from processing.methods.road.gutters.gutter_holes import JointNotches, hole_fit
-from processing.methods.road.gutters.gutter_joints import LID, JointRow
+from processing.methods.road.gutters.gutter_joints import LID, JointRow, RowNotches
 from processing.methods.road.gutters.gutter_lids import GutterCover
 from processing.methods.road.gutters.gutter_runs import GutterRun
 from processing.methods.road.gutters.notches.notches import OPENING, Notches
@@ -68,7 +69,9 @@ def gutter(height_m: float = 0.0, over_chance: float = 10.0) -> GutterRun:
     )
     across = np.tile(HOLES_M, 20)
     at_joints = JointNotches(across, np.full(across.size, 0.07), np.ones(across.size))
-    return GutterRun(axis, row, hole_fit(at_joints), LID_M, over_chance)
+    none = np.empty(0)
+    notches, depths = RowNotches.of(none, none, none), JointDepths(none, none, none)
+    return GutterRun(axis, row, hole_fit(at_joints), LID_M, over_chance, notches, depths, ())
 
 
 def covers() -> tuple[GutterCover, ...]:
