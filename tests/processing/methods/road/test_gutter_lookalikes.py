@@ -28,6 +28,8 @@ LENGTH_M, BEYOND_M = 16.0, 8.0
 LID_M, EDGES_M = 0.6, (-3.38, -3.0)
 HOLES_M = ((-3.335, -3.235), (-3.145, -3.045))
 HOLE_M = 0.03
+BAR_M = 0.01
+BARRED = frozenset((22, 27, 28))
 
 
 def plates(boxes: list[Box], height_m: float = 0.0) -> LookalikeShape:
@@ -52,10 +54,14 @@ def pieces(length_m: float, gap_m: float) -> Iterator[tuple[float, float]]:
         yield float(start) + gap_m / 2, float(start + length_m) - gap_m / 2
 
 
-def lids() -> list[LookalikeShape]:
-    """Lids with twin holes at their joints, over a channel 30 cm deep."""
+def lids(barred: frozenset[int] = frozenset()) -> list[LookalikeShape]:
+    """Lids with twin holes at their joints, some pieces barred, over a channel 30 cm deep."""
     boxes: list[Box] = []
-    for first, last in pieces(LID_M, 0.004):
+    for number, (first, last) in enumerate(pieces(LID_M, 0.004)):
+        if number in barred:
+            bars = np.arange(first, last - BAR_M, 4 * BAR_M).tolist()
+            boxes += [(bar, bar + BAR_M, *EDGES_M) for bar in bars]
+            continue
         boxes.append((first + HOLE_M / 2, last - HOLE_M / 2, *EDGES_M))
         solid = (EDGES_M[0], *(edge for hole in HOLES_M for edge in hole), EDGES_M[1])
         for low, high in zip(solid[::2], solid[1::2], strict=True):
@@ -116,6 +122,18 @@ def test_lids_with_holes_are_found(tmp_path: Path) -> None:
     assert {one.attributes["length_m"] for one in found} == {LID_M}
     inner = found[2:-2]
     assert np.concatenate([one.points for one in inner]).min() >= 0
+
+
+def test_gratings_between_lids_are_told_from_lids(tmp_path: Path) -> None:
+    """One and two side by side, to a usual length; no lid beside them is taken for one."""
+    found = covers_found(lids(BARRED), tmp_path)
+    gratings = [one for one in found if one.attributes["type"] == "grating"]
+    middles = sorted(float(one.xyz[:, 0].mean()) for one in gratings)
+    begins = [(number + 0.5) * LID_M - BEYOND_M for number in sorted(BARRED)]
+    assert len(middles) == len(begins)
+    np.testing.assert_allclose(np.diff(middles), np.diff(begins), atol=0.05)
+    assert {one.attributes["length_m"] for one in gratings} <= {LID_M, 0.5}
+    assert len(found) >= 15
 
 
 @pytest.mark.parametrize("shapes", [l_gutter, pavement_of_slabs, old_curb_stones])

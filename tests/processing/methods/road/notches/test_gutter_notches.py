@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from processing.methods.road.gutters.notches import notch_kernels
 from processing.methods.road.gutters.notches.notch_kernels import FOUND, Limits, notches_kernel
 from processing.methods.road.gutters.notches.notches import LOST, OPENING
-from tests.processing.methods.road.notch_rows import (
+from tests.processing.methods.road.notches.notch_rows import (
     DEEP_M,
     HOLE_LONG_M,
     HOLE_WIDE_M,
