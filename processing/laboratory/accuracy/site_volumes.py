@@ -45,7 +45,7 @@ from processing.tools.run_shares import mark_all
 Floats = NDArray[np.float64]
 
 HEADING = "## Earthwork volumes"
-SEEDS = range(1140, 1143)
+SEEDS = range(1140, 1156)
 _STYLES = ("levee", "cutting", "pad", "hillside")
 _SENSORS = ("p40", "vz400i", "zf5016", "p40", "zf5016")
 _LENGTHS_M = (90.0, 120.0, 60.0, 150.0, 105.0, 135.0)
