@@ -8,7 +8,7 @@
    there (:mod:`processing.methods.noise.features.features`), and more trees weigh them.
 4. What they say of the points around is asked together with the numbers once more
    (:mod:`processing.methods.noise.features.second_pass`): noise seldom comes alone, and true things
-   hang together.
+   hang together. Where beams are known, what they say is corrected by how much noise they see.
 5. Where beams are known, a point without company is noise, too
    (:mod:`processing.methods.noise.beams.lone_points`), however little noise there is around.
 
@@ -53,6 +53,9 @@ _FEWEST = 20
 
 _FEWEST_IN_SPACE = 1_000
 """Points of a cloud below which they don't tell what is usual around them; by trial."""
+
+_FEWEST_FOR_SHARE = 1_000
+"""Points in doubt from which their share of noise is sure to some hundredths."""
 
 _LEAST_STRICTNESS = 1e-6
 """Keeps the odds of a strictness of 0 or 1 finite."""
@@ -145,11 +148,32 @@ def _codes(
     is_open = np.flatnonzero(odds > open_odds)
     again = candidates.seen_again(odds, is_open, monitor)
     share = min(max(strictness, _LEAST_STRICTNESS), 1 - _LEAST_STRICTNESS)
-    is_noise = log_odds(_trees(models[1]), again, monitor) > np.log((1 - share) / share)
+    trees = _trees(models[1])
+    asked_again = log_odds(trees, again, monitor)
+    if candidates.beams is not None:
+        asked_again += _rarer_by(asked_again, trees.base)
+    is_noise = asked_again > np.log((1 - share) / share)
     noise, heights = candidates.points[is_open[is_noise]], candidates.around.heights
     codes = np.zeros(heights.size, np.uint8)
     codes[noise] = codes_by_height(heights[noise])
     return codes
+
+
+def _rarer_by(odds: NDArray[np.float64], usual: float) -> float:
+    """How much less likely noise is than where the trees learned, as log-odds: at most 0.
+
+    Notes
+    -----
+    One step of the estimate by Saerens and others (2002, Neural Computation 14, eq. 4): the share
+    of noise that the trees tell, against the share among their examples (``usual``, log-odds).
+    Further steps end at no noise at all where there is little: the trees aren't that sure. On a
+    phase-based recording the share is .89 and nothing changes; on streets by pulses it is .005 to
+    .08, and three of four true points are kept that the trees lost before.
+    """
+    if odds.size < _FEWEST_FOR_SHARE:
+        return 0.0
+    share = float(np.mean(1.0 / (1.0 + np.exp(-odds))))
+    return min(float(np.log(share / (1.0 - share))) - usual, 0.0)
 
 
 def _without(beams: PointBeams, left_out: NDArray[np.bool_]) -> PointBeams:

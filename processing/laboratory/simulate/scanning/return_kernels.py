@@ -28,6 +28,8 @@ _BASE_M = 10.0
 # Grains of the surface within a beam make its echo stronger or weaker.
 _LEAST_SPECKLE, _MOST_SPECKLE, _SPECKLE_PER_M = 0.05, 0.2, 80.0
 _NEAR_M = 8.0  # nearer than this a receiver sees its own beam only in part
+_LENGTHS_AS_ONE = 4.0  # of a pulse, within which a receiver of one return takes one range
+_OWN_LIKE_M = 0.05  # a range so near to what a beam met is of that, as in `scanner_noise`
 
 
 @kernel
@@ -164,7 +166,7 @@ def edge_returns(
     ``met``: true ranges (NaN: none) and bodies of the beams. ``out``: measured ranges and
     strengths, changed in place; ranges of second returns (NaN: none) and the beams that met what
     they are of; kinds, `MIXED` where the range is of no surface. The neighbour in the turn tells
-    what is beside.
+    what is beside. Leaves of one tree are one body, yet ranges between them are of none of them.
     """
     truths, bodies = met
     ranges, strengths, seconds, others, kinds = out
@@ -178,7 +180,9 @@ def edge_returns(
             continue
         gap = beside - here
         near = min(here, beside)
-        if abs(gap) < 0.04 + 3 * scanner[TURN_RAD] * near or bodies[ray] == bodies[other]:
+        is_single = scanner[IS_PHASE] < 0.5 and scanner[MOST_RETURNS] < 1.5
+        is_body = bodies[ray] == bodies[other] and not is_single
+        if abs(gap) < 0.04 + 3 * scanner[TURN_RAD] * near or is_body:
             continue
         width = scanner[EXIT] + scanner[DIVERGENCE] * near
         if share_of(first + ray, key + 6) > min(0.9, width / (scanner[TURN_RAD] * near)):
@@ -187,6 +191,10 @@ def edge_returns(
         if scanner[IS_PHASE] > 0.5:
             ranges[ray] = here + part * gap
             kinds[ray] = MIXED
+        elif is_single and abs(gap) < _LENGTHS_AS_ONE * scanner[LENGTH]:
+            # A receiver that tells one range of a pulse takes the middle of all that came back.
+            ranges[ray] = here + part * gap
+            kinds[ray] = MIXED if min(part, 1.0 - part) * abs(gap) > _OWN_LIKE_M else TRUE
         elif abs(gap) < scanner[LENGTH]:
             # Two echoes within the pulse's length become one, nearer to the first of them.
             low = near + 0.6 * part * part * abs(gap)

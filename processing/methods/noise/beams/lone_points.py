@@ -1,4 +1,4 @@
-"""Points without company: nothing else was measured within some spacings of them.
+"""Points without company: nothing else was measured where something should have been.
 
 Whatever a scanner sees is met by more than one of its beams: beams beside each other are a spacing
 apart, and a wire or a rod goes on from row to row. A drop, an insect, an echo of an echo and a
@@ -18,6 +18,11 @@ from processing.core.kernels import kernel
 from processing.core.monitor import Monitor
 from processing.image.rows.point_image_kernels import first_at
 from processing.methods.noise.beams.beam_kernels import PointBeams
+from processing.methods.noise.beams.closed_surfaces import (
+    BELOW_SURFACE,
+    OFF_SURFACE,
+    off_surfaces_kernel,
+)
 from processing.methods.noise.neighbours.sharing import share_out
 
 _Floats = NDArray[np.float64]
@@ -28,31 +33,29 @@ _APART_FROM_SURFACE = 2.0
 goes on without it: what is thin enough for one beam of a row is met by the next row, too, which is
 one spacing away if it stands square to the rows and 1.4 if it runs at 45°."""
 
-_APART = 3.5
-"""The same where the beams around met several things: in a crown, at an edge. A surface that falls
-off steeply, and twigs, leave gaps of two and three spacings."""
-
-_APART_IN_THE_OPEN = 5.0
-"""The same where most of the beams around met nothing: a wire thinner than the spacing is met by
-some of the beams only, and far from the scanner its points are that far apart."""
-
-_NEVER = 1e6
-"""From a tripod far wires and blades of grass are met by single beams: only what stands before or
-behind a surface that goes on is alone. On the sample of a standing scanner the other two would take
-9 % of the wires and 17 % of the grass."""
-
 _ROWS = 5
-"""Rows to either side that are searched: as far as ``_APART_IN_THE_OPEN``."""
+"""Rows to either side that are searched for it: two spacings, and four where nothing is strict."""
 
-_SCATTER_M = 0.02
-"""What ranges of one surface differ by themselves: a scanner's noise and the surface's roughness,
-as in :mod:`.beam_kernels`."""
+_REACH = 12
+"""Spacings and rows to either side within which other points are counted: a few hundred in a crown,
+so that their number is sure to a tenth. By trial; with 7 less noise was found for the same loss."""
 
-_COLUMNS_ACROSS_GAPS = 3
-"""Columns within which the next pulse that came back counts as the one beside."""
+_NEAREST = 1.5
+"""Spacings within which another point is company enough: from row to row along a slanting wire."""
 
-_FEWEST_BESIDE = 3
-"""Of four beams beside, that show whether a surface goes on: all, but for a lost pulse."""
+_LONELINESS = 7.0
+"""See :func:`lone_points`. Where next to nothing is noise a fifth of a percent of the points may be
+lost, and a street whose crowns hold a tenth of them loses so many with this value."""
+
+_SCATTER_POWER = 0.8
+"""Of the number of points in reach: leaves stand in clumps, and their number grows with less than
+the third power of the distance (2.4). By trial, of 1, 0.8 and 0.6."""
+
+_GAP_POWER = 3 * (1 - _SCATTER_POWER)
+"""Of the reach, with which loneliness is in spacings: with that power it is no pure number."""
+
+_MOST_ROWS = 48
+"""Rows to either side that are searched at most: of a scanner that nearly stands."""
 
 _MOST_COLUMNS = 256
 """Columns to either side that are searched at most; the point's range is a few steps' then."""
@@ -65,11 +68,10 @@ _POINTS_AT_ONCE = 16_384
 
 
 class _Limits(NamedTuple):
-    """In spacings: before a surface that goes on, among several things, in the open."""
+    """Spacings off a surface, and loneliness, from which a point is alone."""
 
-    near: float
-    far: float
-    farthest: float
+    apart: float
+    loneliness: float
 
 
 def lone_points(
@@ -94,22 +96,31 @@ def lone_points(
 
     Notes
     -----
-    A point stands alone if no other lies within three and a half spacings of it, in five rows to
-    either side, returns of its own pulse among them. Two spacings are enough where the beams on all
-    sides of it met one surface: where their ranges differ less among themselves than from the
-    point's own. Where most beams around met nothing, five are asked. Of a scanner that stood,
-    only the second of these says anything.
+    A point is alone where the beams on all sides met one plane and it is off that plane: at once
+    if it lies behind a level one, since nothing is below a road that others didn't see, and else
+    if no point lies within two spacings (:mod:`.closed_surfaces`).
+
+    Elsewhere, as in a crown or at an edge, chance decides. Of ``n`` points that scatter within
+    twelve spacings ``n (d / 12)³`` are expected within a distance ``d``: the more, the less likely
+    is it to find none. The loneliness of a point is that number for ``d₁² d₂`` in place of ``d³``,
+    its nearest and its second neighbour, with a lesser power of ``n``, times one more for each of
+    the four pairs of beams on opposite sides of which one met something nearer and the other
+    something farther: so lie ranges between an edge and what is behind it. Nothing at all within
+    twelve spacings is alone, too.
+
+    Of a scanner that stood only the plane says anything: far wires and blades of grass are met by
+    single beams there.
     """
     found = np.empty(points.size, np.bool_)
     scale = 4.0 ** (0.5 - strictness)
-    elsewhere = (_APART, _APART_IN_THE_OPEN)
-    if not np.ptp(beams.origins, axis=0).any():
-        elsewhere = (_NEVER, _NEVER)
-    limits = _Limits(*(scale * one for one in (_APART_FROM_SURFACE, *elsewhere)))
+    has_moved = bool(np.ptp(beams.origins, axis=0).any())
+    limits = _Limits(scale * _APART_FROM_SURFACE, scale**3 * _LONELINESS if has_moved else math.inf)
 
     def look(start: int, stop: int) -> None:
         part = slice(start, stop)
-        _lone_kernel(beams, spacings, points[part], rows[part], limits, found[part])
+        off = np.empty(stop - start, np.uint8)
+        off_surfaces_kernel(beams, points[part], rows[part], off)
+        _lone_kernel(beams, spacings, points[part], rows[part], off, limits, found[part])
 
     share_out(look, points.size, _POINTS_AT_ONCE, monitor)
     return found
@@ -121,21 +132,61 @@ def _lone_kernel(
     spacings: _Floats,
     points: _Integers,
     rows: _Integers,
+    off: NDArray[np.uint8],
     limits: _Limits,
     found: NDArray[np.bool_],
 ) -> None:
     for i in range(points.size):
         point, row = points[i], rows[i]
         spacing = spacings[point]
-        found[i] = False
+        found[i] = off[i] == BELOW_SURFACE
         # Most points have company next to them: that is asked first, since it costs least.
-        if _is_accompanied(beams, point, row, 1, limits.near * spacing):
+        if found[i] or _is_accompanied(beams, point, row, 1, _NEAREST * spacing):
             continue
-        if _is_accompanied(beams, point, row, _ROWS, limits.near * spacing):
+        if off[i] == OFF_SURFACE and not _is_accompanied(
+            beams, point, row, _ROWS, limits.apart * spacing
+        ):
+            found[i] = True
+        elif math.isfinite(limits.loneliness):
+            alone = _loneliness(beams, point, row, spacing)
+            found[i] = alone > limits.loneliness
+
+
+@kernel
+def _loneliness(beams: PointBeams, point: int, row: int, spacing: float) -> float:
+    """How unlikely the gap around a point is, see :func:`lone_points`; infinite in the open."""
+    reach = _REACH * spacing
+    nearest, second, count = reach * reach, reach * reach, 0
+    column, aside = beams.columns[point], _columns_within(beams, point, reach)
+    for step in range(2 * _rows_within(beams, row, reach) + 1):
+        # From the point's own row outwards: most have company there, and the rest isn't asked.
+        other = row + (step + 1) // 2 * (1 if step % 2 else -1)
+        if (
+            other < 0
+            or other >= beams.segments.size
+            or beams.segments[other] != beams.segments[row]
+        ):
             continue
-        apart = _off_surface(beams, point, row)
-        limit = limits.farthest if math.isnan(apart) else limits.far
-        found[i] = apart > 1.0 or not _is_accompanied(beams, point, row, _ROWS, limit * spacing)
+        end = beams.row_starts[other + 1]
+        at = first_at(beams.columns, beams.row_starts[other], end, column - aside)
+        while at < end and beams.columns[at] <= column + aside:
+            if at != point and abs(beams.ranges[at] - beams.ranges[point]) <= reach:
+                square = _square_away(beams, at, point)
+                if square <= reach * reach:
+                    count += 1
+                    if square < nearest:
+                        nearest, second = square, nearest
+                    elif square < second:
+                        second = square
+            at += 1
+        if nearest < (_NEAREST * spacing) ** 2:
+            return 0.0
+    if count == 0:
+        return math.inf
+    gap = nearest * math.sqrt(second) / reach**3
+    return float(
+        gap * _REACH**_GAP_POWER * (count + 1) ** _SCATTER_POWER * _pairs(beams, point, row)
+    )
 
 
 @kernel
@@ -164,6 +215,21 @@ def _columns_within(beams: PointBeams, point: int, limit: float) -> int:
 
 
 @kernel
+def _rows_within(beams: PointBeams, row: int, reach: float) -> int:
+    """Rows to either side until the scanner has gone so far; those of a standing one are even."""
+    beside = row + 1 if row + 1 < beams.segments.size else row - 1
+    if beside < 0 or beams.row_starts[row] == beams.row_starts[row + 1]:
+        return _REACH
+    here, there = beams.row_starts[row], beams.row_starts[beside]
+    square = 0.0
+    for axis in range(3):
+        square += (beams.origins[there, axis] - beams.origins[here, axis]) ** 2
+    if square * _MOST_ROWS * _MOST_ROWS <= reach * reach:
+        return _REACH if square == 0.0 else _MOST_ROWS
+    return max(math.ceil(reach / math.sqrt(square)), _REACH)
+
+
+@kernel
 def _square_away(beams: PointBeams, one: int, other: int) -> float:
     square = 0.0
     for axis in range(3):
@@ -172,60 +238,30 @@ def _square_away(beams: PointBeams, one: int, other: int) -> float:
 
 
 @kernel
-def _off_surface(beams: PointBeams, point: int, row: int) -> float:
-    """How much farther a point is from the beams on all sides than they are from each other.
-
-    Above 1 they met one surface, and the point is not of it; NaN where too few came back.
-    """
-    lowest, highest, nearest, count = np.inf, -np.inf, np.inf, 0
-    for side in range(4):
-        if side < 2:
-            reach = _beside_in_row(beams, point, row, 2 * side - 1)
-        else:
-            reach = _beside_in_next(beams, point, row, 2 * side - 5)
-        if math.isnan(reach):
-            continue
-        count += 1
-        lowest, highest = min(lowest, reach), max(highest, reach)
-        nearest = min(nearest, abs(reach - beams.ranges[point]))
-    if count < _FEWEST_BESIDE:
-        return math.nan
-    return nearest / (highest - lowest + _SCATTER_M)
+def _pairs(beams: PointBeams, point: int, row: int) -> int:
+    """One more than the pairs of beams on opposite sides, one nearer and one farther: 1 to 5."""
+    count = 1
+    for pair in range(4):
+        rows, columns = min(pair, 1), pair - 2 if pair > 0 else 1
+        before = _gap_to(beams, point, row, -rows, -columns)
+        behind = _gap_to(beams, point, row, rows, columns)
+        count += before * behind < 0
+    return count
 
 
 @kernel
-def _beside_in_row(beams: PointBeams, point: int, row: int, way: int) -> float:
-    """The range of the next pulse that came back; of its returns the one nearest in range."""
-    first, end = beams.row_starts[row], beams.row_starts[row + 1]
-    at = point + way
-    while first <= at < end and beams.columns[at] == beams.columns[point]:
-        at += way
-    if at < first or at >= end:
-        return math.nan
-    column = beams.columns[at]
-    if abs(column - beams.columns[point]) > _COLUMNS_ACROSS_GAPS:
-        return math.nan
-    best: float = beams.ranges[at]
-    while first <= at < end and beams.columns[at] == column:
-        if abs(beams.ranges[at] - beams.ranges[point]) < abs(best - beams.ranges[point]):
-            best = beams.ranges[at]
-        at += way
-    return best
-
-
-@kernel
-def _beside_in_next(beams: PointBeams, point: int, row: int, way: int) -> float:
-    """The range of the row beside in the same direction, a column to either side allowed."""
-    other = row + way
+def _gap_to(beams: PointBeams, point: int, row: int, rows: int, columns: int) -> float:
+    """How much farther the beam beside went, m; of its returns the one nearest in range."""
+    other = row + rows
     if other < 0 or other >= beams.segments.size or beams.segments[other] != beams.segments[row]:
-        return math.nan
-    end, column = beams.row_starts[other + 1], beams.columns[point]
-    at = first_at(beams.columns, beams.row_starts[other], end, column - 1)
-    best = math.nan
-    while at < end and beams.columns[at] <= column + 1:
-        reach: float = beams.ranges[at]
-        if math.isnan(best) or abs(reach - beams.ranges[point]) < abs(best - beams.ranges[point]):
-            best = reach
+        return 0.0
+    end, column = beams.row_starts[other + 1], beams.columns[point] + columns
+    at = first_at(beams.columns, beams.row_starts[other], end, column)
+    best = 0.0
+    while at < end and beams.columns[at] == column:
+        gap = beams.ranges[at] - beams.ranges[point]
+        if best == 0.0 or abs(gap) < abs(best):
+            best = gap
         at += 1
     return best
 
@@ -236,4 +272,5 @@ def warm_up() -> None:
     starts, segments = np.arange(5), np.zeros(4, np.int32)
     beams = PointBeams(zeros, zeros, np.ones(4), segments, starts, segments, 0.01)
     some, found = np.arange(2), np.zeros(2, np.bool_)
-    _lone_kernel(beams, np.ones(4), some, some, _Limits(1.0, 2.0, 3.0), found)
+    off = np.zeros(2, np.uint8)
+    _lone_kernel(beams, np.ones(4), some, some, off, _Limits(1.0, 2.0), found)

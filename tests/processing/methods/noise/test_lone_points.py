@@ -7,6 +7,7 @@ import pytest
 from numpy.typing import NDArray
 
 from processing.core.monitor import SilentMonitor
+from processing.methods.noise.beams import closed_surfaces as closed
 from processing.methods.noise.beams import lone_points as lone
 from processing.methods.noise.beams.beam_kernels import PointBeams, spacing_kernel
 from processing.methods.noise.combined import noise_codes_with_beams
@@ -85,6 +86,57 @@ def test_a_recording_with_a_single_false_point_loses_it() -> None:
     codes = noise_codes_with_beams(beams, np.full(grid.size, 1000, np.uint16))
     assert np.flatnonzero(codes).tolist() == [drop]
     assert codes[drop] == 18
+
+
+@pytest.mark.parametrize("is_compiled", [True, False])
+def test_what_lies_just_below_a_road_is_no_part_of_it_and_a_joint_is(is_compiled: bool) -> None:
+    """Millimetres of noise on the road; a lone echo 10 cm behind it, and a joint 3 cm deep."""
+    beams, grid = rows_over_a_road()
+    beams.ranges[:] += np.random.default_rng(3).normal(0, 0.003, beams.ranges.size)
+    echo, joint = grid[30, 180], grid[20:40, 240]
+    beams.ranges[echo] += 0.10
+    beams.ranges[joint] += 0.03
+    place(beams)
+    points, fitted = np.arange(grid.size), np.empty((40, 6))
+    kernel = closed.off_surface if is_compiled else closed.off_surface.py_func
+    asked = points if is_compiled else np.append(grid[28:32, 176:184].ravel(), joint)
+    said = [kernel(beams, int(point), int(point) // _COLUMNS, fitted) for point in asked]
+    assert asked[np.array(said) != closed.ON_SURFACE].tolist() == [echo]
+    assert said[asked.tolist().index(echo)] == closed.BELOW_SURFACE
+    assert np.flatnonzero(found_in(beams)).tolist() == [echo]
+
+
+def test_a_point_seen_through_a_window_is_kept() -> None:
+    """The road stands upright here: a wall beside the scanner, a room behind it."""
+    beams, grid = rows_over_a_road()
+    beams.ranges[grid[30, 180]] += 0.6
+    place(beams)
+    upright = beams._replace(
+        xyz=beams.xyz[:, [0, 2, 1]].copy(), origins=beams.origins[:, [0, 2, 1]].copy()
+    )
+    assert found_in(beams).sum() == 1
+    assert not closed_codes(upright).any()
+
+
+def closed_codes(beams: PointBeams) -> NDArray[np.uint8]:
+    found = np.empty(beams.ranges.size, np.uint8)
+    rows = np.repeat(np.arange(_ROWS), _COLUMNS)
+    closed.off_surfaces_kernel(beams, np.arange(beams.ranges.size), rows, found)
+    return found
+
+
+def test_a_range_between_an_edge_and_what_is_behind_it_is_alone_and_a_leaf_is_not() -> None:
+    """A crown over the road: leaves in clumps of four beams; ranges between them and the road."""
+    beams, grid = rows_over_a_road()
+    random = np.random.default_rng(5)
+    crown = grid[10:50, 100:300]
+    for row, column in zip(range(0, 40, 4), range(0, 200, 20), strict=True):
+        clump = crown[row : row + 2, column : column + 2]
+        beams.ranges[clump] = 1.2 + random.uniform(-0.02, 0.02, clump.shape)
+    between = crown[20, 102]  # beside a clump, and half-way to the road
+    beams.ranges[between] = 1.9
+    place(beams)
+    assert np.flatnonzero(found_in(beams)).tolist() == [between]
 
 
 @pytest.mark.parametrize("is_compiled", [True, False])

@@ -101,6 +101,27 @@ def test_a_pulse_at_an_edge_returns_twice_and_a_phase_in_between() -> None:
     assert (phases.evidence[between] == NO_EVIDENCE).all()
 
 
+def test_a_receiver_of_one_return_takes_the_middle_of_two_leaves() -> None:
+    """Two sheets of leaves half a metre apart are one tree, and ranges between them are noise."""
+    built = MeshBuilder()
+    for west, high in ((-9.0, 0.2), (0.0, 0.7)):
+        sheet = [[[west, -9, high], [west + 9, -9, high]], [[west, 9, high], [west + 9, 9, high]]]
+        built.add(grid(np.array(sheet, float)), Material.LEAVES, 5, 12)
+    turn = _fan(200, -30, 30)
+    beams = Beams(
+        0,
+        np.arange(200_000) / 3e5,
+        *(np.tile(one, (1000, 1)) for one in (turn.origins, turn.directions)),
+    )
+    single = _returned(built.mesh(), beams, replace(_PULSE, returns=1))
+    between = single.label == 18
+    assert between.sum() > 10
+    assert (single.count == 1).all()
+    heights = single.xyz[between, 2]
+    assert ((heights > 0.23) & (heights < 0.67)).all()
+    assert not (_returned(built.mesh(), beams, _PULSE).label == 18).any()
+
+
 def test_leaves_let_beams_through() -> None:
     built = _floor(Material.CONCRETE)
     built.add(grid(np.array([[[-9, -9, 1], [9, -9, 1]], [[-9, 9, 1], [9, 9, 1]]], float)),
