@@ -29,6 +29,7 @@ from processing.methods.ground.filters.cells import (
     levels_above,
 )
 from processing.methods.ground.filters.chords import carried_on, single_bumps
+from processing.methods.ground.filters.islands import crowded_islands
 from processing.methods.ground.filters.layers import begin_of_ground
 from processing.methods.ground.filters.morphology import fill_heights, steepness_of
 from processing.methods.ground.filters.neighbours import off_neighbours
@@ -229,6 +230,8 @@ def _ground_cells(
     ground &= ~off_neighbours(levels.lowest, ground, crowded, grid.size_m)
     if is_sparse:
         ground = _followed_on_slopes(levels.lowest, ground, grid.size_m, shape)
+    else:
+        ground &= ~crowded_islands(levels.lowest, ground, crowded, grid.size_m)
     return levels, ground
 
 

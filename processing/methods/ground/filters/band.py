@@ -60,6 +60,15 @@ _FOOT_REACH_M = 0.4
 """How far above the band a thing is looked for whose foot holds no ground, by trial: what begins
 higher, as a branch or a wire, does not stand on that part of the cell."""
 
+_FILLED_CELLS, _FILLED_COARSE_CELLS = 1, 2
+"""Cells from measured ground within which a point in the band is ground; beyond, what reaches
+through the filled surface is rather the thing that hides the ground. With cells that hold about one
+point the next may be empty by chance: two. On streets labelled by hand 3.8 and 1.7 % of buildings
+and vehicles were ground, with this, ``_FACE_CELLS`` and the islands 2.4 and 0.6 %."""
+
+_FACE_CELLS = 2
+"""The same for the face of a step, which leans over one cell more."""
+
 _FINE_CELL_M = 0.5
 """Cells larger than this have no faces and no feet: between two of them lies the jump from a roof
 to the ground as well as a step, and a sixteenth of one is wider than what stands on it. Measured
@@ -101,7 +110,7 @@ class GroundBand:
         Ground at the cells' centres, m above the grid's origin.
     below, above : (rows, columns) float32
         A point no farther under or over that surface is ground, m; ``above`` is smaller where
-        something stands.
+        something stands. Both are −inf far from any measured ground: nothing is ground there.
     face_low, face_high : (rows, columns) float32
         Between these heights points on the face of a step are ground; empty elsewhere.
     feet : (rows, columns) uint16
@@ -190,15 +199,27 @@ def ground_band(
     face_low, face_high = _face_heights(
         (blocks, grid), (surface, ground), (thick, above), is_level, column_tops(bins)
     )
+    fine = size_m <= _FINE_CELL_M
+    is_near = _near_ground(ground, _FILLED_CELLS if fine else _FILLED_COARSE_CELLS)
+    nowhere = np.float32(-np.inf)
     return GroundBand(
         surface,
-        thick,
-        above.astype(np.float32),
+        np.where(is_near, thick, nowhere),
+        np.where(is_near, above, nowhere).astype(np.float32),
         face_low,
-        face_high,
+        np.where(_near_ground(ground, _FACE_CELLS), face_high, nowhere),
         feet,
         typical,
     )
+
+
+def _near_ground(ground: NDArray[np.bool_], cells: int) -> NDArray[np.bool_]:
+    """Cells with measured ground so near that the surface, filled in there, still tells it."""
+    import cv2
+
+    away = cv2.distanceTransform((~ground).astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+    near: NDArray[np.bool_] = away <= cells
+    return near
 
 
 def _face_heights(
