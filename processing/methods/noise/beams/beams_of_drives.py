@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.kernels import kernel
 from processing.image.point_image import PointCloudImage
 from processing.methods.noise.beams.beam_kernels import PointBeams
 from processing.methods.noise.beams.beam_origins import BeamOrigins
@@ -38,16 +41,14 @@ def beams_of(
     grid, points = image.grid(rows)
     xyz, positions = drive.xyz(points), origins.of(np.arange(points.start, points.stop))
     middle = np.median(xyz[:: max(1, xyz.shape[0] // _SAMPLE)], axis=0)
-    xyz -= middle
-    positions -= middle
-    away = xyz - positions
-    ranges = np.maximum(np.sqrt((away * away).sum(axis=1)), _NEAREST_M)
+    ranges = np.empty(xyz.shape[0])
+    _ranges_kernel(xyz, positions, middle, ranges)
     columns = np.ascontiguousarray(grid.columns)
     revolutions = drive.revolutions
     step_rad = (
         2 * np.pi / revolutions.pulses_per_revolution
         if revolutions is not None
-        else _step_rad(away / ranges[:, None], columns, grid.width)
+        else _step_rad((xyz - positions) / ranges[:, None], columns, grid.width)
     )
     beams = PointBeams(
         xyz,
@@ -69,3 +70,26 @@ def _step_rad(directions: NDArray[np.float64], columns: NDArray[np.int32], width
         return 2 * np.pi / max(width, 1)
     gaps = np.linalg.norm(directions[firsts + 1] - directions[firsts], axis=1)
     return float(max(np.median(gaps), _LEAST_STEP_RAD))
+
+
+@kernel
+def _ranges_kernel(
+    xyz: NDArray[np.float64],
+    positions: NDArray[np.float64],
+    middle: NDArray[np.float64],
+    ranges: NDArray[np.float64],
+) -> None:
+    """Bring points and the origins of their beams about ``middle``, and tell the ranges."""
+    for point in range(xyz.shape[0]):
+        square = 0.0
+        for axis in range(3):
+            xyz[point, axis] -= middle[axis]
+            positions[point, axis] -= middle[axis]
+            square += (xyz[point, axis] - positions[point, axis]) ** 2
+        ranges[point] = max(math.sqrt(square), _NEAREST_M)
+
+
+def warm_up() -> None:
+    """Compile the kernel of this file."""
+    one = np.zeros((1, 3))
+    _ranges_kernel(one, one.copy(), np.zeros(3), np.empty(1))

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.kernels import kernel
 from processing.core.monitor import SilentMonitor
 from processing.methods.noise.neighbours.key_order import order_by_key
 
@@ -147,15 +148,18 @@ def ground_below(xyz: NDArray[np.float64], is_sure: NDArray[np.bool_], cell_m: f
     highest = np.percentile(some, 100 - _ENDS_PERCENT, axis=0) + _BEYOND_CELLS * cell_m
     shape = np.minimum(np.ceil((highest - lowest) / cell_m).astype(np.int64) + 1, _MOST_CELLS)
     side = np.maximum((highest - lowest) / (shape - 1), _LEAST_SIDE_M)
-    squares = np.clip(((xyz[:, :2] - lowest) / side).astype(np.int64), 0, shape - 1)
-    cells = (squares[:, 0] * shape[1] + squares[:, 1]).astype(np.int32)
-    aside = (xyz[:, :2] - lowest) / side - squares - 0.5  # in cells, from the cell's middle
+    cells = np.empty(xyz.shape[0], np.int32)
+    aside = np.empty((xyz.shape[0], 2))
+    _cells_kernel(xyz, lowest, side, shape, cells, aside)
     level = _known_ground(xyz[used, 2], cells[used], shape)
     steps = [_gentle_steps(level, axis) for axis in (0, 1)]
-    inclined = xyz[:, 2] - sum(one.ravel()[cells] * aside[:, i] for i, one in enumerate(steps))
+    flat = [one.ravel() for one in steps]
+    inclined = np.empty(xyz.shape[0])
+    _inclined_kernel(xyz, cells, aside, flat[0], flat[1], inclined)
     ground = _known_ground(inclined[used], cells[used], shape)
     slopes = np.hypot(steps[0] / side[0], steps[1] / side[1])
-    return GroundGrid(inclined - ground.ravel()[cells], cells, slopes)
+    _lower_kernel(ground.ravel(), cells, inclined)
+    return GroundGrid(inclined, cells, slopes)
 
 
 def _known_ground(
@@ -236,3 +240,53 @@ def _medians(strip: NDArray[np.float64]) -> NDArray[np.float64]:
     middle = np.maximum(known - 1, 0) // 2
     medians: NDArray[np.float64] = np.take_along_axis(stack, middle[None], axis=0)[0]
     return medians
+
+
+@kernel
+def _cells_kernel(
+    xyz: NDArray[np.float64],
+    lowest: NDArray[np.float64],
+    side: NDArray[np.float64],
+    shape: NDArray[np.int64],
+    cells: NDArray[np.int32],
+    aside: NDArray[np.float64],
+) -> None:
+    """The cell of each point, and where it lies in it: in cells from the cell's middle."""
+    for point in range(xyz.shape[0]):
+        cell = 0
+        for axis in range(2):
+            share = (xyz[point, axis] - lowest[axis]) / side[axis]
+            number = min(max(int(share), 0), shape[axis] - 1)
+            aside[point, axis] = share - number - 0.5
+            cell = cell * shape[1] + number if axis else number
+        cells[point] = cell
+
+
+@kernel
+def _inclined_kernel(
+    xyz: NDArray[np.float64],
+    cells: NDArray[np.int32],
+    aside: NDArray[np.float64],
+    eastward: NDArray[np.float64],
+    northward: NDArray[np.float64],
+    found: NDArray[np.float64],
+) -> None:
+    """Heights without the slopes of cells, which are given as rises per cell along both axes."""
+    for point in range(xyz.shape[0]):
+        cell = cells[point]
+        rise = eastward[cell] * aside[point, 0] + northward[cell] * aside[point, 1]
+        found[point] = xyz[point, 2] - rise
+
+
+@kernel
+def _lower_kernel(
+    ground: NDArray[np.float64], cells: NDArray[np.int32], heights: NDArray[np.float64]
+) -> None:
+    """Take the ground of its cell off each height."""
+    for point in range(cells.size):
+        heights[point] -= ground[cells[point]]
+
+
+def warm_up() -> None:
+    """Compile the kernels of this file."""
+    ground_below(np.zeros((2, 3)), np.zeros(2, np.bool_), 1.0)
