@@ -45,7 +45,7 @@ _NEAREST = 1.5
 
 _LONELINESS = 7.0
 """See :func:`lone_points`. Where next to nothing is noise a fifth of a percent of the points may be
-lost, and a street whose crowns hold a tenth of them loses so many with this value."""
+lost: streets of which 6 and 8 % are crowns lose .19 % with this value, .21 % with 6.5."""
 
 _SCATTER_POWER = 0.8
 """Of the number of points in reach: leaves stand in clumps, and their number grows with less than
