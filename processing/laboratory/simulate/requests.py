@@ -57,6 +57,8 @@ class StreetRequest:
         to be mounted, which don't change during a pass.
     wear : float
         What time made of the kerb stones.
+    avenue : bool
+        Rows of large trees along both sides, with posts and lamps under their crowns.
     """
 
     seed: int = count(1, low=0, high=2**31 - 1, name=_SEED, explanation=_SEED_MEANING)
@@ -153,6 +155,14 @@ class StreetRequest:
         explanation=Text(
             "0: as laid; 1: settled, tilted and rounded, as in an old street.",
             "0 は施工時の状態、1 は古い街路のように沈下・傾斜し、角が丸くなった状態。",
+        ),
+    )
+    avenue: bool = switch(
+        default=False,
+        name=Text("Avenue trees", "並木道"),
+        explanation=Text(
+            "Rows of large trees whose crowns touch each other and hang over posts and lamps.",
+            "樹冠が互いに接し、標識柱や街灯の上に覆いかぶさる大きな並木。",
         ),
     )
     images: bool = switch(

@@ -85,9 +85,10 @@ def simulate_street(request: StreetRequest, folder: Path, monitor: Monitor) -> S
     sensor = sensor_of(request.sensor, "mobile", request.own_sensor)
     with write_whole_folder(folder) as hidden:
         (hidden / "truth").mkdir()
-        work = _Work(
-            request, Street(request.seed, style, request.length_m, request.wear), sensor, hidden
+        street = Street(
+            request.seed, style, request.length_m, request.wear, is_avenue=request.avenue
         )
+        work = _Work(request, street, sensor, hidden)
         for number in range(request.passes):
             share = _TRUTH_SHARE / request.passes
             work.drive(number, PartMonitor(monitor, number * share, (number + 1) * share))

@@ -77,12 +77,22 @@ class Street:
         What is driven of it; a longer one begins like a shorter one.
     wear : float
         What time made of its kerb stones, 0 to 1.
+    is_avenue : bool
+        Rows of large trees stand along it, with posts under their crowns.
     """
 
-    def __init__(self, seed: int, style: Style, length_m: float, wear: float = 0.0) -> None:
+    def __init__(
+        self,
+        seed: int,
+        style: Style,
+        length_m: float,
+        wear: float = 0.0,
+        *,
+        is_avenue: bool = False,
+    ) -> None:
         self.seed, self.style, self.length_m = seed, style, length_m
         self.alignment: Alignment = alignment_of(seed, style, length_m)
-        self.plans = tuple(plans_of(seed, style, length_m, wear))
+        self.plans = tuple(plans_of(seed, style, length_m, wear, is_avenue=is_avenue))
         self._starts = np.array([one.start_m for one in self.plans])
         self._built: OrderedDict[int, BuiltSection] = OrderedDict()
         self._bare: OrderedDict[int, StreetSection] = OrderedDict()

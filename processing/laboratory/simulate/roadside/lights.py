@@ -57,7 +57,8 @@ def lamp_kind(section: StreetSection) -> LampKind | None:
     """
     style = section.plan.style
     random = chance(section.seed, "lamps")
-    if random.random() > _SHARES[style.id]:
+    is_avenue = section.plan.left.is_avenue
+    if random.random() > (1.0 if is_avenue else _SHARES[style.id]):
         return None
     both = SIDES if style is HIGHWAY or random.random() < 0.35 else ()
     line = pole_line(section).poles
@@ -68,7 +69,7 @@ def lamp_kind(section: StreetSection) -> LampKind | None:
     foot = float(random.uniform(0.09, 0.115) if is_low else random.uniform(0.14, 0.2))
     return LampKind(
         both or (other,),
-        pitch * (2 if style is RURAL else 1),
+        pitch * (0.5 if is_avenue else 2 if style is RURAL else 1),
         high,
         foot,
         foot * float(random.uniform(0.45, 1.0)),

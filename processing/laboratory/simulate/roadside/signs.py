@@ -31,6 +31,7 @@ from processing.laboratory.simulate.street.plan import LEFT, RIGHT, SIDES
 POSTS_M = (0.0605, 0.0605, 0.0763, 0.0891)
 LOWEST_M, LOWEST_OVER_WALK_M = 1.8, 2.5
 _BRACKET_M = 0.025
+_MORE_IN_AVENUES = 3.0  # so that some stand under every few crowns
 _PER_M = {"urban": 1 / 26, "rural": 1 / 60, "highway": 1 / 90}
 
 
@@ -40,7 +41,9 @@ def add_signs(positions: FreePositions, built: SectionBuilder) -> None:
     plan = section.plan
     for side in SIDES:
         random = section.chance("signs", side)
-        for _ in range(int(random.poisson(plan.length_m * _PER_M[plan.style.id] / 2 * 1.6))):
+        more = _MORE_IN_AVENUES if plan.side(side).is_avenue else 1.0
+        per_m = _PER_M[plan.style.id] / 2 * 1.6 * more
+        for _ in range(int(random.poisson(plan.length_m * per_m))):
             at = float(random.uniform(plan.start_m, plan.end_m))
             _add_post(positions, built, random, (side, at, plates_of(random, plan.style)))
     _add_stop_signs(positions, built)

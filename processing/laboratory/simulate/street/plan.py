@@ -66,6 +66,8 @@ class SidePlan:
         How far it rises (positive) or falls within its first metres.
     wear : float
         What time made of its kerb stones: 0 as laid, 1 settled, tilted and rounded.
+    is_avenue : bool
+        A row of large trees stands along it.
     """
 
     edge_m: float
@@ -81,6 +83,7 @@ class SidePlan:
     outside: Outside
     outside_high_m: float
     wear: float = 0.0
+    is_avenue: bool = False
 
     def bands(self) -> Iterator[RoadBand]:
         """The bands there are, from the asphalt outwards."""
@@ -149,18 +152,21 @@ class SectionPlan:
         return self.median_m / 2 + (self.lanes - lane - 0.5) * self.lane_m
 
 
-def plans_of(seed: int, style: Style, length_m: float, wear: float = 0.0) -> list[SectionPlan]:
+def plans_of(
+    seed: int, style: Style, length_m: float, wear: float = 0.0, *, is_avenue: bool = False
+) -> list[SectionPlan]:
     """All sections of a street in their order; a longer street begins like a shorter one."""
-    street = _Street(seed, style, wear)
+    street = _Street(seed, style, wear, is_avenue=is_avenue)
     ahead = list(street.outwards(1, length_m + MARGIN_M * 0.9))
     behind = list(street.outwards(-1, MARGIN_M * 0.9))
     return [*behind[::-1], *ahead]
 
 
 class _Street:
-    def __init__(self, seed: int, style: Style, wear: float) -> None:
+    def __init__(self, seed: int, style: Style, wear: float, *, is_avenue: bool) -> None:
         random = chance(seed, "street")
         self.seed, self.style, self.wear = seed, style, wear
+        self.is_avenue = is_avenue
         self.lanes = int(random.integers(style.lanes[0], style.lanes[1] + 1))
         self.lane_m = float(random.uniform(*style.lane_m))
         self.has_median = bool(random.random() < style.median_share)
@@ -205,6 +211,7 @@ class _Street:
         plain = SidePlan(
             edge, "none", 0.0, "none", 0.0, 0.0, 0.0, 0.0, has_tactile=False, verge_m=0.0,
             outside="lots", outside_high_m=0.0, wear=self.wear,
+            is_avenue=self.is_avenue,
         )  # fmt: skip
         if self.style is URBAN:
             return _urban_side(random, plain)

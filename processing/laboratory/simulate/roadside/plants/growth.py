@@ -65,6 +65,7 @@ GROWTHS = (
     Growth("poplar, columnar", (6, 14), (35, 55), (0.15, 0.25), (0.15, 0.3), (65, 80), 0.4, -0.2),
 )  # fmt: skip
 YARD_GROWTHS = tuple(one for one in GROWTHS if one.high_m[0] < 5)
+AVENUE_GROWTHS = tuple(one for one in GROWTHS if one.high_m[1] >= 8 and one.crown[1] >= 0.5)
 CEDAR = Growth(
     "cedar", (9, 22), (45, 75), (0.3, 0.6), (0.25, 0.45), (-5, 20), 0.1, 0.1, is_evergreen=True
 )

@@ -134,3 +134,19 @@ def _cane(random: Generator, stem: Stem, turn: float) -> tuple[TriangleShape, Tr
     top_direction = along * (stem.radius_m(high) + radius + 0.01)
     cane = rod(foot + low_direction - [0.0, 0.0, _SUNK_M], top + top_direction, radius, 8)
     return cane, _strap(stem, high - 0.2), 1
+
+
+def guard_of(random: Generator, stem: Stem) -> TriangleShape:
+    """A guard of upright bars and rings about a trunk (樹木保護柵), in the tree's frame."""
+    high = float(random.uniform(0.9, 1.6))
+    away = stem.radius_m(0.3) + float(random.uniform(0.12, 0.28))
+    middle = stem.at(high / 2) * [1.0, 1.0, 0.0]
+    turns = np.arange(int(random.integers(8, 15))) * 2 * np.pi
+    turns = turns / turns.size
+    feet = middle + away * np.column_stack([np.cos(turns), np.sin(turns), 0 * turns])
+    up = np.array([0.0, 0.0, 1.0])
+    bars = np.stack([feet - _SUNK_M * up, feet + high * up], axis=1)
+    angles = np.linspace(0, 2 * np.pi, 25)
+    circle = middle + away * np.column_stack([np.cos(angles), np.sin(angles), 0 * angles])
+    rings = np.stack([circle + level * up for level in (0.15, high / 2, high)])
+    return join_shapes([rods(bars, 0.008, 5), rods(rings, 0.01, 5, is_closed=False)])

@@ -9,6 +9,7 @@ from numpy.random import Generator
 
 from processing.laboratory.simulate.roadside.plants.crowns import scatter_leaves
 from processing.laboratory.simulate.roadside.plants.growth import (
+    AVENUE_GROWTHS,
     CEDAR,
     GROWTHS,
     YARD_GROWTHS,
@@ -37,6 +38,7 @@ from processing.laboratory.simulate.street.free_positions import (
     FreePosition,
     FreePositions,
     free_from_m,
+    free_to_m,
 )
 from processing.laboratory.simulate.street.plan import SIDES, SectionPlan, SidePlan
 from processing.laboratory.simulate.street.styles import HIGHWAY, URBAN
@@ -44,6 +46,8 @@ from processing.laboratory.simulate.street.styles import HIGHWAY, URBAN
 _TRIANGLES, _BARK_TRIANGLES = 44_000, 2_000  # of all trees of a section, of one tree's wood
 _LEAST_LEAVES, _MOST_LEAVES = 250, 4_500
 _ROOM_M = 0.35  # about a trunk
+_AVENUE_PITCH_M = (4.5, 8.0)  # less than crowns of grown trees are wide
+_AVENUE_AWAY_M = 0.7  # behind the curb
 _MOST_WOOD_TREES = 26
 _WOOD_DEEP_M = 24.0
 _GONE_SHARE = 0.08  # of the trees of a row
@@ -90,6 +94,11 @@ def _row(positions: FreePositions, random: Generator, side: int) -> _Row | None:
     if random.random() < 0.15:
         growth = GROWTHS[int(random.integers(len(GROWTHS)))]
     away = _row_away_m(section.plan, plan, random)
+    if plan.is_avenue:
+        growth = AVENUE_GROWTHS[int(street.integers(len(AVENUE_GROWTHS)))]
+        pitch, high = float(street.uniform(*_AVENUE_PITCH_M)), 0.5 + high / 2
+        near = positions.near_m(side) + _AVENUE_AWAY_M
+        away = min(near, free_to_m(plan) - _ROOM_M) if away is None else away
     if away is None:
         return None
     walk = plan.band("walk")

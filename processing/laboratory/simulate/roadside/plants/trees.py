@@ -16,7 +16,7 @@ from processing.laboratory.simulate.roadside.plants.crowns import (
     scatter_leaves,
 )
 from processing.laboratory.simulate.roadside.plants.growth import Growth
-from processing.laboratory.simulate.roadside.plants.stakes import stakes_of
+from processing.laboratory.simulate.roadside.plants.stakes import guard_of, stakes_of
 from processing.laboratory.simulate.roadside.plants.trunks import (
     HIGH_PIECE,
     TAPE_M,
@@ -42,6 +42,7 @@ _COVER = 1.1  # area of all leaves by that of the crown as seen from beside
 _WIDEST_LEAF_M = 0.17
 _CLEAR_OVER_ROAD_M = 4.2  # 建築限界: 4.5 m over carriageways, trees a little in arrears
 _STAKED = {"young": 0.9, "grown": 0.36, "wild": 0.0}
+_GUARDED = 0.25  # of the trees of avenues that stand without stakes
 _STAKED_TO_M = 0.22  # thicker trunks stand by themselves
 _SEVERAL_STEMS = 0.7  # of the sum of their girths: how street trees of several stems are measured
 
@@ -105,6 +106,10 @@ def add_tree(
     is_thin = len(stems) == 1 and stems[0].radius_m(TAPE_M) < _STAKED_TO_M / 2
     if is_thin and random.random() < _STAKED[options.age]:
         stakes = _add_stakes(positions, built, options, stems[0])
+    elif positions.section.plan.side(spot.side).is_avenue and random.random() < _GUARDED:
+        guard = guard_of(random, stems[0])
+        wrapped = (guard[0] + foot, guard[1])
+        built.mesh.add(wrapped, Material.PAINTED_METAL, TRUNK, built.thing("guard"))
     _add_undergrowth(built, random, stems[0], foot)
     if abs(spot.offset_m) - section.plan.side(spot.side).edge_m > TRUTH_WITHIN_M:
         return
