@@ -30,6 +30,9 @@ BOTH = "both"
 _CRS = "EPSG:6677"
 _STYLES = ("urban", "rural", "urban", "rural", "urban", "highway")
 _SENSORS = ("vq250", "vq450", "zf9012", "vmx2ha", "lynx")
+_AVENUE_STYLES = ("urban", "urban", "highway", "urban", "rural", "urban")
+_AVENUE_SENSORS = ("vq250", "vq450", "lynx", "vmx2ha")
+_AVENUE_TWICE_OF = 5
 _URBAN_OF = 3  # every third street of any mounting is urban, the others have gutters oftener
 _TWICE_OF, _STOPS_OF = 4, 3  # every fourth street is driven twice, every third waits somewhere
 
@@ -128,6 +131,27 @@ def worn_options_of(number: int, seed: int, length_m: float = LENGTH_M) -> Stree
     return replace(options, wear=wear, drift_m=0.02, attitude_deg=0.01, mounting_deg=0.02)
 
 
+def avenue_options_of(number: int, seed: int, length_m: float = LENGTH_M) -> StreetRequest:
+    """An avenue: rows of large trees with posts and lamps under their crowns.
+
+    Every other one is recorded with the errors of good systems, as worn streets are; the third and
+    fifth style and every fifth second pass take turns.
+    """
+    drift = (0.02, 0.01, 0.02) if number % 2 else (0.005, 0.0, 0.0)
+    return StreetRequest(
+        seed=seed,
+        length_m=length_m,
+        style=_AVENUE_STYLES[number % len(_AVENUE_STYLES)],
+        sensor=_AVENUE_SENSORS[number % len(_AVENUE_SENSORS)],
+        passes=2 if number % _AVENUE_TWICE_OF == _AVENUE_TWICE_OF - 1 else 1,
+        drift_m=drift[0],
+        attitude_deg=drift[1],
+        mounting_deg=drift[2],
+        avenue=True,
+        images=False,
+    )
+
+
 def simulated_scenes(
     seeds: Sequence[int],
     length_m: float = LENGTH_M,
@@ -142,6 +166,11 @@ def simulated_scenes(
             simulate_street(options, folder, SilentMonitor())
             with opened_scene(name, folder) as scene:
                 yield scene
+
+
+def avenue_scenes(seeds: Sequence[int], length_m: float = LENGTH_M) -> Iterator[RoadScene]:
+    """Avenues of seeds."""
+    return simulated_scenes(seeds, length_m, avenue_options_of)
 
 
 def mounted_scenes(seeds: Sequence[int], length_m: float = LENGTH_M) -> Iterator[RoadScene]:

@@ -62,7 +62,7 @@ def points_about(
         Of the columns, m about the origin of the plan.
     radius_m : float
     """
-    nearest = _nearest_columns(plan, middles, radius_m)
+    nearest = nearest_columns(plan, middles, radius_m)
     parts: list[tuple[Integers, Floats, Integers, Integers]] = []
     for chunk in chunks_of(drives, plan.origin, monitor):
         owners = np.empty(len(chunk.local), np.int32)
@@ -77,9 +77,11 @@ def points_about(
         none = np.empty(0, np.int64)
         return ColumnPoints(np.zeros(len(middles) + 1, np.int64), np.empty((0, 3)), none, none)
     owner = np.concatenate([one[0] for one in parts])
-    order = np.argsort(owner, kind="stable")
+    starts = np.concatenate([[0], np.cumsum(np.bincount(owner, minlength=len(middles)))])
+    order = np.empty(owner.size, np.int64)
+    order_kernel(owner, starts[:-1].copy(), order)
     return ColumnPoints(
-        np.searchsorted(owner[order], np.arange(len(middles) + 1)),
+        starts,
         np.concatenate([one[1] for one in parts])[order],
         np.concatenate([one[2] for one in parts])[order],
         np.concatenate([one[3] for one in parts])[order],
@@ -107,13 +109,27 @@ def owners_kernel(
         owners[point] = column
 
 
-def _nearest_columns(plan: SparsePlan, middles: Floats, radius_m: float) -> NDArray[np.int32]:
+def nearest_columns(plan: SparsePlan, middles: Floats, radius_m: float) -> NDArray[np.int32]:
     """(tiles, 64, 64) the column nearest to each cell; −1 where none is near."""
     nearest = np.full((len(plan), TILE, TILE), -1, np.int32)
     away = np.full((len(plan), TILE, TILE), np.inf, np.float32)
     reach = int(np.ceil(radius_m / CELL_M)) + 1
     nearest_kernel(middles, reach, plan.table, nearest.reshape(-1), away.reshape(-1))
     return nearest
+
+
+@kernel
+def order_kernel(owner: Integers, free: Integers, order: Integers) -> None:
+    """Points by their column, those of a column in the order that they come in.
+
+    Parameters
+    ----------
+    free : (k,) int64
+        Where the next point of each column goes; moved on.
+    """
+    for point in range(owner.size):
+        order[free[owner[point]]] = point
+        free[owner[point]] += 1
 
 
 @kernel

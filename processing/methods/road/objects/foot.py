@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import itertools
+import math
 
 import numpy as np
 
-from processing.core.arrays import Floats, Integers
+from processing.core.arrays import Floats
+from processing.core.kernels import kernel
 
 _RINGS_M = (0.03, 0.15, 0.3, 0.5, 0.9)
 """Edges of rings about the column's surface: soil is heaped up about trunks, so the nearest ring
@@ -48,26 +49,40 @@ def foot_height(points: Floats, axis: Floats, coarse_m: float, radius_m: float =
         The lowest of what rings about the column tell, each the median over sectors of their low
         points, raised by what soil may be heaped up; ``coarse_m`` where none was measured.
     """
-    beside = points[:, :2] - axis
-    away = np.hypot(beside[:, 0], beside[:, 1]) - radius_m
-    asked = np.abs(points[:, 2] - coarse_m) < _ABOUT_M
-    asked &= (away > _RINGS_M[0]) & (away < _RINGS_M[-1])
-    turn = np.arctan2(beside[asked, 1], beside[asked, 0]) / (2 * np.pi) + 0.5
-    sectors = (turn * _SECTORS).astype(np.int64) % _SECTORS
-    heights, away = points[asked, 2], away[asked]
-    told: list[float] = []
-    for inner, outer in itertools.pairwise(_RINGS_M):
-        is_in = (away >= inner) & (away < outer)
-        lows = _lows(heights[is_in], sectors[is_in])
-        if len(lows) >= _LEAST_SECTORS:
-            told.append(float(np.median(lows)) + _HEAP * (inner + outer) / 2)
-    return min(told) if told else coarse_m
+    told = told_kernel(points, axis, coarse_m, radius_m)
+    return coarse_m if np.isnan(told) else told
 
 
-def _lows(heights: Floats, sectors: Integers) -> list[float]:
-    """Low points of the sectors that have enough."""
-    counts = np.bincount(sectors, minlength=_SECTORS)
-    return [
-        float(np.quantile(heights[sectors == number], _LOW_SHARE))
-        for number in np.flatnonzero(counts >= _FEWEST).tolist()
-    ]
+@kernel
+def told_kernel(points: Floats, axis: Floats, coarse_m: float, radius_m: float) -> float:
+    """The lowest of what the rings tell; NaN where none does."""
+    rings = len(_RINGS_M) - 1
+    groups = np.full(len(points), -1, np.int64)
+    counts = np.zeros((rings, _SECTORS), np.int64)
+    for point in range(len(points)):
+        east, north = points[point, 0] - axis[0], points[point, 1] - axis[1]
+        away = math.hypot(east, north) - radius_m
+        if abs(points[point, 2] - coarse_m) >= _ABOUT_M or away >= _RINGS_M[rings]:
+            continue
+        ring = -1
+        while ring + 1 < rings and away >= _RINGS_M[ring + 1]:
+            ring += 1
+        if ring >= 0:
+            sector = int((math.atan2(north, east) / math.pi + 1) / 2 * _SECTORS) % _SECTORS
+            groups[point] = ring * _SECTORS + sector
+            counts[ring, sector] += 1
+    best = np.nan
+    lows = np.empty(_SECTORS)
+    for ring in range(rings):
+        known = 0
+        for sector in range(_SECTORS):
+            if counts[ring, sector] >= _FEWEST:
+                heights = points[groups == ring * _SECTORS + sector, 2]
+                lows[known] = np.quantile(heights, _LOW_SHARE)
+                known += 1
+        if known >= _LEAST_SECTORS:
+            middle = (_RINGS_M[ring] + _RINGS_M[ring + 1]) / 2
+            height = np.median(lows[:known]) + _HEAP * middle
+            if not height >= best:
+                best = height
+    return float(best)

@@ -27,6 +27,9 @@ _DRAWS = 250
 """Of three points each: with a third of the points on the circle one of these is good in all but
 one case in ten thousand."""
 
+_SURE = 9.2
+"""Natural logarithm of ten thousand: no more draws than that take for the best circle so far."""
+
 _FACTOR, _MODULUS = 1_664_525, 1 << 32
 """Of the generator of draws (Press et al., Numerical Recipes, 7.1): the same ones each time."""
 
@@ -81,8 +84,10 @@ def _best_circle(part: Floats, left: Integers, limits: CircleLimits) -> Floats:
     best = np.zeros(CIRCLE_WIDTH)
     best_score = 0.0
     found = np.zeros(CIRCLE_WIDTH)
-    state = 1
-    for _ in range(_DRAWS):
+    state, needed = 1, float(_DRAWS)
+    for draw in range(_DRAWS):
+        if draw >= needed:
+            break
         state = (state * _FACTOR + 1) % _MODULUS
         a = left[state * left.size // _MODULUS]
         state = (state * _FACTOR + 1) % _MODULUS
@@ -97,6 +102,8 @@ def _best_circle(part: Floats, left: Integers, limits: CircleLimits) -> Floats:
         if score > best_score:
             best_score = score
             best[:] = found
+            share = min(found[INLIERS] / left.size, 0.99)
+            needed = _SURE / -math.log1p(-(share**3))
     if best_score > 0:
         for _ in range(3):
             _refit(part, left, limits, best)
@@ -125,19 +132,22 @@ def _through(part: Floats, a: int, b: int, c: int, circle: Floats) -> bool:
 @kernel
 def _rate(part: Floats, left: Integers, limits: CircleLimits, circle: Floats) -> float:
     """How much speaks for a circle; 0 where it isn't one. Writes its points and arc."""
-    covered = np.zeros(_SECTORS, np.bool_)
-    on, inside = 0, 0
+    covered, on, inside = 0, 0, 0
     for point in left:
         east, north = part[point, 0] - circle[EAST], part[point, 1] - circle[NORTH]
         off = math.hypot(east, north) - circle[RADIUS]
         if abs(off) <= limits.noise_m:
             on += 1
             sector = int((math.atan2(north, east) / math.pi + 1) / 2 * _SECTORS)
-            covered[min(sector, _SECTORS - 1)] = True
+            covered |= 1 << min(sector, _SECTORS - 1)
         elif off < 0:
             inside += 1
     circle[INLIERS] = on
-    circle[ARC] = covered.sum() / _SECTORS
+    sectors = 0
+    while covered:
+        sectors += covered & 1
+        covered >>= 1
+    circle[ARC] = sectors / _SECTORS
     if on < limits.fewest or circle[ARC] < limits.least_arc or inside > limits.most_inside * on:
         return 0.0
     return float(on * (0.5 + circle[ARC]) - inside)

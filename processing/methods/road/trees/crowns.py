@@ -1,29 +1,29 @@
-"""What stands on a trunk: whether it is a crown, and its height, spread and lowest branch.
+"""What stands on trunks: whether it is a crown, whose it is, its height, spread, lowest branch.
 
 A crown fills space on all sides of the trunk's axis and hangs together with it. The arm of a lamp
 is a line on one side, a sign a plane on two opposite ones, the house behind a post a plane on one
-(Takahashi 2022, 5.2, asks for the spread of the wires' directions, which tells the same).
+(Takahashi 2022, 5.2, asks for the spread of the wires' directions, which tells the same). Crowns
+of neighbours touch, and hang over posts that have none: what hangs together is shared out.
 """
 
 from __future__ import annotations
 
 import itertools
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage
+from scipy.spatial import cKDTree
 
 from processing.core.arrays import Floats, Integers
-from processing.methods.road.trees.stems import FittedStem
+from processing.core.kernels import kernel
+from processing.methods.road.trees.crown_cells import CELL_M, CrownCells
+from processing.methods.road.trees.trunks import Trunk
 
 CROWN_M = 8.0
 """Points so near to the axis may be of its crown: those of old zelkovas are 15 m wide."""
-
-_CELL_M = 0.4
-"""Cells in which a crown hangs together: the gaps between its twigs are smaller, and houses and
-wires keep farther away."""
 
 _LOW_M = 1.4
 """Crowns are looked for above: what is lower is hedge, stake or guard."""
@@ -34,24 +34,19 @@ _AXIS_M = 0.6
 _ABOVE_M = 2.5
 """So far above the highest point that was seen of the stem: the crown hides what goes on."""
 
-_FEWEST = 6
-"""Points of a cell from which its shape is told."""
-
-_FLAT = 0.15
-"""Extent square to a cell's plane over its longest one. Over a plane it is the noise, 1 cm over
-12 cm; twigs and leaves fill a cell to a third."""
-
-_PAIRS = ((0, 0), (1, 0), (1, 1), (2, 0), (2, 1), (2, 2))
-"""Of axes whose products make a matrix of second moments."""
-
 _SECTORS = 12
 """Of 30 degrees."""
 
-_BESIDE_M = 0.12
-"""m beside a stem's surface; nearer points are bark and noise."""
-
 _LOWEST_SHARE = 0.01
 """Of the crown's points: lower ones are single leaves."""
+
+_FEWEST = 3
+"""Points of the cell that is the top of a crown: what is higher is a single shoot or a bird."""
+
+_STRONGER = 2 / 3
+"""Power of the diameter by which trunks share out what hangs together: the crown's width grows so
+with the trunk (Tao et al. 2015, Segmenting tree crowns from terrestrial and mobile lidar, ISPRS
+Journal 110, eq. 2)."""
 
 
 @dataclass(frozen=True)
@@ -67,7 +62,10 @@ class Crown:
     flat_share : float
         Of the cells near the axis whose shape is told, those that are planes or lines.
     aside : float
-        How far its middle lies from the axis, over half its width.
+        How far its middle lies from the axis, over its radius.
+    rival : float
+        How much farther the crown of a neighbour's trunk would lie aside if this were a part of
+        it, over that crown's radius; negative: it would lie more about its trunk; 1 without one.
     gap_m : float
         The longest piece between stem and crown where nothing was measured about the axis.
     height_m : float
@@ -84,6 +82,7 @@ class Crown:
     cells: int
     flat_share: float
     aside: float
+    rival: float
     gap_m: float
     height_m: float
     spread_m: tuple[float, float]
@@ -91,155 +90,252 @@ class Crown:
     points: int
 
 
-def crown_of(points: Floats, stems: Sequence[FittedStem]) -> Crown:
-    """Measure the crown of a trunk.
+@dataclass(frozen=True)
+class UprightTrunk:
+    """A trunk where it stands.
 
-    Parameters
+    Attributes
     ----------
-    points : (n, 3) float64
-        m about the foot; those that are nearer to no other trunk.
-    stems : sequence of FittedStem
-        Of the trunk, about the foot; the thickest first.
+    trunk : Trunk
+    foot : (3,) float64
+        m about the plan's origin.
+    rise_m : float
+        Up to which height above the foot its thickest stem goes on as it is.
+    """
+
+    trunk: Trunk
+    foot: Floats
+    rise_m: float
+
+    @property
+    def top_m(self) -> float:
+        """How high it was seen."""
+        return max(stem.high_m for stem in self.trunk.stems)
+
+    @property
+    def top(self) -> Floats:
+        """(2,) where its thickest stem ends in plan, m about the plan's origin."""
+        axis = self.trunk.stems_about_foot[0]
+        place: Floats = self.foot[:2] + axis.middle_at(self.top_m)
+        return place
+
+
+class CrownShares:
+    """The cells above trunks, and which of them hang together with which trunk.
 
     Notes
     -----
-    1. Points above 1.4 m that lie on no stem are put into cells of 0.4 m.
-    2. Cells whose points lie in a plane or on a line are walls, signs, arms and wires.
-    3. The crown is what hangs together of the others with the axis above the stem.
+    1. Cells above 1.4 m that are no planes and no lines hang together where they touch.
+    2. A trunk belongs to the largest part that comes near to its axis above the stem.
+    3. Trunks of one part share it out: each cell goes to the trunk that is nearest, measured by
+       the width that crowns of such trunks have.
     """
-    up = points[:, 2]
-    top = max(stem.high_m for stem in stems)
-    is_free = (up > _LOW_M) & ~_on_stems(points, stems)
-    free = points[is_free]
-    if len(free) == 0:
-        return _bare(max(top, float(up.max(initial=0.0))))
-    cells, member = np.unique(_cells_of(free), axis=0, return_inverse=True)
-    member = member.reshape(-1)
-    is_told, is_flat = _shapes(free, member, cells)
-    middles = (cells + 0.5) * _CELL_M
-    beside = middles[:, :2] - stems[0].middle_at(top)
-    away = np.hypot(beside[:, 0], beside[:, 1])
-    is_axis = (away < _AXIS_M) & (middles[:, 2] > _LOW_M) & (middles[:, 2] < top + _ABOVE_M)
-    about = is_told & (away < 2 * _AXIS_M)
-    flat_share = float(is_flat[about].mean()) if about.any() else 1.0
-    is_crown = _hangs_together(cells, ~is_flat, is_axis & ~is_flat)
-    is_leafy = is_crown & is_told
-    crown = free[is_crown[member]]
-    if len(crown) < _FEWEST or not is_leafy.any():
-        return _bare(max(top, float(up[is_free].max())), flat_share)
-    spread, middle = _spread(crown[:, :2])
-    return Crown(
-        sectors=_filled_sectors(beside[is_leafy & (away > _CELL_M)]),
-        cells=int(np.count_nonzero(is_leafy)),
-        flat_share=flat_share,
-        aside=float(np.hypot(*(middle - stems[0].middle_at(top)))) / max(spread[0] / 2, _CELL_M),
-        gap_m=_gap(points, stems[0], top, free[is_crown[member] & (away < 2 * _AXIS_M)[member], 2]),
-        height_m=max(top, float(np.sort(crown[:, 2])[-min(3, len(crown))])),
-        spread_m=spread,
-        lowest_m=float(np.quantile(crown[:, 2], _LOWEST_SHARE)),
-        points=len(crown),
-    )
+
+    def __init__(self, cells: CrownCells, trunks: Sequence[UprightTrunk]) -> None:
+        self._cells, self._trunks = cells, trunks
+        self._middles = cells.middles
+        self._tops = np.array([one.top for one in trunks]).reshape(-1, 2)
+        self._feet = np.array([one.foot[2] for one in trunks])
+        wide = np.array([one.trunk.diameter_m for one in trunks]) ** _STRONGER
+        self._reach = wide
+        above = self._middles[:, 2] - self._feet[cells.trunks]
+        self._is_high = above > _LOW_M
+        self._parts = cells.components(self._is_high & ~cells.is_flat)
+        plan = cKDTree(self._middles[:, :2])
+        self._near = [
+            np.array(plan.query_ball_point(top, 2 * _AXIS_M, return_sorted=True), np.int64)
+            for top in self._tops
+        ]
+        self._part_of = np.array([self._touched(number) for number in range(len(trunks))], np.int64)
+
+    def crowns(self, is_asked: NDArray[np.bool_]) -> list[Crown]:
+        """What each trunk carries if only those that are asked for share."""
+        order = np.argsort(self._tops[:, 0], kind="stable")
+        order = order[is_asked[order]]
+        shares = np.full(len(self._cells), -1, np.int64)
+        share_kernel(
+            self._middles,
+            self._parts,
+            (order, self._tops, self._reach, self._part_of),
+            shares,
+        )
+        by_trunk = np.argsort(shares, kind="stable")
+        starts = np.searchsorted(shares[by_trunk], np.arange(len(self._trunks) + 1))
+        of = [by_trunk[a:b] for a, b in itertools.pairwise(starts.tolist())]
+        middles = [_PlanMoments.of(self._middles[cells, :2]) for cells in of]
+        return [
+            self._crown(number, of[number], self._rival(number, middles, is_asked))
+            for number in range(len(self._trunks))
+        ]
+
+    def _touched(self, number: int) -> int:
+        """The largest part near the axis above the stem; −1: none."""
+        about = self._about(number, _AXIS_M)
+        up = self._middles[about, 2] - self._feet[number]
+        seeds = about[(up > _LOW_M) & (up < self._trunks[number].top_m + _ABOVE_M)]
+        parts = np.unique(self._parts[seeds])
+        parts = parts[parts >= 0]
+        if parts.size == 0:
+            return -1
+        sizes = self._sizes[parts]
+        return int(parts[sizes.argmax()])
+
+    @property
+    def _sizes(self) -> Integers:
+        return np.bincount(self._parts[self._parts >= 0])
+
+    def _about(self, number: int, reach_m: float) -> Integers:
+        """Cells near the end of a trunk in plan."""
+        near = self._near[number]
+        beside = self._middles[near, :2] - self._tops[number]
+        return np.asarray(near[np.hypot(beside[:, 0], beside[:, 1]) < reach_m])
+
+    def _rival(
+        self, number: int, middles: Sequence[_PlanMoments], is_asked: NDArray[np.bool_]
+    ) -> float:
+        """How ill this trunk's share suits the neighbour that it suits best."""
+        if self._part_of[number] < 0:
+            return 1.0
+        away = np.hypot(*(self._tops - self._tops[number]).T)
+        is_rival = is_asked & (self._part_of == self._part_of[number]) & (away < CROWN_M)
+        is_rival[number] = False
+        worse = [
+            (middles[one] + middles[number]).aside(self._tops[one])
+            - middles[one].aside(self._tops[one])
+            for one in np.flatnonzero(is_rival).tolist()
+            if middles[one].count
+        ]
+        return min([1.0, *worse])
+
+    def _crown(self, number: int, share: Integers, rival: float) -> Crown:
+        cells, one = self._cells, self._trunks[number]
+        foot, top = float(self._feet[number]), one.top_m
+        near = self._about(number, 2 * _AXIS_M)
+        near = near[self._is_high[near]]
+        told = near[cells.is_told[near]]
+        flat_share = float(cells.is_flat[told].mean()) if told.size else 1.0
+        leafy = share[cells.is_told[share]]
+        if leafy.size == 0:
+            highest = cells.highest[self._about(number, _AXIS_M), 2].max(initial=foot + top)
+            return _bare(max(top, float(highest) - foot), flat_share)
+        beside = self._middles[leafy, :2] - self._tops[number]
+        away = np.hypot(beside[:, 0], beside[:, 1])
+        dense = share[cells.counts[share] >= _FEWEST]
+        highest = cells.highest[dense if dense.size else share, 2].max()
+        return Crown(
+            sectors=_filled_sectors(beside[away > CELL_M]),
+            cells=int(leafy.size),
+            flat_share=flat_share,
+            aside=_PlanMoments.of(self._middles[leafy, :2]).aside(self._tops[number]),
+            rival=rival,
+            gap_m=self._gap(near, share, number),
+            height_m=max(top, float(highest) - foot),
+            spread_m=_spread(cells.lowest[share, :2], cells.highest[share, :2]),
+            lowest_m=_lowest(cells, share) - foot,
+            points=int(cells.counts[share].sum()),
+        )
+
+    def _gap(self, near: Integers, share: Integers, number: int) -> float:
+        """The longest piece of the axis between stem and crown about which nothing was measured."""
+        cells, foot = self._cells, float(self._feet[number])
+        crown = near[np.isin(near, share)]
+        if crown.size == 0:
+            return float("inf")
+        top = max(self._trunks[number].top_m, self._trunks[number].rise_m)
+        begins = float(cells.lowest[crown, 2].min()) - foot
+        order = near[np.argsort(cells.lowest[near, 2], kind="stable")]
+        reached, gap = top, 0.0
+        for cell in order.tolist():
+            low = float(cells.lowest[cell, 2]) - foot
+            if low >= begins:
+                break
+            gap = max(gap, low - reached)
+            reached = max(reached, float(cells.highest[cell, 2]) - foot)
+        return max(gap, begins - reached)
+
+
+@dataclass(frozen=True)
+class _PlanMoments:
+    """Number, sums and sum of squares of places in plan."""
+
+    count: int
+    total: Floats
+    square: float
+
+    @staticmethod
+    def of(places: Floats) -> _PlanMoments:
+        return _PlanMoments(len(places), places.sum(axis=0), float((places**2).sum()))
+
+    def __add__(self, other: _PlanMoments) -> _PlanMoments:
+        return _PlanMoments(
+            self.count + other.count, self.total + other.total, self.square + other.square
+        )
+
+    def aside(self, axis: Floats) -> float:
+        """How far their middle lies from an axis, over the radius of a disc that spreads so far."""
+        if self.count == 0:
+            return 1.0
+        middle = self.total / self.count
+        spread = max(self.square / self.count - float(middle @ middle), 0.0)
+        return float(np.hypot(*(middle - axis))) / max(math.sqrt(2 * spread), CELL_M)
 
 
 def _bare(height_m: float, flat_share: float = 1.0) -> Crown:
     """Of what carries none."""
-    return Crown(0, 0, flat_share, 1.0, np.inf, height_m, (0.0, 0.0), float("nan"), 0)
+    return Crown(
+        sectors=0,
+        cells=0,
+        flat_share=flat_share,
+        aside=1.0,
+        rival=1.0,
+        gap_m=np.inf,
+        height_m=height_m,
+        spread_m=(0.0, 0.0),
+        lowest_m=float("nan"),
+        points=0,
+    )
 
 
-def _gap(points: Floats, stem: FittedStem, top: float, near: Floats) -> float:
-    """The longest piece of the axis between stem and crown about which nothing was measured."""
-    if near.size == 0:
-        return float("inf")
-    beside = points[:, :2] - stem.base - stem.lean * points[:, 2:]
-    up = points[np.hypot(beside[:, 0], beside[:, 1]) < _AXIS_M, 2]
-    lowest = max(top, float(near.min()))
-    between = np.sort(up[(up > top) & (up < lowest)])
-    return float(np.diff(np.concatenate([[top], between, [lowest]])).max())
+@kernel
+def share_kernel(
+    middles: Floats,
+    parts: Integers,
+    trunks: tuple[Integers, Floats, Floats, Integers],
+    shares: Integers,
+) -> None:
+    """Give each cell to a trunk of its part.
 
-
-def _on_stems(points: Floats, stems: Sequence[FittedStem]) -> NDArray[np.bool_]:
-    is_on = np.zeros(len(points), np.bool_)
-    for stem in stems:
-        beside = points[:, :2] - stem.base - stem.lean * points[:, 2:]
-        reach = points[:, 2] < stem.high_m + 0.5
-        is_on |= reach & (np.hypot(beside[:, 0], beside[:, 1]) < stem.radius_m + _BESIDE_M)
-    return is_on
-
-
-def _cells_of(points: Floats) -> Integers:
-    return np.floor(points / _CELL_M).astype(np.int64)
-
-
-def _shapes(
-    points: Floats, member: Integers, cells: Integers
-) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Of cells: whether their shape is told, and whether it is a plane or a line.
-
-    One scan line through a crown is a plane too, so the points of the cells about it count with
-    those of a cell that is flat by itself.
+    Parameters
+    ----------
+    trunks : (order, tops, reach, part_of)
+        Numbers of those that share, from west to east; of all, where they end, the width that
+        crowns of such have, and their part.
+    shares : (n,) int64
+        Written; −1 where no trunk of the part is near.
     """
-    sums = _moments(points, member, len(cells))
-    number, flatness = _flatness(sums)
-    wide_number, wide_flatness = _flatness(_with_neighbours(sums, cells))
-    is_flat = wide_flatness < _FLAT
-    is_flat &= (number < _FEWEST) | (flatness < _FLAT)
-    is_told = wide_number >= _FEWEST
-    return is_told, is_told & is_flat
-
-
-def _moments(points: Floats, member: Integers, count: int) -> Floats:
-    """(count, 10) number, sums and sums of products of the points of cells."""
-    sums = np.empty((count, 10))
-    sums[:, 0] = np.bincount(member, minlength=count)
-    for axis in range(3):
-        sums[:, 1 + axis] = np.bincount(member, points[:, axis], count)
-    for number, (i, j) in enumerate(_PAIRS):
-        sums[:, 4 + number] = np.bincount(member, points[:, i] * points[:, j], count)
-    return sums
-
-
-def _with_neighbours(sums: Floats, cells: Integers) -> Floats:
-    """The same of cells and the 26 about each."""
-    low = cells.min(axis=0) - 1
-    grid = np.full(cells.max(axis=0) - low + 2, len(cells), np.int64)
-    where = cells - low
-    grid[tuple(where.T)] = np.arange(len(cells))
-    padded = np.vstack([sums, np.zeros(10)])
-    wide = np.zeros_like(sums)
-    for step in itertools.product((-1, 0, 1), repeat=3):
-        wide += padded[grid[tuple((where + step).T)]]
-    return wide
-
-
-def _flatness(sums: Floats) -> tuple[Floats, Floats]:
-    """Number of points, and their extent square to their plane over the longest one."""
-    number = sums[:, 0]
-    means = sums[:, 1:4] / number[:, None]
-    spread = np.empty((len(sums), 3, 3))
-    for column, (i, j) in enumerate(_PAIRS):
-        product = sums[:, 4 + column] / number - means[:, i] * means[:, j]
-        spread[:, i, j] = spread[:, j, i] = product
-    extents = np.sqrt(np.maximum(np.linalg.eigvalsh(spread), 1e-12))
-    return number, extents[:, 0] / extents[:, 2]
-
-
-def _hangs_together(
-    cells: Integers, is_open: NDArray[np.bool_], is_seed: NDArray[np.bool_]
-) -> NDArray[np.bool_]:
-    """Which of the open cells hang together with seeds."""
-    low = cells.min(axis=0)
-    grid = np.zeros(cells.max(axis=0) - low + 1, np.bool_)
-    where = tuple((cells - low).T)
-    grid[where] = is_open
-    parts, _ = ndimage.label(grid, np.ones((3, 3, 3)))
-    part = parts[where]
-    # A stray beside the axis is a part of its own; the largest of those that touch it counts.
-    touching = np.unique(part[is_seed])
-    touching = touching[touching > 0]
-    if touching.size == 0:
-        return np.zeros(len(cells), np.bool_)
-    sizes = np.bincount(part, minlength=int(part.max()) + 1)
-    return np.asarray(part == touching[sizes[touching].argmax()])
+    order, tops, reach, part_of = trunks
+    for cell in range(len(middles)):
+        if parts[cell] < 0:
+            continue
+        east, north = middles[cell, 0], middles[cell, 1]
+        low, high = 0, order.size
+        while low < high:
+            middle = (low + high) // 2
+            if tops[order[middle], 0] < east - CROWN_M:
+                low = middle + 1
+            else:
+                high = middle
+        best = np.inf
+        for rank in range(low, order.size):
+            trunk = order[rank]
+            if tops[trunk, 0] > east + CROWN_M:
+                break
+            if part_of[trunk] != parts[cell]:
+                continue
+            away = math.hypot(east - tops[trunk, 0], north - tops[trunk, 1])
+            if away < CROWN_M and away / reach[trunk] < best:
+                best = away / reach[trunk]
+                shares[cell] = trunk
 
 
 def _filled_sectors(beside: Floats) -> int:
@@ -247,13 +343,21 @@ def _filled_sectors(beside: Floats) -> int:
     return int(np.unique((turn * _SECTORS).astype(np.int64) % _SECTORS).size)
 
 
-def _spread(plan: Floats) -> tuple[tuple[float, float], Floats]:
-    """Extent along the direction in which it is widest and square to it, and its middle."""
+def _lowest(cells: CrownCells, share: Integers) -> float:
+    """The height below which hardly any points of a crown lie, m about the plan's origin."""
+    order = share[np.argsort(cells.lowest[share, 2], kind="stable")]
+    below = np.cumsum(cells.counts[order])
+    first = int(np.searchsorted(below, _LOWEST_SHARE * below[-1]))
+    return float(cells.lowest[order[first], 2])
+
+
+def _spread(low: NDArray[np.float32], high: NDArray[np.float32]) -> tuple[float, float]:
+    """Extent of boxes along the direction in which it is widest, and square to it."""
     turns = np.radians(np.arange(0, 180, 10))
     axes = np.array([np.cos(turns), np.sin(turns)])
-    along = plan @ axes
-    low, high = along.min(axis=0), along.max(axis=0)
-    widest = int((high - low).argmax())
+    middle, half = (low + high) / 2.0, (high - low) / 2.0
+    along, room = middle @ axes, half @ np.abs(axes)
+    extents = (along + room).max(axis=0) - (along - room).min(axis=0)
+    widest = int(extents.argmax())
     across = (widest + len(turns) // 2) % len(turns)
-    middle = sum((low[k] + high[k]) / 2 * axes[:, k] for k in (widest, across))
-    return (float(high[widest] - low[widest]), float(high[across] - low[across])), middle
+    return float(extents[widest]), float(extents[across])

@@ -8,7 +8,7 @@ cone whose axis may lean.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -28,6 +28,13 @@ from processing.methods.road.trees.circle_kernels import (
     chain_kernel,
     circles_kernel,
 )
+from processing.methods.road.trees.cone_kernels import (
+    NUMBERS,
+    TOLERANCE_M,
+    arc_kernel,
+    scatter_kernel,
+    settle_kernel,
+)
 
 BREAST_M = 1.2
 """Height of the diameter above the foot: 胸高 in Japan (Takahashi 2022, 5.1)."""
@@ -39,11 +46,9 @@ STEP_M, THICK_M = 0.1, 0.2
 """From slab to slab, and how thick one is: scan lines of a moving scanner lie up to 0.2 m apart on
 a trunk, so one of them crosses most slabs. A lean of 10 degrees moves a circle by 3.5 cm in it."""
 
-_NOISE_M = 0.012
-"""First tolerance, before the noise is known: three times the 4 mm of usual scanners."""
-
-_LEAST_NOISE_M = 0.002
-"""Bark is no smoother."""
+_MOST_OF_SLAB = 240
+"""Points of a slab in which circles are looked for: a stake with a twentieth of them has a dozen.
+The bodies are fitted to all."""
 
 _SHIFT_M, _SWELL_M = 0.03, 0.02
 """How far middle and radius may be off what the circles below tell: three times the noise."""
@@ -63,12 +68,11 @@ _FEWEST_SLABS = 4
 _STEEPEST = 0.5
 """Run over rise of a stem's lean: 27 degrees; what leans more is a branch or a stay."""
 
-_MOST_TAPER = 0.06
-"""Metres of radius lost in a metre of height: twice the swelling at the foot of old trees."""
+_THINNEST_M = 0.015
+"""Radius: a cane of 3 cm; what is thinner shows as a few points however near it stands."""
 
-_OVAL = 0.06
-"""Standard deviation of half the difference of a trunk's two diameters, as a share of their mean:
-trunks of street trees are seldom wider one way than the other by more than a quarter."""
+_ABOUT_M = 0.1
+"""From a body's surface to the points that are looked at: what it may move while it is fitted."""
 
 _SHAPE_M = 0.003
 """How far bark and the points at a trunk's edges make its shape seem off; as for the girth."""
@@ -76,12 +80,6 @@ _SHAPE_M = 0.003
 _CLEARLY = 0.85
 """A trunk is taken for flatter than that if its points then lie nearer by so much: of a round one
 they don't, by more than chance."""
-
-_FEWEST_POINTS = 8
-"""As many as a body has numbers."""
-
-_TURNS = 6
-"""Steps of the last fit; it ends within four. By trial; no measurement is recorded."""
 
 
 @dataclass(frozen=True)
@@ -119,6 +117,16 @@ class FittedStem:
     arc: float
     lines: Integers
 
+    def about(self, higher_m: float) -> FittedStem:
+        """The same with a foot that lies so much higher."""
+        return replace(
+            self,
+            base=self.base + self.lean * higher_m,
+            radius_m=self.radius_m - self.taper * higher_m,
+            low_m=self.low_m - higher_m,
+            high_m=self.high_m - higher_m,
+        )
+
     def middle_at(self, height_m: float) -> Floats:
         """Its axis at a height above the foot: (2,) float64."""
         middle: Floats = self.base + self.lean * height_m
@@ -142,9 +150,12 @@ def stems_of(points: Floats, most_diameter_m: float) -> tuple[FittedStem, ...]:
     end = np.searchsorted(rising, heights + THICK_M / 2)
     if not (end > first).any():
         return ()
-    members = np.concatenate([order[a:b] for a, b in zip(first, end, strict=True)])
-    starts = np.concatenate([[0], np.cumsum(end - first)])
-    limits = CircleLimits(0.015, most_diameter_m / 2, _NOISE_M, 5, 0.12, 0.15)
+    # Of thousands of points of a slab a few hundred show the same circles.
+    steps = np.maximum(1, -(-(end - first) // _MOST_OF_SLAB))
+    parts = [order[a:b:step] for a, b, step in zip(first, end, steps, strict=True)]
+    members = np.concatenate(parts)
+    starts = np.cumsum([0, *(part.size for part in parts)])
+    limits = CircleLimits(_THINNEST_M, most_diameter_m / 2, TOLERANCE_M, 5, 0.12, 0.15)
     circles = np.zeros((heights.size, MOST_CIRCLES, CIRCLE_WIDTH))
     circles_kernel(np.ascontiguousarray(points[members, :2]), starts, limits, circles)
     found = [
@@ -177,17 +188,18 @@ def _chains(circles: Floats, heights: Floats) -> list[Floats]:
 def _fitted(points: Floats, chain: Floats, most_diameter_m: float) -> FittedStem | None:
     """The cone through the points of a chain of circles; None where there is none."""
     low, high = chain[0, 0] - THICK_M / 2, chain[-1, 0] + THICK_M / 2
-    about = np.flatnonzero((points[:, 2] >= low) & (points[:, 2] <= high))
-    local = points[about] - (0.0, 0.0, BREAST_M)
     start = _body_of(chain)
+    about = _points_near(points, start, low, high)
+    local = points[about] - (0.0, 0.0, BREAST_M)
     cone, oval = _settled(local, start, _SHAPE_M), _settled(local, start, 0.0)
     if cone is None or oval is None:
         return None
-    if _scatter(local, oval, cone) < _CLEARLY * _scatter(local, cone, oval):
+    off = scatter_kernel(local, cone.body, cone.near, oval.near)
+    if scatter_kernel(local, oval.body, cone.near, oval.near) < _CLEARLY * off:
         cone = oval
     radius = float(cone.body[4])
     lean = cone.body[2:4]
-    if not 0.015 <= radius <= most_diameter_m / 2 or np.hypot(*lean) > _STEEPEST:
+    if not _THINNEST_M <= radius <= most_diameter_m / 2 or np.hypot(*lean) > _STEEPEST:
         return None
     return FittedStem(
         base=cone.body[:2] - lean * BREAST_M,
@@ -198,7 +210,7 @@ def _fitted(points: Floats, chain: Floats, most_diameter_m: float) -> FittedStem
         noise_m=cone.noise_m,
         low_m=float(low),
         high_m=float(high),
-        arc=_arc_of(local[cone.near], cone.body),
+        arc=float(arc_kernel(local, cone.body, cone.near)),
         lines=about[cone.near],
     )
 
@@ -212,76 +224,30 @@ class _Cone(NamedTuple):
     near: NDArray[np.bool_]
 
 
+def _points_near(points: Floats, body: Floats, low: float, high: float) -> Integers:
+    """Points of some heights within a hand's breadth of a body."""
+    up = points[:, 2]
+    about = np.flatnonzero((up >= low) & (up <= high))
+    beside = points[about, :2] - body[:2] - (up[about, None] - BREAST_M) * body[2:4]
+    near: Integers = about[np.hypot(beside[:, 0], beside[:, 1]) < body[4] + _ABOUT_M]
+    return near
+
+
 def _body_of(chain: Floats) -> Floats:
     """The round body that circles tell."""
     height = chain[:, 0] - BREAST_M
-    body = np.zeros(8)
-    for axis in range(2):
-        slope = np.polyfit(height, chain[:, 1 + axis], 1, w=0.1 + chain[:, 4])
-        body[axis], body[2 + axis] = slope[1], slope[0]
+    body = np.zeros(NUMBERS)
+    weight = (0.1 + chain[:, 4]) ** 2
+    about = height - np.average(height, weights=weight)
+    slope = (weight * about) @ chain[:, 1:3] / max(float(weight @ about**2), 1e-9)
+    body[2:4] = slope
+    body[:2] = np.average(chain[:, 1:3] - height[:, None] * slope, axis=0, weights=weight)
     body[4] = float(np.median(chain[:, 3]))
     return body
 
 
-def _settled(local: Floats, body: Floats, shape_m: float) -> _Cone | None:
+def _settled(local: Floats, start: Floats, shape_m: float) -> _Cone | None:
     """The body that the points near it give; None where too few are."""
-    tolerance = _NOISE_M
-    cone: _Cone | None = None
-    for _ in range(_TURNS):
-        off, jacobian = _offsets(local, body)
-        near = np.abs(off) <= tolerance
-        if np.count_nonzero(near) < _FEWEST_POINTS:
-            return None
-        body, deviation = _stepped(off[near], jacobian[near], body, shape_m)
-        noise = max(_LEAST_NOISE_M, 1.4826 * float(np.median(np.abs(off[near]))))
-        tolerance = float(np.clip(3.0 * noise, 0.006, _NOISE_M))
-        cone = _Cone(body, deviation, noise, near)
-    return cone
-
-
-def _scatter(local: Floats, cone: _Cone, other: _Cone) -> float:
-    """How far the points of either of two bodies lie off the first, m."""
-    off, _ = _offsets(local[cone.near | other.near], cone.body)
-    return float(np.sqrt(np.mean(np.minimum(np.abs(off), _NOISE_M) ** 2)))
-
-
-def _offsets(local: Floats, body: Floats) -> tuple[Floats, Floats]:
-    """How far points lie outside an oval cone, and how that changes with its eight numbers."""
-    up = local[:, 2]
-    east = local[:, 0] - body[0] - body[2] * up
-    north = local[:, 1] - body[1] - body[3] * up
-    away = np.maximum(np.hypot(east, north), 1e-6)
-    east, north = east / away, north / away
-    oval = np.column_stack([east**2 - north**2, 2 * east * north])
-    jacobian = np.column_stack(
-        [-east, -north, -east * up, -north * up, -np.ones(up.size), -up, -oval]
-    )
-    return away - body[4] - body[5] * up - oval @ body[6:], jacobian
-
-
-def _stepped(off: Floats, jacobian: Floats, body: Floats, shape_m: float) -> tuple[Floats, float]:
-    """A step of Gauss and Newton, and the standard deviation of the radius after it.
-
-    Taper, lean and flattening are held to what trees have, by as much as their points leave them
-    open: of half a trunk only its far side tells whether it is a circle.
-    """
-    noise = max(_LEAST_NOISE_M, float(np.sqrt(np.mean(off**2))))
-    oval = _OVAL * abs(float(body[4]))
-    # Standard deviations; infinite: not held.
-    held = np.array([np.inf, np.inf, 0.1, 0.1, np.inf, 0.02, oval, oval])
-    # What bark and mixed points do to the shape doesn't get less with more of them.
-    weight = (noise / held) ** 2
-    weight[6:] += off.size * (shape_m / oval) ** 2
-    normal = jacobian.T @ jacobian + np.diag(weight + 1e-9)
-    step = np.linalg.solve(normal, -jacobian.T @ off - weight * body)
-    stepped = body + step
-    stepped[5] = np.clip(stepped[5], -_MOST_TAPER, _MOST_TAPER)
-    return stepped, noise * float(np.sqrt(np.linalg.inv(normal)[4, 4]))
-
-
-def _arc_of(local: Floats, body: Floats) -> float:
-    """Share of the circumference that has points."""
-    east = local[:, 0] - body[0] - body[2] * local[:, 2]
-    north = local[:, 1] - body[1] - body[3] * local[:, 2]
-    sectors = ((np.arctan2(north, east) / np.pi + 1) * 12).astype(np.int64) % 24
-    return float(np.unique(sectors).size / 24)
+    body, near = start.copy(), np.zeros(len(local), np.bool_)
+    deviation, noise = settle_kernel(local, shape_m, body, np.empty(len(local)), near)
+    return _Cone(body, deviation, noise, near) if noise > 0 else None

@@ -11,12 +11,18 @@ from scipy.spatial import cKDTree
 
 from processing.core.arrays import Floats, Integers
 from processing.core.monitor import Monitor, PartMonitor
-from processing.methods.road.objects.column_points import ColumnPoints, points_about
+from processing.methods.road.objects.column_points import (
+    ColumnPoints,
+    nearest_columns,
+    points_about,
+)
 from processing.methods.road.objects.columns import FoundColumns, find_columns
 from processing.methods.road.objects.foot import foot_height
 from processing.methods.road.objects.ground_heights import ground_heights
 from processing.methods.road.objects.sparse_plan import SparsePlan, plan_of
-from processing.methods.road.trees.crowns import CROWN_M, Crown, crown_of
+from processing.methods.road.trees.crown_cells import StandingStems, crown_cells
+from processing.methods.road.trees.crowns import CROWN_M, Crown, CrownShares, UprightTrunk
+from processing.methods.road.trees.rises import rise_of
 from processing.methods.road.trees.stems import stems_of
 from processing.methods.road.trees.tree_confidence import chance_of, facts_of
 from processing.methods.road.trees.trunks import Trunk, is_round, trunk_of
@@ -31,9 +37,11 @@ _ONE_TREE_M = 0.7
 (道路緑化技術基準: 6 to 10 m)."""
 
 
-_SAME_HEIGHT_M = 0.02
-"""m; the ground beside the stem as found once the stem is known. Stems are fitted again if it is
-farther off: 2 cm of height are a tenth of a millimetre of diameter."""
+_LEAST_CHANCE = 0.1
+"""What is less likely a tree leaves its neighbours' crowns to them."""
+
+_BESIDE_M, _ABOVE_M = 0.12, 0.5
+"""m beside a stem's surface and above its end; nearer points are bark and noise."""
 
 _APART_M = 1.2
 """Two trunks nearer to each other are stems of one tree, or one is a stake, a shrub or a piece of
@@ -61,8 +69,8 @@ class StreetTree:
     ----------
     foot : (3,) float64
         Where the trunk's axis meets the ground, m, project CRS.
-    trunk : Trunk
-        About the column's foot.
+    upright : UprightTrunk
+        Its trunk, about the column's foot.
     crown : Crown
     confidence : float
         The share of its like that are trees.
@@ -73,18 +81,22 @@ class StreetTree:
     """
 
     foot: Floats
-    trunk: Trunk
+    upright: UprightTrunk
     crown: Crown
     confidence: float
     points: Integers
     drives: Integers
 
+    @property
+    def trunk(self) -> Trunk:
+        """Its stems, about the column's foot."""
+        return self.upright.trunk
 
-class _StandingTrunk(NamedTuple):
-    """A trunk with its foot, m about the plan's origin, and its points."""
 
-    trunk: Trunk
-    foot: Floats
+class _MeasuredTrunk(NamedTuple):
+    """A trunk where it stands, and its points."""
+
+    standing: UprightTrunk
     points: Integers
     drives: Integers
 
@@ -100,27 +112,72 @@ def street_trees(
        of one tree are joined.
     2. Stems are circles that follow each other upwards, each fitted by a leaning cone.
     3. The trunk is what goes on upwards of them, its foot lies on the ground about it.
-    4. Of what stands nearer to this trunk than to any other, the crown is measured.
+    4. What hangs together above is shared out between trunks, first between all, then between
+       those that may be trees' (:mod:`processing.methods.road.trees.crowns`).
     """
     plan = plan_of([(drive.info.lowest, drive.info.highest) for drive in drives])
     trunks = _standing_trunks(drives, plan, settings, PartMonitor(monitor, 0.0, 0.8))
     if not trunks:
         return ()
+    standing = [one.standing for one in trunks]
+    crowns = _crowns(drives, plan, standing, PartMonitor(monitor, 0.8, 1.0))
+    return _one_of_each(
+        [
+            StreetTree(
+                one.standing.foot + plan.origin,
+                one.standing,
+                crown,
+                chance,
+                one.points,
+                one.drives,
+            )
+            for one, (crown, chance) in zip(trunks, crowns, strict=True)
+        ]
+    )
+
+
+def _crowns(
+    drives: Sequence[Drive], plan: SparsePlan, trunks: Sequence[UprightTrunk], monitor: Monitor
+) -> list[tuple[Crown, float]]:
+    """What each trunk carries, and the chance that it is a tree's.
+
+    What is surely no tree takes no part of its neighbours' crowns: they are shared out again
+    without it.
+    """
     feet = np.array([one.foot[:2] for one in trunks])
-    around = points_about(drives, plan, feet, CROWN_M, PartMonitor(monitor, 0.8, 1.0))
-    trees: list[StreetTree] = []
+    owners = nearest_columns(plan, feet, CROWN_M)
+    cells = crown_cells(drives, plan, owners, _stems_of(trunks), monitor)
+    shares = CrownShares(cells, trunks)
+    is_asked = np.ones(len(trunks), np.bool_)
+    crowns = shares.crowns(is_asked)
+    chances = [chance_of(facts_of(*one)) for one in zip(trunks, crowns, strict=True)]
+    is_asked &= np.array(chances) >= _LEAST_CHANCE
+    again = shares.crowns(is_asked)
+    return [
+        (again[k], chance_of(facts_of(one, again[k]))) if is_asked[k] else (crowns[k], chances[k])
+        for k, one in enumerate(trunks)
+    ]
+
+
+def _stems_of(trunks: Sequence[UprightTrunk]) -> StandingStems:
+    """Where the stems of trunks stand, and their stakes and guards."""
+    rows: list[tuple[float, ...]] = []
+    starts = [0]
     for number, one in enumerate(trunks):
-        monitor.check()
-        crown = crown_of(around.local[around.of(number)] - one.foot, one.trunk.stems_about_foot)
-        chance = chance_of(facts_of(one.trunk, crown))
-        foot = one.foot + plan.origin
-        trees.append(StreetTree(foot, one.trunk, crown, chance, one.points, one.drives))
-    return _one_of_each(trees)
+        thickest = one.trunk.stems[0]
+        for stem in (*one.trunk.stems, *one.trunk.companions):
+            axis = one.foot[:2] + stem.base - one.trunk.base
+            high = one.rise_m if stem is thickest else stem.high_m
+            wide = stem.radius_m + _BESIDE_M
+            rows.append((*axis, *stem.lean, wide, high + _ABOVE_M, number))
+        starts.append(len(rows))
+    heights = np.array([one.foot[2] for one in trunks])
+    return StandingStems(np.array(starts, np.int64), np.array(rows, np.float64), heights)
 
 
 def _standing_trunks(
     drives: Sequence[Drive], plan: SparsePlan, settings: TreeSettings, monitor: Monitor
-) -> list[_StandingTrunk]:
+) -> list[_MeasuredTrunk]:
     """What is round and upright among the columns."""
     ground = ground_heights(drives, plan, PartMonitor(monitor, 0.0, 0.25))
     found = find_columns(drives, plan, ground, PartMonitor(monitor, 0.25, 0.5))
@@ -128,11 +185,11 @@ def _standing_trunks(
     gathered = points_about(
         drives, plan, columns.middles, _TRUNK_M, PartMonitor(monitor, 0.5, 0.75)
     )
-    trunks: list[_StandingTrunk] = []
+    trunks: list[_MeasuredTrunk] = []
     for number in range(len(columns)):
         monitor.check()
         one = _trunk_at(columns, gathered, number, settings)
-        if one is not None and is_round(one.trunk):
+        if one is not None and is_round(one.standing.trunk):
             trunks.append(one)
         monitor.report(0.75 + 0.25 * (number + 1) / len(columns))
     return trunks
@@ -173,7 +230,7 @@ def _joined(columns: FoundColumns) -> FoundColumns:
 
 def _trunk_at(
     columns: FoundColumns, gathered: ColumnPoints, number: int, settings: TreeSettings
-) -> _StandingTrunk | None:
+) -> _MeasuredTrunk | None:
     """The trunk of a column; None where none of its stems is one."""
     part = gathered.of(number)
     local = gathered.local[part]
@@ -183,15 +240,13 @@ def _trunk_at(
     if trunk is None:
         return None
     stem = trunk.stems[0]
-    beside = foot_height(local, middle + stem.base, float(columns.ground[number]), stem.radius_m)
-    if abs(beside - height) > _SAME_HEIGHT_M:
-        trunk = trunk_of(stems_of(local - (*middle, beside), settings.most_diameter_m))
-        if trunk is None:
-            return None
+    ground = float(columns.ground[number])
+    higher = foot_height(local, middle + stem.base, ground, stem.radius_m) - height
+    trunk, height = trunk.about(higher), height + higher
     lines = trunk.lines[np.argsort(local[trunk.lines, 2], kind="stable")]
-    return _StandingTrunk(
-        trunk,
-        np.array([*(middle + trunk.base), beside]),
+    rise = rise_of(local - (*middle, height), trunk.stems[0])
+    return _MeasuredTrunk(
+        UprightTrunk(trunk, np.array([*(middle + trunk.base), height]), rise),
         gathered.points[part][lines],
         gathered.drives[part][lines],
     )

@@ -87,6 +87,13 @@ class Trunk:
         """The stems with their axes about the foot."""
         return tuple(replace(stem, base=stem.base - self.base) for stem in self.stems)
 
+    def about(self, higher_m: float) -> Trunk:
+        """The same with a foot that lies so much higher."""
+        return Trunk(
+            tuple(stem.about(higher_m) for stem in self.stems),
+            tuple(stem.about(higher_m) for stem in self.companions),
+        )
+
     @property
     def lean_deg(self) -> float:
         """Of the thickest stem from the vertical."""

@@ -1,0 +1,90 @@
+"""What tells trees from posts and other upright things, learnt from known streets.
+
+``python -m processing.laboratory.road_training.tree_training``.
+
+Simulates avenues of ``--seeds`` and usual streets of ``--worn``, finds upright things on them
+without leaving any out, and fits `processing.methods.road.trees.tree_confidence.WEIGHTS` to which
+of them are trees; avenues of ``--check`` are not learnt from. ``--deliveries`` are further streets
+to learn from, recorded before. Prints the weights and how many things of each confidence are
+trees: of streets learnt from by weights that were fitted without the street itself.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from processing.core.monitor import SilentMonitor
+from processing.core.output_streams import write_every_character
+from processing.formats.vectors.mapped_shapes import read_mapped
+from processing.laboratory.accuracy.road.road_scenes import RoadScene, avenue_scenes
+from processing.laboratory.road_training.learned_confidence import (
+    LabelledThings,
+    WeightPrior,
+    learn_weights,
+)
+from processing.laboratory.road_training.training_streets import training_streets
+from processing.methods.road.trees.street_trees import TreeSettings, street_trees
+from processing.methods.road.trees.tree_confidence import TreeFacts, facts_of
+from processing.scoring.mapped_features import MappedFile
+from processing.scoring.object_matches import is_in_span, positions_of, shows_enough
+from processing.scoring.trees import LEAST_TRUNK_POINTS
+from processing.tools.trees import TreeParameters
+
+EXPECTED = WeightPrior(
+    (-3.0, *TreeFacts(3.0, 1.5, -6.0, -3.0, -3.0, -3.0, 2.0, 0.3, -1.0, 2.0, -0.3, -1.0)),
+    (3.0, *TreeFacts(3.0, 1.5, 4.0, 3.0, 3.0, 3.0, 3.0, 0.5, 1.0, 2.0, 0.3, 0.7)),
+)
+"""What reasoning expects; a hundred trees leave some of it open."""
+
+_SEEDS, _USUAL, _CHECK = "600-619", "540-551", "620-627"
+"""Streets that the `WEIGHTS` were learnt from, avenues and others, and avenues to check with."""
+
+_SAME_M = 0.8
+"""A trunk so far from a true one is another thing: a post or a stake beside a tree."""
+
+
+def known_trees(scenes: Iterator[RoadScene]) -> LabelledThings:
+    """All upright things on some streets; trees that nobody could tell left out."""
+    rows: list[tuple[TreeFacts, bool, float, int]] = []
+    for number, scene in enumerate(scenes):
+        rows += [(*one, 1.0, number) for one in _judge(scene, read_mapped(scene.truth("trees")))]
+        sys.stderr.write(f"{scene.name}: {len(rows)} upright things\n")
+    return LabelledThings.of(rows, len(TreeFacts._fields))
+
+
+def _judge(scene: RoadScene, truth: MappedFile) -> Iterator[tuple[TreeFacts, bool]]:
+    settings = TreeSettings(TreeParameters().thickest_m)
+    found = street_trees(scene.drives, settings, SilentMonitor())
+    if not found:
+        return
+    feet = positions_of(truth.features)[:, :2]
+    asked = [
+        is_in_span(one) and shows_enough(truth, one, "trunk_points", LEAST_TRUNK_POINTS)
+        for one in truth.features
+    ]
+    for one in found:
+        off, which = np.inf, 0
+        if len(feet):
+            beside = np.hypot(*(feet - one.foot[:2]).T)
+            which = int(beside.argmin())
+            off = float(beside[which])
+        if off >= _SAME_M or asked[which]:
+            yield facts_of(one.upright, one.crown), off < _SAME_M
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """The command."""
+    asked = training_streets(
+        "tree_training", arguments, avenue_scenes, (_SEEDS, _CHECK), worn=_USUAL
+    )
+    known, check = known_trees(asked.learnt), known_trees(asked.check)
+    sys.stdout.write(learn_weights(TreeFacts._fields, EXPECTED, known, check))
+    return 0
+
+
+if __name__ == "__main__":
+    write_every_character()
+    sys.exit(main())

@@ -1,0 +1,372 @@
+"""Cells of space about trunks with what the points of each tell of its shape.
+
+Crowns of neighbours touch, so cells are of the survey and not of a tree; of a cell only counts,
+sums and extents are kept, so that memory follows the plants beside the road and not their points.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple, TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.core.arrays import Floats, Integers
+from processing.core.kernels import kernel
+from processing.core.monitor import Monitor
+from processing.methods.road.objects.drive_chunks import chunks_of
+from processing.methods.road.objects.sparse_plan import TILE, SparsePlan, cell_of
+from processing.recording.drive import Drive
+
+_Number = TypeVar("_Number", np.float32, np.int64)
+
+CELL_M = 0.4
+"""Cells in which a crown hangs together: the gaps between its twigs are smaller, and houses and
+wires keep farther away."""
+
+LOW_M = 0.6
+"""Above the foot: what is lower is grass, shoots and the ground of a bank."""
+
+_FEWEST = 6
+"""Points of a cell from which its shape is told."""
+
+_FLAT = 0.15
+"""Extent square to a cell's plane over its longest one. Over a plane it is the noise, 1 cm over
+12 cm; twigs and leaves fill a cell to a third."""
+
+_SUMS = 10
+"""Of a cell: number, sums and sums of products of its points about its middle."""
+
+_BITS = 20
+"""Of a key for each direction: 400 km of cells."""
+
+_HALF = 1 << (_BITS - 1)
+
+_EMPTY_KEY = -1
+
+_FIRST_SLOTS = 1 << 15
+"""Of the table: 20 m of street; it doubles when it is half full."""
+
+
+class StandingStems(NamedTuple):
+    """The stems whose points are left out of the cells, m about the plan's origin.
+
+    ``starts``: of each trunk's stems; ``axes``: (n, 7) east and north of the axis at the foot, its
+    lean to east and north, radius beyond which a point is not of the stem, height above the foot
+    that it reaches, number of the trunk; ``feet``: (k,) heights of the trunks' feet.
+    """
+
+    starts: Integers
+    axes: Floats
+    feet: Floats
+
+
+@dataclass(frozen=True)
+class CrownCells:
+    """Cells about trunks that hold points of no stem.
+
+    Attributes
+    ----------
+    places : (n, 3) int64
+        Of each cell, in cells from the plan's origin.
+    trunks : (n,) int64
+        The trunk nearest to it.
+    counts : (n,) int64
+        Points of each.
+    lowest, highest : (n, 3) float32
+        Of its points, m about the plan's origin.
+    is_told : (n,) bool
+        Whether it and the cells about it have points enough to tell a shape.
+    is_flat : (n,) bool
+        Whether that is a plane or a line: a wall, a sign, an arm, a wire.
+    slots : (2, m) int64
+        Keys of the table and the cell of each, −1: free.
+    """
+
+    places: Integers
+    trunks: Integers
+    counts: Integers
+    lowest: NDArray[np.float32]
+    highest: NDArray[np.float32]
+    is_told: NDArray[np.bool_]
+    is_flat: NDArray[np.bool_]
+    slots: Integers
+
+    def __len__(self) -> int:
+        return len(self.counts)
+
+    @property
+    def middles(self) -> Floats:
+        """(n, 3) float64, m about the plan's origin."""
+        middles: Floats = (self.places + np.float64(0.5)) * CELL_M
+        return middles
+
+    def components(self, is_open: NDArray[np.bool_]) -> Integers:
+        """(n,) int64: which cells hang together with each other; −1: not open."""
+        parts = np.full(len(self), -1, np.int64)
+        components_kernel(self.places, is_open, self.slots, parts)
+        return parts
+
+
+def crown_cells(
+    drives: Sequence[Drive],
+    plan: SparsePlan,
+    owners: NDArray[np.int32],
+    stems: StandingStems,
+    monitor: Monitor,
+) -> CrownCells:
+    """Fill the cells with the points about trunks.
+
+    Parameters
+    ----------
+    owners : (tiles, 64, 64) int32
+        The trunk nearest to each cell of the plan; −1: none is near.
+
+    Notes
+    -----
+    1. Each point above the foot of the trunk nearest to it that lies on none of its stems is
+       counted in its cell of 0.4 m.
+    2. A cell is flat if its points and those of the cells about it lie in a plane or on a line. One
+       scan line through a crown is a plane too, hence the cells about it.
+    """
+    slots = np.full((2, _FIRST_SLOTS), _EMPTY_KEY, np.int64)
+    sums: NDArray[np.float32] = np.zeros((_FIRST_SLOTS // 2, _SUMS), np.float32)
+    boxes: NDArray[np.float32] = np.zeros((_FIRST_SLOTS // 2, 6), np.float32)
+    places = np.zeros((_FIRST_SLOTS // 2, 4), np.int64)
+    used = 0
+    for chunk in chunks_of(drives, plan.origin, monitor):
+        begin = 0
+        while begin < len(chunk.local):
+            begin, used = fill_kernel(
+                chunk.local,
+                chunk.is_noise,
+                (begin, used),
+                (plan.table, owners.reshape(-1)),
+                stems,
+                (slots, places, sums, boxes),
+            )
+            if begin < len(chunk.local):
+                slots = _doubled(slots)
+                sums, boxes, places = _wider(sums), _wider(boxes), _wider(places)
+    sums, boxes, trunks, places = sums[:used], boxes[:used], places[:used, 3], places[:used, :3]
+    is_told, is_flat = np.zeros(used, np.bool_), np.zeros(used, np.bool_)
+    shapes_kernel(places, sums, slots, is_told, is_flat)
+    counts = sums[:, 0].astype(np.int64)
+    return CrownCells(places, trunks, counts, boxes[:, :3], boxes[:, 3:], is_told, is_flat, slots)
+
+
+def _doubled(slots: Integers) -> Integers:
+    """The table with twice as much room."""
+    wider = np.full((2, 2 * slots.shape[1]), _EMPTY_KEY, np.int64)
+    rehash_kernel(slots, wider)
+    return wider
+
+
+def _wider(rows: NDArray[_Number]) -> NDArray[_Number]:
+    return np.concatenate([rows, np.zeros_like(rows)])
+
+
+@kernel
+def _key(i: int, j: int, k: int) -> int:
+    return (((i + _HALF) << _BITS) + (j + _HALF) << _BITS) + (k + _HALF)
+
+
+@kernel
+def _slot_of(key: int, slots: Integers) -> int:
+    """Where a key is in the table, or would be."""
+    size = slots.shape[1]
+    # Fibonacci hashing (Knuth, The Art of Computer Programming 3, 6.4), on 32 bits of the key.
+    folded = (key ^ (key >> 29)) & 0xFFFFFFFF
+    slot = ((folded * 2_654_435_769) & 0xFFFFFFFF) % size
+    while slots[0, slot] != _EMPTY_KEY and slots[0, slot] != key:
+        slot = slot + 1 if slot + 1 < size else 0
+    return int(slot)
+
+
+@kernel
+def rehash_kernel(slots: Integers, wider: Integers) -> None:
+    """Put all keys of a table into a wider one."""
+    for old in range(slots.shape[1]):
+        if slots[0, old] != _EMPTY_KEY:
+            slot = _slot_of(slots[0, old], wider)
+            wider[0, slot] = slots[0, old]
+            wider[1, slot] = slots[1, old]
+
+
+@kernel
+def fill_kernel(
+    local: Floats,
+    is_noise: NDArray[np.bool_],
+    at: tuple[int, int],
+    plan: tuple[NDArray[np.int32], NDArray[np.int32]],
+    stems: StandingStems,
+    cells: tuple[Integers, Integers, NDArray[np.float32], NDArray[np.float32]],
+) -> tuple[int, int]:
+    """Count points in cells, from one on, until there is no more room for new cells.
+
+    Parameters
+    ----------
+    at : (int, int)
+        The first point, and how many cells there are.
+
+    Returns
+    -------
+    int, int
+        The first point that was not counted, and how many cells there are then.
+    """
+    begin, used = at
+    table, owners = plan
+    slots, places, sums, boxes = cells
+    for point in range(begin, len(local)):
+        if is_noise[point]:
+            continue
+        east, north, up = local[point, 0], local[point, 1], local[point, 2]
+        below = cell_of(east, north, table, TILE)
+        trunk = owners[below] if below >= 0 else -1
+        if trunk < 0 or up < stems.feet[trunk] + LOW_M or _is_on(east, north, up, trunk, stems):
+            continue
+        i, j, k = math.floor(east / CELL_M), math.floor(north / CELL_M), math.floor(up / CELL_M)
+        key = _key(i, j, k)
+        slot = _slot_of(key, slots)
+        if slots[0, slot] == _EMPTY_KEY:
+            if used == len(sums):
+                return point, used
+            slots[0, slot] = key
+            slots[1, slot] = used
+            places[used, 0], places[used, 1], places[used, 2], places[used, 3] = i, j, k, trunk
+            boxes[used, :3] = 1e9
+            boxes[used, 3:] = -1e9
+            used += 1
+        cell = slots[1, slot]
+        x, y, z = east - (i + 0.5) * CELL_M, north - (j + 0.5) * CELL_M, up - (k + 0.5) * CELL_M
+        row = sums[cell]
+        row[0] += 1
+        row[1] += x
+        row[2] += y
+        row[3] += z
+        row[4] += x * x
+        row[5] += x * y
+        row[6] += y * y
+        row[7] += x * z
+        row[8] += y * z
+        row[9] += z * z
+        box = boxes[cell]
+        box[0], box[1], box[2] = min(box[0], east), min(box[1], north), min(box[2], up)
+        box[3], box[4], box[5] = max(box[3], east), max(box[4], north), max(box[5], up)
+    return len(local), used
+
+
+@kernel
+def _is_on(east: float, north: float, up: float, trunk: int, stems: StandingStems) -> bool:
+    for number in range(stems.starts[trunk], stems.starts[trunk + 1]):
+        axis = stems.axes[number]
+        above = up - stems.feet[trunk]
+        if above < axis[5]:
+            beside = math.hypot(east - axis[0] - axis[2] * above, north - axis[1] - axis[3] * above)
+            if beside < axis[4]:
+                return True
+    return False
+
+
+@kernel
+def shapes_kernel(
+    places: Integers,
+    sums: NDArray[np.float32],
+    slots: Integers,
+    is_told: NDArray[np.bool_],
+    is_flat: NDArray[np.bool_],
+) -> None:
+    """Tell of each cell whether its shape is known and whether it is flat."""
+    wide = np.zeros(_SUMS)
+    for cell in range(len(places)):
+        wide[:] = 0.0
+        for di in range(-1, 2):
+            for dj in range(-1, 2):
+                for dk in range(-1, 2):
+                    key = _key(places[cell, 0] + di, places[cell, 1] + dj, places[cell, 2] + dk)
+                    slot = _slot_of(key, slots)
+                    if slots[0, slot] != _EMPTY_KEY:
+                        _add_moved(
+                            wide, sums[slots[1, slot]], di * CELL_M, dj * CELL_M, dk * CELL_M
+                        )
+        if wide[0] < _FEWEST:
+            continue
+        is_told[cell] = True
+        flat = _flatness(wide) < _FLAT
+        if flat and sums[cell, 0] >= _FEWEST:
+            wide[:] = 0.0
+            _add_moved(wide, sums[cell], 0.0, 0.0, 0.0)
+            flat = _flatness(wide) < _FLAT
+        is_flat[cell] = flat
+
+
+@kernel
+def _add_moved(wide: Floats, row: NDArray[np.float32], x: float, y: float, z: float) -> None:
+    """Add the sums of a cell whose middle lies so far from where they are wanted."""
+    n, sx, sy, sz = row[0], row[1], row[2], row[3]
+    wide[0] += n
+    wide[1] += sx + n * x
+    wide[2] += sy + n * y
+    wide[3] += sz + n * z
+    wide[4] += row[4] + 2 * x * sx + n * x * x
+    wide[5] += row[5] + x * sy + y * sx + n * x * y
+    wide[6] += row[6] + 2 * y * sy + n * y * y
+    wide[7] += row[7] + x * sz + z * sx + n * x * z
+    wide[8] += row[8] + y * sz + z * sy + n * y * z
+    wide[9] += row[9] + 2 * z * sz + n * z * z
+
+
+@kernel
+def _flatness(sums: Floats) -> float:
+    """Extent of points square to their plane over the longest one.
+
+    References
+    ----------
+    Smith 1961: Eigenvalues of a symmetric 3 × 3 matrix, Communications of the ACM 4, 168.
+    """
+    n = sums[0]
+    x, y, z = sums[1] / n, sums[2] / n, sums[3] / n
+    xx, xy, yy = sums[4] / n - x * x, sums[5] / n - x * y, sums[6] / n - y * y
+    xz, yz, zz = sums[7] / n - x * z, sums[8] / n - y * z, sums[9] / n - z * z
+    third = (xx + yy + zz) / 3
+    a, b, c = xx - third, yy - third, zz - third
+    size = math.sqrt(max((a * a + b * b + c * c + 2 * (xy * xy + xz * xz + yz * yz)) / 6, 1e-18))
+    determinant = a * (b * c - yz * yz) - xy * (xy * c - yz * xz) + xz * (xy * yz - b * xz)
+    turn = math.acos(max(-1.0, min(1.0, determinant / (2 * size**3)))) / 3
+    most = third + 2 * size * math.cos(turn)
+    least = third + 2 * size * math.cos(turn + 2 * math.pi / 3)
+    return math.sqrt(max(least, 1e-12) / max(most, 1e-12))
+
+
+@kernel
+def components_kernel(
+    places: Integers, is_open: NDArray[np.bool_], slots: Integers, parts: Integers
+) -> None:
+    """Number the components of open cells that touch by a face, an edge or a corner."""
+    waiting = np.empty(len(places), np.int64)
+    count = 0
+    for first in range(len(places)):
+        if not is_open[first] or parts[first] >= 0:
+            continue
+        parts[first] = count
+        waiting[0] = first
+        left = 1
+        while left > 0:
+            left -= 1
+            cell = waiting[left]
+            for di in range(-1, 2):
+                for dj in range(-1, 2):
+                    for dk in range(-1, 2):
+                        key = _key(places[cell, 0] + di, places[cell, 1] + dj, places[cell, 2] + dk)
+                        slot = _slot_of(key, slots)
+                        if slots[0, slot] == _EMPTY_KEY:
+                            continue
+                        other = slots[1, slot]
+                        if is_open[other] and parts[other] < 0:
+                            parts[other] = count
+                            waiting[left] = other
+                            left += 1
+        count += 1
