@@ -11,7 +11,10 @@ import numpy as np
 from processing.core.monitor import Monitor
 from processing.core.parameters import least_confidence, length
 from processing.core.text import Text
+from processing.methods.road.diagnostics import Diagnostic
+from processing.methods.road.requested_position import RequestedPosition
 from processing.methods.road.trees.street_trees import StreetTree, TreeSettings, street_trees
+from processing.methods.road.trees.trunk_diagnostics import trunk_diagnostics
 from processing.recording.drive import Drive
 from processing.scoring.scorers import TREE_SCORER
 from processing.tools.tool import (
@@ -55,6 +58,11 @@ def find_trees(
     found = street_trees(drives, TreeSettings(parameters.thickest_m), monitor)
     trees = [one for one in found if one.confidence >= parameters.least_confidence]
     return CandidateResult(tuple(_candidate(one) for one in trees), _note(drives, found, trees))
+
+
+def diagnose_trees(asked: RequestedPosition, parameters: TreeParameters) -> tuple[Diagnostic, ...]:
+    """The circles about a place that a trunk is measured by, and those that are left out."""
+    return trunk_diagnostics(asked, parameters.thickest_m)
 
 
 def _note(
@@ -117,5 +125,6 @@ TREES = Tool(
     method=SurveyFinder(find_trees),
     makes=("street_tree",),
     button=ToolButton(Text("Find street trees", "街路樹を抽出"), "Ctrl+Shift+F8", "mdi6.tree"),
+    diagnostics=diagnose_trees,
     scorer=TREE_SCORER,
 )

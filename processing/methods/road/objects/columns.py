@@ -177,6 +177,8 @@ def _columns_of(slabs: NDArray[np.uint32]) -> list[tuple[Floats, int]]:
     about = ndimage.uniform_filter(weights, 3, mode="constant")
     # Of cells that are alike, the weights themselves tell.
     about += 1e-3 * weights
+    # Within a ring of filled cells, as a thick trunk is one, nothing was measured.
+    about[~is_column] = 0.0
     best = ndimage.maximum_filter(about, 2 * _APART_CELLS + 1, mode="constant")
     found: list[tuple[Floats, int]] = []
     border = _HALO + _APART_CELLS

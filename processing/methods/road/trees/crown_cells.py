@@ -30,12 +30,21 @@ wires keep farther away."""
 LOW_M = 0.6
 """Above the foot: what is lower is grass, shoots and the ground of a bank."""
 
+_LINK = 2
+"""Cells from one to the next of a crown: bare branches leave gaps of half a metre."""
+
 _FEWEST = 6
 """Points of a cell from which its shape is told."""
 
 _FLAT = 0.15
 """Extent square to a cell's plane over its longest one. Over a plane it is the noise, 1 cm over
 12 cm; twigs and leaves fill a cell to a third."""
+
+_LINE = 0.25
+"""The middle extent over the longest one of a line: a branch of 5 cm in a cell."""
+
+_STEEP = 0.35
+"""Sine of 20 degrees: branches rise more, arms of lamps and signs and wires don't."""
 
 _SUMS = 10
 """Of a cell: number, sums and sums of products of its points about its middle."""
@@ -81,7 +90,7 @@ class CrownCells:
     is_told : (n,) bool
         Whether it and the cells about it have points enough to tell a shape.
     is_flat : (n,) bool
-        Whether that is a plane or a line: a wall, a sign, an arm, a wire.
+        Whether that is a plane or a level line: a wall, a sign, an arm, a wire.
     slots : (2, m) int64
         Keys of the table and the cell of each, −1: free.
     """
@@ -129,8 +138,9 @@ def crown_cells(
     -----
     1. Each point above the foot of the trunk nearest to it that lies on none of its stems is
        counted in its cell of 0.4 m.
-    2. A cell is flat if its points and those of the cells about it lie in a plane or on a line. One
-       scan line through a crown is a plane too, hence the cells about it.
+    2. A cell is flat if its points and those of the cells about it lie in a plane or on a line that
+       rises less than branches do. One scan line through a crown is a plane too, hence the cells
+       about it.
     """
     slots = np.full((2, _FIRST_SLOTS), _EMPTY_KEY, np.int64)
     sums: NDArray[np.float32] = np.zeros((_FIRST_SLOTS // 2, _SUMS), np.float32)
@@ -295,11 +305,11 @@ def shapes_kernel(
         if wide[0] < _FEWEST:
             continue
         is_told[cell] = True
-        flat = _flatness(wide) < _FLAT
+        flat = _is_flat(wide)
         if flat and sums[cell, 0] >= _FEWEST:
             wide[:] = 0.0
             _add_moved(wide, sums[cell], 0.0, 0.0, 0.0)
-            flat = _flatness(wide) < _FLAT
+            flat = _is_flat(wide)
         is_flat[cell] = flat
 
 
@@ -320,8 +330,8 @@ def _add_moved(wide: Floats, row: NDArray[np.float32], x: float, y: float, z: fl
 
 
 @kernel
-def _flatness(sums: Floats) -> float:
-    """Extent of points square to their plane over the longest one.
+def _is_flat(sums: Floats) -> bool:
+    """Whether points lie in a plane or on a line that doesn't rise as branches do.
 
     References
     ----------
@@ -336,16 +346,24 @@ def _flatness(sums: Floats) -> float:
     size = math.sqrt(max((a * a + b * b + c * c + 2 * (xy * xy + xz * xz + yz * yz)) / 6, 1e-18))
     determinant = a * (b * c - yz * yz) - xy * (xy * c - yz * xz) + xz * (xy * yz - b * xz)
     turn = math.acos(max(-1.0, min(1.0, determinant / (2 * size**3)))) / 3
-    most = third + 2 * size * math.cos(turn)
-    least = third + 2 * size * math.cos(turn + 2 * math.pi / 3)
-    return math.sqrt(max(least, 1e-12) / max(most, 1e-12))
+    most = max(third + 2 * size * math.cos(turn), 1e-12)
+    least = max(third + 2 * size * math.cos(turn + 2 * math.pi / 3), 1e-12)
+    middle = max(3 * third - most - least, 1e-12)
+    if least >= _FLAT**2 * most:
+        return False
+    if middle >= _LINE**2 * most:
+        return True
+    # The square of the direction's height: of (A - middle)(A - least), which leaves the longest.
+    square = xz * xz + yz * yz + zz * zz
+    rise = (square - (middle + least) * zz + middle * least) / ((most - middle) * (most - least))
+    return bool(rise < _STEEP**2)
 
 
 @kernel
 def components_kernel(
     places: Integers, is_open: NDArray[np.bool_], slots: Integers, parts: Integers
 ) -> None:
-    """Number the components of open cells that touch by a face, an edge or a corner."""
+    """Number the components of open cells with at most one cell between two."""
     waiting = np.empty(len(places), np.int64)
     count = 0
     for first in range(len(places)):
@@ -357,9 +375,9 @@ def components_kernel(
         while left > 0:
             left -= 1
             cell = waiting[left]
-            for di in range(-1, 2):
-                for dj in range(-1, 2):
-                    for dk in range(-1, 2):
+            for di in range(-_LINK, _LINK + 1):
+                for dj in range(-_LINK, _LINK + 1):
+                    for dk in range(-_LINK, _LINK + 1):
                         key = _key(places[cell, 0] + di, places[cell, 1] + dj, places[cell, 2] + dk)
                         slot = _slot_of(key, slots)
                         if slots[0, slot] == _EMPTY_KEY:

@@ -20,6 +20,7 @@ from scipy.spatial import cKDTree
 from processing.core.arrays import Floats, Integers
 from processing.core.kernels import kernel
 from processing.methods.road.trees.crown_cells import CELL_M, CrownCells
+from processing.methods.road.trees.rises import StemRise
 from processing.methods.road.trees.trunks import Trunk
 
 CROWN_M = 8.0
@@ -49,6 +50,12 @@ with the trunk (Tao et al. 2015, Segmenting tree crowns from terrestrial and mob
 Journal 110, eq. 2)."""
 
 
+_SLENDEREST, _SLENDER_ROOM_M = 80.0, 1.5
+"""Height over diameter of slender trees that stand by themselves (Wang, Titus, LeMay 1998, Canadian
+Journal of Forest Research 28: those beyond 100 are blown over), and m that stakes add to a young
+one: what is higher belongs to another tree."""
+
+
 @dataclass(frozen=True)
 class Crown:
     """What was measured above and about a trunk.
@@ -60,7 +67,8 @@ class Crown:
     cells : int
         That twigs fill: 0.064 m³ each.
     flat_share : float
-        Of the cells near the axis whose shape is told, those that are planes or lines.
+        Of the cells near the axis up to the crown's end whose shape is told, those that are planes
+        or level lines.
     aside : float
         How far its middle lies from the axis, over its radius.
     rival : float
@@ -99,13 +107,13 @@ class UprightTrunk:
     trunk : Trunk
     foot : (3,) float64
         m about the plan's origin.
-    rise_m : float
-        Up to which height above the foot its thickest stem goes on as it is.
+    rise : StemRise
+        How its thickest stem goes on above.
     """
 
     trunk: Trunk
     foot: Floats
-    rise_m: float
+    rise: StemRise
 
     @property
     def top_m(self) -> float:
@@ -138,6 +146,8 @@ class CrownShares:
         self._feet = np.array([one.foot[2] for one in trunks])
         wide = np.array([one.trunk.diameter_m for one in trunks]) ** _STRONGER
         self._reach = wide
+        diameters = np.array([one.trunk.diameter_m for one in trunks])
+        self._highest = self._feet + _SLENDEREST * diameters + _SLENDER_ROOM_M
         above = self._middles[:, 2] - self._feet[cells.trunks]
         self._is_high = above > _LOW_M
         self._parts = cells.components(self._is_high & ~cells.is_flat)
@@ -156,7 +166,7 @@ class CrownShares:
         share_kernel(
             self._middles,
             self._parts,
-            (order, self._tops, self._reach, self._part_of),
+            (order, self._tops, self._reach, self._highest, self._part_of),
             shares,
         )
         by_trunk = np.argsort(shares, kind="stable")
@@ -212,7 +222,8 @@ class CrownShares:
         foot, top = float(self._feet[number]), one.top_m
         near = self._about(number, 2 * _AXIS_M)
         near = near[self._is_high[near]]
-        told = near[cells.is_told[near]]
+        ends = cells.highest[share, 2].max(initial=foot + top + _ABOVE_M)
+        told = near[cells.is_told[near] & (cells.lowest[near, 2] < ends)]
         flat_share = float(cells.is_flat[told].mean()) if told.size else 1.0
         leafy = share[cells.is_told[share]]
         if leafy.size == 0:
@@ -241,7 +252,7 @@ class CrownShares:
         crown = near[np.isin(near, share)]
         if crown.size == 0:
             return float("inf")
-        top = max(self._trunks[number].top_m, self._trunks[number].rise_m)
+        top = max(self._trunks[number].top_m, self._trunks[number].rise.high_m)
         begins = float(cells.lowest[crown, 2].min()) - foot
         order = near[np.argsort(cells.lowest[near, 2], kind="stable")]
         reached, gap = top, 0.0
@@ -300,20 +311,20 @@ def _bare(height_m: float, flat_share: float = 1.0) -> Crown:
 def share_kernel(
     middles: Floats,
     parts: Integers,
-    trunks: tuple[Integers, Floats, Floats, Integers],
+    trunks: tuple[Integers, Floats, Floats, Floats, Integers],
     shares: Integers,
 ) -> None:
     """Give each cell to a trunk of its part.
 
     Parameters
     ----------
-    trunks : (order, tops, reach, part_of)
+    trunks : (order, tops, reach, highest, part_of)
         Numbers of those that share, from west to east; of all, where they end, the width that
-        crowns of such have, and their part.
+        crowns of such have, how high such trees can be, and their part.
     shares : (n,) int64
         Written; −1 where no trunk of the part is near.
     """
-    order, tops, reach, part_of = trunks
+    order, tops, reach, highest, part_of = trunks
     for cell in range(len(middles)):
         if parts[cell] < 0:
             continue
@@ -330,7 +341,7 @@ def share_kernel(
             trunk = order[rank]
             if tops[trunk, 0] > east + CROWN_M:
                 break
-            if part_of[trunk] != parts[cell]:
+            if part_of[trunk] != parts[cell] or middles[cell, 2] > highest[trunk]:
                 continue
             away = math.hypot(east - tops[trunk, 0], north - tops[trunk, 1])
             if away < CROWN_M and away / reach[trunk] < best:

@@ -7,6 +7,7 @@ on through it, a sign post ends below.
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 
@@ -23,6 +24,9 @@ _STEP_M = 0.2
 
 _TOLERANCE_M = 0.015
 """From the surface: the noise, and what lean and taper of the piece below leave open."""
+
+_SLEEVES_M = (0.01, 0.02, 0.03, 0.04)
+"""What a sleeve about the lower part of a pole (防護カバー) or a trunk's wrap adds to the radius."""
 
 _BESIDE_M = 0.3
 """Beyond the surface: leaves there tell how many would lie near it by chance."""
@@ -43,10 +47,33 @@ _ROUNDS = 3
 """Each fits the body again to what was found, and looks farther."""
 
 _SHAPE_M = 0.003
+"""How far bark and mixed points make a stem's shape seem off."""
+
+_CORE_M, _ROUND_CORE_M, _CORE_HIGH_M = 0.3, 0.65, 1.5
+"""m: the axis with the branches that begin there; a ring about it; how high both are."""
 
 
-def rise_of(points: Floats, stem: FittedStem) -> float:
-    """The height above the foot up to which a stem goes on as it is.
+class StemRise(NamedTuple):
+    """What becomes of a stem above the heights at which trunks are looked for.
+
+    Attributes
+    ----------
+    high_m : float
+        Up to which height above the foot it goes on as it is, 8 m at most.
+    thins : float
+        Share of its radius that it loses in a metre of height up to there.
+    core : float
+        How much denser points lie about its axis above that than beside it, as a power of two: at
+        the end of a trunk branches meet, over a post that ends hang leaves as everywhere.
+    """
+
+    high_m: float
+    thins: float
+    core: float
+
+
+def rise_of(points: Floats, stem: FittedStem) -> StemRise:
+    """How a stem goes on upwards.
 
     Parameters
     ----------
@@ -58,21 +85,47 @@ def rise_of(points: Floats, stem: FittedStem) -> float:
     body[4], body[5] = stem.radius_m, -stem.taper
     near = points[_within(points, body)]
     near = near[np.argsort(near[:, 2], kind="stable")]
-    top = stem.high_m
+    low, top = stem.low_m, stem.high_m
+    if not _climbed(near, body, top):
+        body, low = _thinner(near, body, top), top
     for _ in range(_ROUNDS):
-        levels = np.arange(top, HIGHEST_M + _STEP_M, _STEP_M)
-        starts = np.searchsorted(near[:, 2], levels)
-        last = climb_kernel(near, starts, body)
+        last = _climbed(near, body, top)
         if last == 0:
             break
-        top = float(levels[last])
-        whole = near[(near[:, 2] >= stem.low_m) & (near[:, 2] <= top)] - (0.0, 0.0, BREAST_M)
+        top += last * _STEP_M
+        whole = near[(near[:, 2] >= low) & (near[:, 2] <= top)] - (0.0, 0.0, BREAST_M)
         fitted = body.copy()
         room = np.empty(len(whole)), np.zeros(len(whole), np.bool_)
         _, noise = settle_kernel(whole, _SHAPE_M, fitted, *room)
         if noise > 0 and abs(fitted[4] - body[4]) < _TOLERANCE_M:
             body = fitted
-    return min(top, HIGHEST_M)
+    thins = float(-body[5] / body[4])
+    return StemRise(min(top, HIGHEST_M), thins, _core(points, body, top))
+
+
+def _climbed(near: Floats, body: Floats, top: float) -> int:
+    """Slabs above a height that show a body."""
+    levels = np.arange(top, HIGHEST_M + _STEP_M, _STEP_M)
+    return int(climb_kernel(near, np.searchsorted(near[:, 2], levels), body))
+
+
+def _thinner(near: Floats, body: Floats, top: float) -> Floats:
+    """The body without a sleeve about it, if one so much thinner goes on above it."""
+    bodies = [body - np.array([0, 0, 0, 0, less, 0, 0, 0]) for less in _SLEEVES_M]
+    bodies = [one for one in bodies if one[4] > _TOLERANCE_M]
+    return max(bodies, key=lambda one: _climbed(near, one, top), default=body)
+
+
+def _core(points: Floats, body: Floats, top: float) -> float:
+    """How much denser points are about the axis above a height than beside it."""
+    up = points[:, 2]
+    above = points[(up > top) & (up < top + _CORE_HIGH_M)]
+    beside = above[:, :2] - body[:2] - (above[:, 2:] - BREAST_M) * body[2:4]
+    away = np.hypot(beside[:, 0], beside[:, 1])
+    inner = np.count_nonzero(away < _CORE_M)
+    outer = np.count_nonzero((away >= _CORE_M) & (away < _ROUND_CORE_M))
+    areas = (_ROUND_CORE_M / _CORE_M) ** 2 - 1
+    return math.log2(areas * (inner + 1) / (outer + 1))
 
 
 def _within(points: Floats, body: Floats) -> Integers:

@@ -142,28 +142,54 @@ def stems_of(points: Floats, most_diameter_m: float) -> tuple[FittedStem, ...]:
         m about the column's foot.
     most_diameter_m : float
     """
+    slabs = slab_circles(points, most_diameter_m)
+    found = [
+        stem
+        for chain in _chains(slabs.circles, slabs.heights)
+        if (stem := _fitted(points, chain, most_diameter_m)) is not None
+    ]
+    return tuple(sorted(found, key=lambda stem: -stem.lines.size))
+
+
+class SlabCircles(NamedTuple):
+    """Circles in slabs.
+
+    Attributes
+    ----------
+    heights : (n,) float64
+        Of the slabs' middles above the foot, m.
+    circles : (n, MOST_CIRCLES, CIRCLE_WIDTH) float64
+        Of each slab, the best first; radius 0 where there are no more.
+    """
+
+    heights: Floats
+    circles: Floats
+
+
+def slab_circles(points: Floats, most_diameter_m: float) -> SlabCircles:
+    """The circles of level slabs through a column.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        m about the column's foot.
+    """
     count = round((HIGHEST_M - LOWEST_M) / STEP_M) + 1
     heights = np.linspace(LOWEST_M, HIGHEST_M, count)
+    circles = np.zeros((heights.size, MOST_CIRCLES, CIRCLE_WIDTH))
     order = np.argsort(points[:, 2], kind="stable")
     rising = points[order, 2]
     first = np.searchsorted(rising, heights - THICK_M / 2)
     end = np.searchsorted(rising, heights + THICK_M / 2)
-    if not (end > first).any():
-        return ()
-    # Of thousands of points of a slab a few hundred show the same circles.
-    steps = np.maximum(1, -(-(end - first) // _MOST_OF_SLAB))
-    parts = [order[a:b:step] for a, b, step in zip(first, end, steps, strict=True)]
-    members = np.concatenate(parts)
-    starts = np.cumsum([0, *(part.size for part in parts)])
-    limits = CircleLimits(_THINNEST_M, most_diameter_m / 2, TOLERANCE_M, 5, 0.12, 0.15)
-    circles = np.zeros((heights.size, MOST_CIRCLES, CIRCLE_WIDTH))
-    circles_kernel(np.ascontiguousarray(points[members, :2]), starts, limits, circles)
-    found = [
-        stem
-        for chain in _chains(circles, heights)
-        if (stem := _fitted(points, chain, most_diameter_m)) is not None
-    ]
-    return tuple(sorted(found, key=lambda stem: -stem.lines.size))
+    if (end > first).any():
+        # Of thousands of points of a slab a few hundred show the same circles.
+        steps = np.maximum(1, -(-(end - first) // _MOST_OF_SLAB))
+        parts = [order[a:b:step] for a, b, step in zip(first, end, steps, strict=True)]
+        members = np.concatenate(parts)
+        starts = np.cumsum([0, *(part.size for part in parts)])
+        limits = CircleLimits(_THINNEST_M, most_diameter_m / 2, TOLERANCE_M, 5, 0.12, 0.15)
+        circles_kernel(np.ascontiguousarray(points[members, :2]), starts, limits, circles)
+    return SlabCircles(heights, circles)
 
 
 def _chains(circles: Floats, heights: Floats) -> list[Floats]:

@@ -104,6 +104,18 @@ class _MeasuredTrunk(NamedTuple):
 def street_trees(
     drives: Sequence[Drive], settings: TreeSettings, monitor: Monitor
 ) -> tuple[StreetTree, ...]:
+    """The upright things of a survey that may be trees, of those of one tree the surest."""
+    kept: list[StreetTree] = []
+    found = upright_things(drives, settings, monitor)
+    for tree in sorted(found, key=lambda one: -one.confidence):
+        if all(np.hypot(*(tree.foot - one.foot)[:2]) >= _APART_M for one in kept):
+            kept.append(tree)
+    return tuple(kept)
+
+
+def upright_things(
+    drives: Sequence[Drive], settings: TreeSettings, monitor: Monitor
+) -> tuple[StreetTree, ...]:
     """All columns with a trunk, with what stands on it; a confidence tells trees from the others.
 
     Notes
@@ -121,18 +133,16 @@ def street_trees(
         return ()
     standing = [one.standing for one in trunks]
     crowns = _crowns(drives, plan, standing, PartMonitor(monitor, 0.8, 1.0))
-    return _one_of_each(
-        [
-            StreetTree(
-                one.standing.foot + plan.origin,
-                one.standing,
-                crown,
-                chance,
-                one.points,
-                one.drives,
-            )
-            for one, (crown, chance) in zip(trunks, crowns, strict=True)
-        ]
+    return tuple(
+        StreetTree(
+            one.standing.foot + plan.origin,
+            one.standing,
+            crown,
+            chance,
+            one.points,
+            one.drives,
+        )
+        for one, (crown, chance) in zip(trunks, crowns, strict=True)
     )
 
 
@@ -167,7 +177,7 @@ def _stems_of(trunks: Sequence[UprightTrunk]) -> StandingStems:
         thickest = one.trunk.stems[0]
         for stem in (*one.trunk.stems, *one.trunk.companions):
             axis = one.foot[:2] + stem.base - one.trunk.base
-            high = one.rise_m if stem is thickest else stem.high_m
+            high = one.rise.high_m if stem is thickest else stem.high_m
             wide = stem.radius_m + _BESIDE_M
             rows.append((*axis, *stem.lean, wide, high + _ABOVE_M, number))
         starts.append(len(rows))
@@ -193,15 +203,6 @@ def _standing_trunks(
             trunks.append(one)
         monitor.report(0.75 + 0.25 * (number + 1) / len(columns))
     return trunks
-
-
-def _one_of_each(trees: Sequence[StreetTree]) -> tuple[StreetTree, ...]:
-    """Of trees that stand too near to each other the surer one."""
-    kept: list[StreetTree] = []
-    for tree in sorted(trees, key=lambda one: -one.confidence):
-        if all(np.hypot(*(tree.foot - one.foot)[:2]) >= _APART_M for one in kept):
-            kept.append(tree)
-    return tuple(kept)
 
 
 def _joined(columns: FoundColumns) -> FoundColumns:

@@ -115,7 +115,7 @@ def trunk_of(stems: Sequence[FittedStem]) -> Trunk | None:
     3. Of the others those are stems of the tree that reach as high as the highest, are seen about
        1.2 m above the foot and are not much thinner than the thickest.
     """
-    whole = _without_pieces(stems)
+    whole = _without_walls(_without_pieces(stems))
     high = [
         stem
         for stem in whole
@@ -137,6 +137,12 @@ def is_round(trunk: Trunk) -> bool:
     """Whether what was seen of the thickest stem can be a trunk."""
     thickest = trunk.stems[0]
     return thickest.arc >= _ROUND
+
+
+def _without_walls(stems: Sequence[FittedStem]) -> list[FittedStem]:
+    """Without what is wider than every stem of which enough was seen, and not seen well itself."""
+    sure = [stem.radius_m for stem in stems if stem.arc >= _ROUND]
+    return [one for one in stems if not sure or one.arc >= _ROUND or one.radius_m < max(sure)]
 
 
 def _without_pieces(stems: Sequence[FittedStem]) -> list[FittedStem]:
