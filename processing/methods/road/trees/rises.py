@@ -26,7 +26,7 @@ _TOLERANCE_M = 0.015
 """From the surface: the noise, and what lean and taper of the piece below leave open."""
 
 _SLEEVES_M = (0.01, 0.02, 0.03, 0.04)
-"""What a sleeve about the lower part of a pole (防護カバー) or a trunk's wrap adds to the radius."""
+"""What a sleeve about the foot of a pole (防護カバー) or a wrap of a trunk adds to the radius."""
 
 _BESIDE_M = 0.3
 """Beyond the surface: leaves there tell how many would lie near it by chance."""

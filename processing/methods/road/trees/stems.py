@@ -133,7 +133,9 @@ class FittedStem:
         return middle
 
 
-def stems_of(points: Floats, most_diameter_m: float) -> tuple[FittedStem, ...]:
+def stems_of(
+    points: Floats, most_diameter_m: float, most_circles: int = MOST_CIRCLES
+) -> tuple[FittedStem, ...]:
     """All stems of a column, those with the most points first.
 
     Parameters
@@ -141,8 +143,11 @@ def stems_of(points: Floats, most_diameter_m: float) -> tuple[FittedStem, ...]:
     points : (n, 3) float64
         m about the column's foot.
     most_diameter_m : float
+    most_circles : int
+        Of a slab.
     """
     slabs = slab_circles(points, most_diameter_m)
+    slabs.circles[:, most_circles:] = 0.0
     found = [
         stem
         for chain in _chains(slabs.circles, slabs.heights)

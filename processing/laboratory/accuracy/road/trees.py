@@ -1,0 +1,119 @@
+"""Street trees: how many are found, and how well their trunks are measured.
+
+``python -m processing.laboratory.accuracy.road.trees --samples FOLDER… --real FILE…
+--markdown docs/accuracy.md``. Scores the tool on own streets of seeds that nobody looked at and on
+deliveries, measures the same trunks as others do, and compares trunks that were scanned by
+themselves.
+"""
+
+from __future__ import annotations
+
+import argparse
+import itertools
+import math
+import sys
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+
+from processing.core.output_streams import write_every_character
+from processing.laboratory.accuracy.filters.filters import write_sections
+from processing.laboratory.accuracy.road.road_tables import reliability_table
+from processing.laboratory.accuracy.road.tree_baselines import WAYS
+from processing.laboratory.accuracy.road.tree_scenes import (
+    ScoredTrees,
+    fresh_scenes,
+    given_tree_scenes,
+    score_scene,
+    standing_tree,
+    trunk_points,
+)
+from processing.laboratory.accuracy.road.tree_tables import (
+    MeasuredTrunk,
+    failures_of,
+    heads_table,
+    real_table,
+    streets_table,
+    ways_table,
+)
+from processing.scoring.object_matches import shows_enough
+from processing.scoring.reliability import reliability_of_pairs
+from processing.scoring.trees import LEAST_ARC_DEG
+
+_COMMAND = "`python -m processing.laboratory.accuracy.road.trees --markdown docs/accuracy.md`"
+_ABOUT = f"""{_COMMAND} (with `--samples FOLDER…`, deliveries of another simulator, and `--real \
+FILE…`): own streets of 60 m of seeds that nobody looked at, avenues with large touching crowns \
+over posts and lamps, and usual streets, all with the tool's own parameters. A tree counts as the \
+thesis has it, within 2 m, but one to one, if 20 points on its trunk show it. Diameters are those \
+of trunks of which 60° and more were seen, stakes included; “within” is the share whose error is \
+no greater than `dbh_within_m`, which should be 95 %.
+"""
+_ABOUT_WAYS = """The same trunks, with the points within 0.9 m of the true foot, measured in \
+other ways: RMS and greatest error of those that were measured at all.
+"""
+_ABOUT_REAL = """Trees that were scanned by themselves; nobody taped them, so this compares and \
+does not judge.
+"""
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Write the tables to a page, or to standard output."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--markdown", type=Path)
+    parser.add_argument("--samples", type=Path, nargs="*", default=[])
+    parser.add_argument("--real", type=Path, nargs="*", default=[])
+    parser.add_argument("--only-samples", action="store_true")
+    options = parser.parse_args(arguments)
+    own = () if options.only_samples else fresh_scenes()
+    streets: list[ScoredTrees] = []
+    trunks: list[MeasuredTrunk] = []
+    for scene in itertools.chain(own, given_tree_scenes(options.samples)):
+        streets.append(score_scene(scene))
+        trunks += measured_trunks(streets[-1])
+        sys.stderr.write(f"{scene.name}: {streets[-1].matches.counts}\n")
+    write_sections(options.markdown, sections_of(streets, trunks, options.real))
+    return 0
+
+
+def measured_trunks(street: ScoredTrees) -> Iterable[MeasuredTrunk]:
+    """The trunks of a street in all ways."""
+    truth = street.scene.truth
+    wanted = {one.truth.number for one in street.matches.partners}
+    for true, points in zip(truth.features, trunk_points(street.scene), strict=True):
+        if true.number in wanted and shows_enough(truth, true, "arc_deg", LEAST_ARC_DEG):
+            heads = [
+                WAYS["this program"](points.of_drive(number))
+                for number in range(len(street.scene.drives))
+            ]
+            yield MeasuredTrunk(
+                street.scene.group,
+                truth.number(true, "dbh_m"),
+                is_staked=truth.number(true, "stakes") > 0,
+                is_multiple=truth.number(true, "stems") > 1,
+                by_way={name: way(points) for name, way in WAYS.items()},
+                by_head=tuple(one for one in heads if not math.isnan(one)),
+            )
+
+
+def sections_of(
+    streets: Sequence[ScoredTrees], trunks: Sequence[MeasuredTrunk], real: Sequence[Path]
+) -> dict[str, str]:
+    """The sections of the page by their headings."""
+    judged = [pair for one in streets for pair in one.judged]
+    sections = {
+        "## Street trees": f"{_ABOUT}\n{streets_table(streets)}\n",
+        "### Trunks measured otherwise": f"{_ABOUT_WAYS}\n{ways_table(trunks)}\n\n"
+        f"{heads_table(trunks)}\n",
+        "### Confidence of trees": "All candidates of these streets, unlikely ones included.\n\n"
+        f"{reliability_table({'trees': reliability_of_pairs(judged)})}\n",
+        "### Trees that were not found, and what was taken for trees": failures_of(streets),
+    }
+    if real:
+        told = {path.stem: standing_tree(path) for path in real}
+        ways = {name: {way: f(one) for way, f in WAYS.items()} for name, one in told.items()}
+        sections["### Trees scanned by themselves"] = f"{_ABOUT_REAL}\n{real_table(ways)}\n"
+    return sections
+
+
+if __name__ == "__main__":
+    write_every_character()
+    sys.exit(main())
