@@ -46,8 +46,8 @@ STEP_M, THICK_M = 0.1, 0.2
 """From slab to slab, and how thick one is: scan lines of a moving scanner lie up to 0.2 m apart on
 a trunk, so one of them crosses most slabs. A lean of 10 degrees moves a circle by 3.5 cm in it."""
 
-_MOST_OF_SLAB = 240
-"""Points of a slab in which circles are looked for: a stake with a twentieth of them has a dozen.
+_MOST_OF_SLAB = 160
+"""Points of a slab in which circles are looked for: a stake with a twentieth of them has eight.
 The bodies are fitted to all."""
 
 _SHIFT_M, _SWELL_M = 0.03, 0.02
