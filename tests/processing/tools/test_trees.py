@@ -8,8 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from processing.image.scan_lines.scanlines import ScanlineSettings, scanline_through
 from processing.laboratory.simulate.scene.mesh import TriangleShape, tube
+from processing.methods.road.requested_position import RequestedPosition
+from processing.recording.drive import Drive
 from processing.tools.tool import Candidate
+from processing.tools.trees import TreeParameters, diagnose_trees
 from tests.processing.methods.road.bad_recordings import (
     HEAD_45,
     ORIGIN,
@@ -149,3 +153,86 @@ def test_a_street_without_trees_is_told(tmp_path: Path) -> None:
     told = told_by("trees", recorded(tmp_path, bare), tmp_path)
     assert told.candidates == ()
     assert told.sentence.endswith(".")
+
+
+AVENUE_M = 32.0
+FIRST, SECOND = np.array([12.0, 5.5, GROUND_M]), np.array([18.0, 5.5, GROUND_M])
+OLD_DIAMETER_M = 0.5
+LAMP, SIGN = np.array([15.0, 5.2, GROUND_M]), np.array([13.6, 5.0, GROUND_M])
+
+
+def avenue() -> tuple[TriangleShape, ...]:
+    """Two old trees whose crowns touch, a lamp that rises through them, a sign below."""
+    half = np.array([3.1, 2.6, 2.2])
+    boughs = [
+        tube(
+            np.array([moved(foot, 0.0, 0.0, 2.6), moved(foot, *(1.8 * way), 4.2)]),
+            np.array([0.09, 0.03]),
+            8,
+        )
+        for foot in (FIRST, SECOND)
+        for way in np.column_stack([np.cos(TURNS), np.sin(TURNS)])
+    ]
+    return (
+        road_along(AVENUE_M),
+        old_trunk(FIRST),
+        old_trunk(SECOND),
+        *boughs,
+        crown(moved(FIRST, 0.0, 0.0, 5.0), half, 2_500),
+        crown(moved(SECOND, 0.0, 0.0, 5.0), half, 2_500),
+        post(LAMP, 0.14, 8.5),
+        post(SIGN, 0.06, 3.0),
+    )
+
+
+TURNS = np.arange(7) * 0.9
+
+
+def old_trunk(foot: Floats) -> TriangleShape:
+    """It thins to its end within the crown."""
+    up = np.array([-0.3, 1.2, 3.0, 5.5])
+    path = foot + np.column_stack([0 * up, 0 * up, up])
+    radius = np.interp(up, [1.2, 3.0, 5.5], [OLD_DIAMETER_M / 2, 0.2, 0.06])
+    radius[0] = OLD_DIAMETER_M / 2 + 0.04
+    return tube(path, radius, 48)
+
+
+def post(foot: Floats, diameter_m: float, high_m: float) -> TriangleShape:
+    """A steel pipe."""
+    up = np.linspace(-0.3, high_m, 3)
+    return tube(foot + np.column_stack([0 * up, 0 * up, up]), np.full(3, diameter_m / 2), 24)
+
+
+@pytest.fixture(scope="module")
+def avenue_drives(tmp_path_factory: pytest.TempPathFactory) -> tuple[Drive, ...]:
+    way = straight(AVENUE_M)
+    driven = DrivenRecording(way, facing_along(way), avenue(), head=HEAD_45, pulses=1_500)
+    return recorded(tmp_path_factory.mktemp("avenue"), driven)
+
+
+def test_posts_under_the_crowns_of_others_are_no_trees(
+    avenue_drives: tuple[Drive, ...], tmp_path: Path
+) -> None:
+    told = told_by("trees", avenue_drives, tmp_path)
+    assert len(told.candidates) == 2
+    for foot in (FIRST, SECOND):
+        tree = tree_at(told, foot)
+        assert measure(tree, "dbh_m") == pytest.approx(OLD_DIAMETER_M, abs=0.012)
+        assert measure(tree, "crown_m") == pytest.approx(5.7, abs=0.8)
+        assert measure(tree, "height_m") == pytest.approx(7.2, abs=0.4)
+
+
+def test_the_circles_of_a_trunk_are_told_where_they_are(
+    avenue_drives: tuple[Drive, ...],
+) -> None:
+    place = FIRST + ORIGIN
+    scanlines = scanline_through(avenue_drives[0], place, ScanlineSettings())
+    assert scanlines is not None
+    asked = RequestedPosition(avenue_drives[0], place, scanlines)
+    told = diagnose_trees(asked, TreeParameters())
+    taken = [one for one in told if one.is_taken]
+    assert len(taken) >= 10
+    for one in taken:
+        assert one.outcomes[0].value == pytest.approx(OLD_DIAMETER_M, abs=0.1)
+        assert math.dist(one.xyz[:2], place[:2]) < 0.03
+        assert 0.2 < one.xyz[2] - place[2] < 2.8
