@@ -178,7 +178,7 @@ def image_wires(points: TrunkPoints) -> Integers:
 
 
 WAYS: Mapping[str, Callable[[TrunkPoints], float]] = {
-    "this program": own_diameter,
+    "this program, from these points": own_diameter,
     "this program, one circle a slab": diameter_by_one_circle,
     "thesis: wires of the image, cut every 5 mm": lambda one: wire_diameter(one, image_wires(one)),
     "wires to 8 neighbours in space": lambda one: wire_diameter(one, kd_wires(one, 8)),

@@ -18,7 +18,7 @@ from pathlib import Path
 from processing.core.output_streams import write_every_character
 from processing.laboratory.accuracy.filters.filters import write_sections
 from processing.laboratory.accuracy.road.road_tables import reliability_table
-from processing.laboratory.accuracy.road.tree_baselines import WAYS
+from processing.laboratory.accuracy.road.tree_baselines import WAYS, own_diameter
 from processing.laboratory.accuracy.road.tree_scenes import (
     ScoredTrees,
     fresh_scenes,
@@ -77,19 +77,21 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def measured_trunks(street: ScoredTrees) -> Iterable[MeasuredTrunk]:
     """The trunks of a street in all ways."""
     truth = street.scene.truth
-    wanted = {one.truth.number for one in street.matches.partners}
+    found = {one.truth.number: street.number(one, "dbh_m") for one in street.matches.partners}
     for true, points in zip(truth.features, trunk_points(street.scene), strict=True):
-        if true.number in wanted and shows_enough(truth, true, "arc_deg", LEAST_ARC_DEG):
+        if true.number in found and shows_enough(truth, true, "arc_deg", LEAST_ARC_DEG):
             heads = [
-                WAYS["this program"](points.of_drive(number))
-                for number in range(len(street.scene.drives))
+                own_diameter(points.of_drive(number)) for number in range(len(street.scene.drives))
             ]
             yield MeasuredTrunk(
                 street.scene.group,
                 truth.number(true, "dbh_m"),
                 is_staked=truth.number(true, "stakes") > 0,
                 is_multiple=truth.number(true, "stems") > 1,
-                by_way={name: way(points) for name, way in WAYS.items()},
+                by_way={
+                    "this program": found[true.number],
+                    **{name: way(points) for name, way in WAYS.items()},
+                },
                 by_head=tuple(one for one in heads if not math.isnan(one)),
             )
 

@@ -30,9 +30,6 @@ wires keep farther away."""
 LOW_M = 0.6
 """Above the foot: what is lower is grass, shoots and the ground of a bank."""
 
-_LINK = 2
-"""Cells from one to the next of a crown: bare branches leave gaps of half a metre."""
-
 _FEWEST = 6
 """Points of a cell from which its shape is told."""
 
@@ -45,6 +42,12 @@ _LINE = 0.25
 
 _STEEP = 0.35
 """Sine of 20 degrees: branches rise more, arms of lamps and signs and wires don't."""
+
+_UPRIGHT = 0.985
+"""Sine of 80 degrees: edges of houses, pipes and poles stand so, branches seldom."""
+
+_FILLED, _LEVEL, _BOUGH = range(3)
+"""Shapes of cells."""
 
 _SUMS = 10
 """Of a cell: number, sums and sums of products of its points about its middle."""
@@ -90,7 +93,9 @@ class CrownCells:
     is_told : (n,) bool
         Whether it and the cells about it have points enough to tell a shape.
     is_flat : (n,) bool
-        Whether that is a plane or a level line: a wall, a sign, an arm, a wire.
+        Whether that is a plane or a level or upright line: a wall, a sign, an arm, a wire, a pipe.
+    is_bough : (n,) bool
+        Whether it is a line that rises as boughs do.
     slots : (2, m) int64
         Keys of the table and the cell of each, −1: free.
     """
@@ -102,6 +107,7 @@ class CrownCells:
     highest: NDArray[np.float32]
     is_told: NDArray[np.bool_]
     is_flat: NDArray[np.bool_]
+    is_bough: NDArray[np.bool_]
     slots: Integers
 
     def __len__(self) -> int:
@@ -113,10 +119,16 @@ class CrownCells:
         middles: Floats = (self.places + np.float64(0.5)) * CELL_M
         return middles
 
-    def components(self, is_open: NDArray[np.bool_]) -> Integers:
-        """(n,) int64: which cells hang together with each other; −1: not open."""
+    def components(self, is_open: NDArray[np.bool_], link: int) -> Integers:
+        """(n,) int64: which cells hang together with each other; −1: not open.
+
+        Parameters
+        ----------
+        link : int
+            Cells from one to the next at most: 1 where they touch.
+        """
         parts = np.full(len(self), -1, np.int64)
-        components_kernel(self.places, is_open, self.slots, parts)
+        components_kernel(self.places, is_open, self.slots, link, parts)
         return parts
 
 
@@ -139,8 +151,8 @@ def crown_cells(
     1. Each point above the foot of the trunk nearest to it that lies on none of its stems is
        counted in its cell of 0.4 m.
     2. A cell is flat if its points and those of the cells about it lie in a plane or on a line that
-       rises less than branches do. One scan line through a crown is a plane too, hence the cells
-       about it.
+       rises less or more than branches do. One scan line through a crown is a plane too, hence the
+       cells about it.
     """
     slots = np.full((2, _FIRST_SLOTS), _EMPTY_KEY, np.int64)
     sums: NDArray[np.float32] = np.zeros((_FIRST_SLOTS // 2, _SUMS), np.float32)
@@ -162,10 +174,12 @@ def crown_cells(
                 slots = _doubled(slots)
                 sums, boxes, places = _wider(sums), _wider(boxes), _wider(places)
     sums, boxes, trunks, places = sums[:used], boxes[:used], places[:used, 3], places[:used, :3]
-    is_told, is_flat = np.zeros(used, np.bool_), np.zeros(used, np.bool_)
-    shapes_kernel(places, sums, slots, is_told, is_flat)
+    is_told, is_flat, is_bough = np.zeros((3, used), np.bool_)
+    shapes_kernel(places, sums, slots, (is_told, is_flat, is_bough))
     counts = sums[:, 0].astype(np.int64)
-    return CrownCells(places, trunks, counts, boxes[:, :3], boxes[:, 3:], is_told, is_flat, slots)
+    return CrownCells(
+        places, trunks, counts, boxes[:, :3], boxes[:, 3:], is_told, is_flat, is_bough, slots
+    )
 
 
 def _doubled(slots: Integers) -> Integers:
@@ -286,10 +300,10 @@ def shapes_kernel(
     places: Integers,
     sums: NDArray[np.float32],
     slots: Integers,
-    is_told: NDArray[np.bool_],
-    is_flat: NDArray[np.bool_],
+    told: tuple[NDArray[np.bool_], NDArray[np.bool_], NDArray[np.bool_]],
 ) -> None:
-    """Tell of each cell whether its shape is known and whether it is flat."""
+    """Tell of each cell whether its shape is known, whether it is flat, whether a bough."""
+    is_told, is_flat, is_bough = told
     wide = np.zeros(_SUMS)
     for cell in range(len(places)):
         wide[:] = 0.0
@@ -305,12 +319,13 @@ def shapes_kernel(
         if wide[0] < _FEWEST:
             continue
         is_told[cell] = True
-        flat = _is_flat(wide)
-        if flat and sums[cell, 0] >= _FEWEST:
+        shape = _shape(wide)
+        if shape != _FILLED and sums[cell, 0] >= _FEWEST:
             wide[:] = 0.0
             _add_moved(wide, sums[cell], 0.0, 0.0, 0.0)
-            flat = _is_flat(wide)
-        is_flat[cell] = flat
+            shape = _shape(wide)
+        is_flat[cell] = shape == _LEVEL
+        is_bough[cell] = shape == _BOUGH
 
 
 @kernel
@@ -330,8 +345,8 @@ def _add_moved(wide: Floats, row: NDArray[np.float32], x: float, y: float, z: fl
 
 
 @kernel
-def _is_flat(sums: Floats) -> bool:
-    """Whether points lie in a plane or on a line that doesn't rise as branches do.
+def _shape(sums: Floats) -> int:
+    """Whether points lie in a plane or on a line that doesn't rise as branches do, or on one.
 
     References
     ----------
@@ -350,20 +365,20 @@ def _is_flat(sums: Floats) -> bool:
     least = max(third + 2 * size * math.cos(turn + 2 * math.pi / 3), 1e-12)
     middle = max(3 * third - most - least, 1e-12)
     if least >= _FLAT**2 * most:
-        return False
+        return _FILLED
     if middle >= _LINE**2 * most:
-        return True
+        return _LEVEL
     # The square of the direction's height: of (A - middle)(A - least), which leaves the longest.
     square = xz * xz + yz * yz + zz * zz
     rise = (square - (middle + least) * zz + middle * least) / ((most - middle) * (most - least))
-    return bool(rise < _STEEP**2)
+    return _BOUGH if _STEEP**2 <= rise <= _UPRIGHT**2 else _LEVEL
 
 
 @kernel
 def components_kernel(
-    places: Integers, is_open: NDArray[np.bool_], slots: Integers, parts: Integers
+    places: Integers, is_open: NDArray[np.bool_], slots: Integers, link: int, parts: Integers
 ) -> None:
-    """Number the components of open cells with at most one cell between two."""
+    """Number the components of open cells."""
     waiting = np.empty(len(places), np.int64)
     count = 0
     for first in range(len(places)):
@@ -375,9 +390,9 @@ def components_kernel(
         while left > 0:
             left -= 1
             cell = waiting[left]
-            for di in range(-_LINK, _LINK + 1):
-                for dj in range(-_LINK, _LINK + 1):
-                    for dk in range(-_LINK, _LINK + 1):
+            for di in range(-link, link + 1):
+                for dj in range(-link, link + 1):
+                    for dk in range(-link, link + 1):
                         key = _key(places[cell, 0] + di, places[cell, 1] + dj, places[cell, 2] + dk)
                         slot = _slot_of(key, slots)
                         if slots[0, slot] == _EMPTY_KEY:

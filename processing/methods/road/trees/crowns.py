@@ -35,11 +35,22 @@ _AXIS_M = 0.6
 _ABOVE_M = 2.5
 """So far above the highest point that was seen of the stem: the crown hides what goes on."""
 
+_BARE_LINK = 2
+"""Cells from one to the next of a bare crown, boughs included: its gaps are half a metre. Leafy
+ones touch; by boughs and gaps they would reach houses and wires."""
+
+_WHOLE = 20
+"""Cells of a part that may be a crown: 1.3 m³."""
+
 _SECTORS = 12
 """Of 30 degrees."""
 
 _LOWEST_SHARE = 0.01
 """Of the crown's points: lower ones are single leaves."""
+
+_TOP_M = 1.5
+"""A crown's top is so near to its middle or above its trunk; what is higher beside may be a house
+that it touches."""
 
 _FEWEST = 3
 """Points of the cell that is the top of a crown: what is higher is a single shoot or a bird."""
@@ -133,7 +144,8 @@ class CrownShares:
 
     Notes
     -----
-    1. Cells above 1.4 m that are no planes and no lines hang together where they touch.
+    1. Cells above 1.4 m that are no planes and no lines hang together where they touch; where that
+       isn't enough for a crown, boughs too, and with one cell between.
     2. A trunk belongs to the largest part that comes near to its axis above the stem.
     3. Trunks of one part share it out: each cell goes to the trunk that is nearest, measured by
        the width that crowns of such trunks have.
@@ -150,13 +162,19 @@ class CrownShares:
         self._highest = self._feet + _SLENDEREST * diameters + _SLENDER_ROOM_M
         above = self._middles[:, 2] - self._feet[cells.trunks]
         self._is_high = above > _LOW_M
-        self._parts = cells.components(self._is_high & ~cells.is_flat)
+        is_open = self._is_high & ~cells.is_flat
+        self._parts = np.stack(
+            [cells.components(is_open & ~cells.is_bough, 1), cells.components(is_open, _BARE_LINK)]
+        )
         plan = cKDTree(self._middles[:, :2])
         self._near = [
             np.array(plan.query_ball_point(top, 2 * _AXIS_M, return_sorted=True), np.int64)
             for top in self._tops
         ]
-        self._part_of = np.array([self._touched(number) for number in range(len(trunks))], np.int64)
+        self._sizes = [np.bincount(parts[parts >= 0]) for parts in self._parts]
+        touched = [self._touched(number) for number in range(len(trunks))]
+        # Which of both links, and which part.
+        self._part_of = np.array(touched, np.int64).reshape(-1, 2)
 
     def crowns(self, is_asked: NDArray[np.bool_]) -> list[Crown]:
         """What each trunk carries if only those that are asked for share."""
@@ -178,21 +196,20 @@ class CrownShares:
             for number in range(len(self._trunks))
         ]
 
-    def _touched(self, number: int) -> int:
-        """The largest part near the axis above the stem; −1: none."""
+    def _touched(self, number: int) -> tuple[int, int]:
+        """By which link, and the largest part near the axis above the stem; −1: none."""
         about = self._about(number, _AXIS_M)
         up = self._middles[about, 2] - self._feet[number]
         seeds = about[(up > _LOW_M) & (up < self._trunks[number].top_m + _ABOVE_M)]
-        parts = np.unique(self._parts[seeds])
-        parts = parts[parts >= 0]
-        if parts.size == 0:
-            return -1
-        sizes = self._sizes[parts]
-        return int(parts[sizes.argmax()])
-
-    @property
-    def _sizes(self) -> Integers:
-        return np.bincount(self._parts[self._parts >= 0])
+        best = (0, -1)
+        for link, sizes in enumerate(self._sizes):
+            parts = np.unique(self._parts[link, seeds])
+            parts = parts[parts >= 0]
+            if parts.size:
+                best = (link, int(parts[sizes[parts].argmax()]))
+                if sizes[best[1]] >= _WHOLE:
+                    break
+        return best
 
     def _about(self, number: int, reach_m: float) -> Integers:
         """Cells near the end of a trunk in plan."""
@@ -204,10 +221,12 @@ class CrownShares:
         self, number: int, middles: Sequence[_PlanMoments], is_asked: NDArray[np.bool_]
     ) -> float:
         """How ill this trunk's share suits the neighbour that it suits best."""
-        if self._part_of[number] < 0:
+        if self._part_of[number, 1] < 0:
             return 1.0
         away = np.hypot(*(self._tops - self._tops[number]).T)
-        is_rival = is_asked & (self._part_of == self._part_of[number]) & (away < CROWN_M)
+        is_rival = (
+            is_asked & (self._part_of == self._part_of[number]).all(axis=1) & (away < CROWN_M)
+        )
         is_rival[number] = False
         worse = [
             (middles[one] + middles[number]).aside(self._tops[one])
@@ -232,7 +251,9 @@ class CrownShares:
         beside = self._middles[leafy, :2] - self._tops[number]
         away = np.hypot(beside[:, 0], beside[:, 1])
         dense = share[cells.counts[share] >= _FEWEST]
-        highest = cells.highest[dense if dense.size else share, 2].max()
+        inner = dense[self._is_inner(dense, number)]
+        top_of = inner if inner.size else dense if dense.size else share
+        highest = cells.highest[top_of, 2].max()
         return Crown(
             sectors=_filled_sectors(beside[away > CELL_M]),
             cells=int(leafy.size),
@@ -245,6 +266,15 @@ class CrownShares:
             lowest_m=_lowest(cells, share) - foot,
             points=int(cells.counts[share].sum()),
         )
+
+    def _is_inner(self, share: Integers, number: int) -> NDArray[np.bool_]:
+        """Which cells are near the middle of a crown or above the trunk."""
+        if share.size == 0:
+            return np.zeros(0, np.bool_)
+        places = self._middles[share, :2]
+        near = np.hypot(*(places - np.median(places, axis=0)).T) < _TOP_M
+        above = np.hypot(*(places - self._tops[number]).T) < _TOP_M
+        return np.asarray(near | above)
 
     def _gap(self, near: Integers, share: Integers, number: int) -> float:
         """The longest piece of the axis between stem and crown about which nothing was measured."""
@@ -320,13 +350,14 @@ def share_kernel(
     ----------
     trunks : (order, tops, reach, highest, part_of)
         Numbers of those that share, from west to east; of all, where they end, the width that
-        crowns of such have, how high such trees can be, and their part.
+        crowns of such have, how high such trees can be, and their part: of which row of ``parts``,
+        and which.
     shares : (n,) int64
         Written; −1 where no trunk of the part is near.
     """
     order, tops, reach, highest, part_of = trunks
     for cell in range(len(middles)):
-        if parts[cell] < 0:
+        if parts[1, cell] < 0:
             continue
         east, north = middles[cell, 0], middles[cell, 1]
         low, high = 0, order.size
@@ -341,7 +372,10 @@ def share_kernel(
             trunk = order[rank]
             if tops[trunk, 0] > east + CROWN_M:
                 break
-            if part_of[trunk] != parts[cell] or middles[cell, 2] > highest[trunk]:
+            if (
+                part_of[trunk, 1] != parts[part_of[trunk, 0], cell]
+                or middles[cell, 2] > highest[trunk]
+            ):
                 continue
             away = math.hypot(east - tops[trunk, 0], north - tops[trunk, 1])
             if away < CROWN_M and away / reach[trunk] < best:

@@ -7,6 +7,8 @@ on through it, a sign post ends below.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -14,10 +16,14 @@ import numpy as np
 from processing.core.arrays import Floats, Integers
 from processing.core.kernels import kernel
 from processing.methods.road.trees.cone_kernels import NUMBERS, settle_kernel
-from processing.methods.road.trees.stems import BREAST_M, FittedStem
+from processing.methods.road.trees.stems import BREAST_M, THICK_M, FittedStem
+from processing.methods.road.trees.stems import HIGHEST_M as LOOKED_M
 
 HIGHEST_M = 8.0
 """Above the foot: what goes on straight up to there is no trunk with branches below."""
+
+_SEEN_M = LOOKED_M + THICK_M / 2
+"""Up to which height stems are looked for."""
 
 _STEP_M = 0.2
 """Scan lines lie nearer to each other on what is 8 m high beside the road."""
@@ -101,6 +107,25 @@ def rise_of(points: Floats, stem: FittedStem) -> StemRise:
             body = fitted
     thins = float(-body[5] / body[4])
     return StemRise(min(top, HIGHEST_M), thins, _core(points, body, top))
+
+
+def followed(points: Floats, stems: Sequence[FittedStem]) -> tuple[FittedStem, ...]:
+    """Stems up to where they end, of several in one column.
+
+    Twigs and other stems hide one from a height on, and a stem that ended there would be taken for
+    a stake.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        About the foot, of all heights.
+    """
+    if len(stems) < 2:
+        return tuple(stems)
+    return tuple(
+        replace(stem, high_m=max(stem.high_m, min(rise_of(points, stem).high_m, _SEEN_M)))
+        for stem in stems
+    )
 
 
 def _climbed(near: Floats, body: Floats, top: float) -> int:

@@ -22,7 +22,7 @@ from processing.methods.road.objects.ground_heights import ground_heights
 from processing.methods.road.objects.sparse_plan import SparsePlan, plan_of
 from processing.methods.road.trees.crown_cells import StandingStems, crown_cells
 from processing.methods.road.trees.crowns import CROWN_M, Crown, CrownShares, UprightTrunk
-from processing.methods.road.trees.rises import rise_of
+from processing.methods.road.trees.rises import followed, rise_of
 from processing.methods.road.trees.stems import stems_of
 from processing.methods.road.trees.tree_confidence import chance_of, facts_of
 from processing.methods.road.trees.trunks import Trunk, is_round, trunk_of
@@ -237,7 +237,8 @@ def _trunk_at(
     local = gathered.local[part]
     middle = columns.middles[number]
     height = foot_height(local, middle, float(columns.ground[number]))
-    trunk = trunk_of(stems_of(local - (*middle, height), settings.most_diameter_m))
+    about = local - (*middle, height)
+    trunk = trunk_of(followed(about, stems_of(about, settings.most_diameter_m)))
     if trunk is None:
         return None
     stem = trunk.stems[0]

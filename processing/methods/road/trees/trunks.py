@@ -25,6 +25,9 @@ _HIDDEN_M, _SHORT_M = 0.5, 0.2
 """How far above 1.2 m a trunk may come in sight, over stakes and straps, and how far below it may
 end: farther off its taper leaves the diameter open by more than a centimetre."""
 
+_FORK_M = 0.3
+"""Above 1.2 m: circles of a stem that is whole there begin lower, whatever hides a slab or two."""
+
 _STEM_SHARE = 0.35
 """A second stem is at least so thick as the first: thinner ones are shoots. By trial; no
 measurement is recorded."""
@@ -112,10 +115,12 @@ def trunk_of(stems: Sequence[FittedStem]) -> Trunk | None:
     -----
     1. Pieces on one axis are one stem: the better seen counts.
     2. A stem inside a wider one that ends lower has a guard about it.
-    3. Of the others those are stems of the tree that reach as high as the highest, are seen about
+    3. Where a trunk forks above 1.2 m it is the trunk that counts, not what begins there.
+    4. Of the others those are stems of the tree that reach as high as the highest, are seen about
        1.2 m above the foot and are not much thinner than the thickest.
     """
     whole = _without_walls(_without_pieces(stems))
+    whole = [stem for stem in whole if not _is_of_fork(stem, whole)]
     high = [
         stem
         for stem in whole
@@ -137,6 +142,18 @@ def is_round(trunk: Trunk) -> bool:
     """Whether what was seen of the thickest stem can be a trunk."""
     thickest = trunk.stems[0]
     return thickest.arc >= _ROUND
+
+
+def _is_of_fork(stem: FittedStem, others: Sequence[FittedStem]) -> bool:
+    """Whether it begins above 1.2 m at a thicker one, which is what a tape goes round."""
+    return any(
+        one.radius_m > stem.radius_m
+        and one.low_m <= BREAST_M <= one.high_m
+        and stem.low_m > BREAST_M + _FORK_M
+        and np.hypot(*(one.middle_at(stem.low_m) - stem.middle_at(stem.low_m)))
+        < one.radius_m + stem.radius_m
+        for one in others
+    )
 
 
 def _without_walls(stems: Sequence[FittedStem]) -> list[FittedStem]:

@@ -1,0 +1,114 @@
+"""Stems of trees and posts: how far they go on, which are the trunk's, and their girth."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from processing.core.arrays import Floats
+from processing.methods.road.trees.rises import followed, rise_of
+from processing.methods.road.trees.stems import stems_of
+from processing.methods.road.trees.trunks import Trunk, trunk_of
+
+MOST_M = 1.2
+
+
+def bark(
+    diameter_m: float,
+    low_m: float,
+    high_m: float,
+    *,
+    middle: tuple[float, float] = (0.0, 0.0),
+    thins: float = 0.0,
+    oval: float = 0.0,
+) -> Floats:
+    """The half of a stem that one scanner sees, a line of points every 5 cm, with 3 mm of noise."""
+    random = np.random.default_rng(4)
+    up = np.repeat(np.arange(low_m, high_m, 0.05), 24)
+    turn = np.tile(np.linspace(-1.5, 1.5, 24), up.size // 24)
+    radius = diameter_m / 2 - thins * (up - 1.2) + random.normal(0.0, 0.003, up.size)
+    east, north = radius * (1 + oval) * np.cos(turn), radius * (1 - oval) * np.sin(turn)
+    return np.column_stack([middle[0] + east, middle[1] + north, up])
+
+
+def leaves(low_m: float, high_m: float, count: int = 3_000) -> Floats:
+    """Leaves all round."""
+    random = np.random.default_rng(5)
+    turn, away = random.uniform(0, 2 * np.pi, count), 0.9 * np.sqrt(random.random(count))
+    up = random.uniform(low_m, high_m, count)
+    return np.column_stack([away * np.cos(turn), away * np.sin(turn), up])
+
+
+def trunk_in(*parts: Floats) -> Trunk:
+    points = np.vstack(parts)
+    trunk = trunk_of(followed(points, stems_of(points, MOST_M)))
+    assert trunk is not None
+    return trunk
+
+
+def test_a_post_goes_on_through_leaves_to_its_end() -> None:
+    points = np.vstack([bark(0.14, 0.2, 6.0), leaves(2.5, 7.0)])
+    rise = rise_of(points, trunk_in(points).stems[0])
+    assert rise.high_m == pytest.approx(6.0, abs=0.5)
+    assert abs(rise.thins) < 0.02
+
+
+def test_a_pole_with_a_sleeve_goes_on_above_it() -> None:
+    points = np.vstack([bark(0.36, 0.2, 2.4), bark(0.31, 2.4, 7.9)])
+    assert rise_of(points, trunk_in(points).stems[0]).high_m > 7.0
+
+
+def test_a_trunk_ends_where_it_forks_and_is_denser_there_than_a_post_that_ends() -> None:
+    forked = [bark(0.3, 0.2, 2.8), leaves(2.5, 6.0)]
+    boughs = [
+        bark(0.12, 2.8, 4.5, middle=(x, y)) for x, y in ((0.15, 0.1), (-0.15, 0.0), (0.0, -0.2))
+    ]
+    tree = np.vstack([*forked, *boughs])
+    ended = np.vstack([bark(0.06, 0.2, 2.8), leaves(2.5, 6.0)])
+    tree_rise = rise_of(tree, trunk_in(tree).stems[0])
+    post_rise = rise_of(ended, trunk_in(ended).stems[0])
+    assert tree_rise.high_m < 3.6
+    assert post_rise.high_m < 3.6
+    assert tree_rise.core > 1.0 > post_rise.core
+
+
+def test_a_stem_that_twigs_hide_from_a_height_on_is_no_stake() -> None:
+    hidden = np.vstack([bark(0.09, 0.2, 1.7), bark(0.09, 2.3, 4.0)])
+    other = bark(0.1, 0.2, 4.0, middle=(0.0, 0.4))
+    stake = bark(0.06, 0.2, 1.4, middle=(0.0, -0.3))
+    trunk = trunk_in(hidden, other, stake)
+    assert len(trunk.stems) == 2
+    assert trunk.diameter_m == pytest.approx(0.7 * 0.19, abs=0.012)
+
+
+def test_of_a_trunk_that_forks_below_the_tape_each_stem_counts() -> None:
+    below = bark(0.3, 0.2, 0.7)
+    stems = [bark(0.16, 0.7, 3.5, middle=(0.0, y)) for y in (-0.15, 0.15)]
+    trunk = trunk_in(below, *stems)
+    assert len(trunk.stems) == 2
+    assert trunk.girth_m == pytest.approx(0.7 * 2 * math.pi * 0.16, abs=0.03)
+
+
+def test_of_a_trunk_that_forks_above_the_tape_the_trunk_counts() -> None:
+    trunk_below = bark(0.3, 0.2, 1.9)
+    stems = [bark(0.16, 1.9, 4.0, middle=(0.0, y)) for y in (-0.2, 0.2)]
+    trunk = trunk_in(trunk_below, *stems)
+    assert trunk.girth_m == pytest.approx(math.pi * 0.3, abs=0.03)
+
+
+def test_the_girth_of_an_oval_trunk_is_that_of_its_ellipse() -> None:
+    points = np.vstack(
+        [bark(0.3, 0.2, 2.6, oval=0.05), bark(0.3, 0.2, 2.6, oval=0.05) * (-1, 1, 1)]
+    )
+    # Ramanujan's formula; of so round an ellipse that of the mean radius but for a thousandth.
+    assert trunk_in(points).girth_m == pytest.approx(math.pi * 0.3, abs=0.012)
+    assert trunk_in(points).diameter_within_m < 0.02
+
+
+def test_a_piece_of_a_wall_beside_a_trunk_is_none() -> None:
+    wall = bark(1.1, 0.2, 2.6, middle=(0.0, 0.9))
+    narrow = wall[np.abs(wall[:, 1] - 0.9) < 0.25]
+    trunk = trunk_in(bark(0.16, 0.2, 2.6), narrow)
+    assert trunk.diameter_m == pytest.approx(0.16, abs=0.01)
