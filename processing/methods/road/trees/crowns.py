@@ -42,9 +42,6 @@ ones touch; by boughs and gaps they would reach houses and wires."""
 _WHOLE = 20
 """Cells of a part that may be a crown: 1.3 m³."""
 
-_SECTORS = 12
-"""Of 30 degrees."""
-
 _LOWEST_SHARE = 0.01
 """Of the crown's points: lower ones are single leaves."""
 
@@ -73,8 +70,6 @@ class Crown:
 
     Attributes
     ----------
-    sectors : int
-        Of twelve about the axis, those that twigs fill.
     cells : int
         That twigs fill: 0.064 m³ each.
     flat_share : float
@@ -97,7 +92,6 @@ class Crown:
         Of the crown.
     """
 
-    sectors: int
     cells: int
     flat_share: float
     aside: float
@@ -248,14 +242,11 @@ class CrownShares:
         if leafy.size == 0:
             highest = cells.highest[self._about(number, _AXIS_M), 2].max(initial=foot + top)
             return _bare(max(top, float(highest) - foot), flat_share)
-        beside = self._middles[leafy, :2] - self._tops[number]
-        away = np.hypot(beside[:, 0], beside[:, 1])
         dense = share[cells.counts[share] >= _FEWEST]
         inner = dense[self._is_inner(dense, number)]
         top_of = inner if inner.size else dense if dense.size else share
         highest = cells.highest[top_of, 2].max()
         return Crown(
-            sectors=_filled_sectors(beside[away > CELL_M]),
             cells=int(leafy.size),
             flat_share=flat_share,
             aside=_PlanMoments.of(self._middles[leafy, :2]).aside(self._tops[number]),
@@ -324,7 +315,6 @@ class _PlanMoments:
 def _bare(height_m: float, flat_share: float = 1.0) -> Crown:
     """Of what carries none."""
     return Crown(
-        sectors=0,
         cells=0,
         flat_share=flat_share,
         aside=1.0,
@@ -381,11 +371,6 @@ def share_kernel(
             if away < CROWN_M and away / reach[trunk] < best:
                 best = away / reach[trunk]
                 shares[cell] = trunk
-
-
-def _filled_sectors(beside: Floats) -> int:
-    turn = np.arctan2(beside[:, 1], beside[:, 0]) / (2 * np.pi) + 0.5
-    return int(np.unique((turn * _SECTORS).astype(np.int64) % _SECTORS).size)
 
 
 def _lowest(cells: CrownCells, share: Integers) -> float:

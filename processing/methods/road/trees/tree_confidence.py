@@ -44,14 +44,15 @@ _MOST_NOISE_M = 1.4826 * TOLERANCE_M / 2
 _MOST_LOGIT = 30.0
 """Guard of the exponential."""
 
-# Learnt by `python -m processing.laboratory.road_training.tree_training` from 1,346 upright things,
-# 179 of them trees, on avenues of seeds 600 to 615 and worn streets of seeds 540 to 551. Left out
-# one street at a time, 99 % of 102 given 0.9 and more were trees, 79 % of 47 from 0.7, 65 % of 26
-# from 0.5, 35 % of 26 from 0.3, 6 % of 50 from 0.1, 1 % of 1,095 below. Those of posts are mostly
-# tapered lamps of 5 m that end within a crown, those of shrubs have stems of a metre.
+# Learnt by `python -m processing.laboratory.road_training.tree_training` from 1,234 upright things,
+# 165 of them trees, on avenues of seeds 600 to 615 and worn streets of seeds 540, 541, 544 to 547,
+# 549 and 550. Left out one street at a time, 97 % of 107 given 0.9 and more were trees, 88 % of 34
+# from 0.7, 60 % of 20 from 0.5, 26 % of 19 from 0.3, 17 % of 48 from 0.1, 1 % of 1,006 below. Posts
+# among the likely ones are mostly tapered lamps of 5 m that end within a crown; shrubs with stems
+# of a metre are next.
 WEIGHTS = (
-    *(-5.74, 0.34, 1.91, -9.67, -2.98, -2.01, -5.38, 3.22, 0.98, -2.24),
-    *(0.85, -2.88, -0.12, 0.38),
+    *(-6.95, 2.47, -6.71, -3.02, -2.22, -4.84, 3.36, 0.93, -3.40),
+    *(1.36, -3.83, -0.85, 0.57),
 )
 """A constant, and in the order of the facts."""
 
@@ -61,8 +62,6 @@ class TreeFacts(NamedTuple):
 
     Attributes
     ----------
-    sectors : float
-        Share of the directions about the axis that twigs fill.
     filled : float
         Decimal logarithm of the cells that twigs fill, and one.
     flat : float
@@ -91,7 +90,6 @@ class TreeFacts(NamedTuple):
         How much denser points lie about its axis above than beside it, as a power of two, −3 to 3.
     """
 
-    sectors: float
     filled: float
     flat: float
     aside: float
@@ -112,7 +110,6 @@ def facts_of(upright: UprightTrunk, crown: Crown) -> TreeFacts:
     begins = crown.lowest_m if math.isfinite(crown.lowest_m) else upright.rise.high_m
     into = max(0.0, min(upright.rise.high_m - max(begins, stem.high_m), _MOST_RISE_M))
     return TreeFacts(
-        sectors=crown.sectors / 12,
         filled=math.log10(1 + crown.cells),
         flat=crown.flat_share,
         aside=min(crown.aside, 1.0),
