@@ -22,6 +22,7 @@ from processing.laboratory.bench.cases.review_case import measure_review
 from processing.laboratory.bench.cases.road_case import measure_road
 from processing.laboratory.bench.cases.simulate_case import measure_simulate
 from processing.laboratory.bench.cases.start_case import measure_start
+from processing.laboratory.bench.cases.tree_case import measure_trees
 from processing.laboratory.bench.cases.volume_cases import (
     measure_volume,
     measure_volume_tin,
@@ -49,6 +50,7 @@ CASES: Mapping[str, BenchmarkCase] = {
     "ground": measure_ground,
     "simulate": measure_simulate,
     "road": measure_road,
+    "trees": measure_trees,
     "volume": measure_volume,
     "volume-tin": measure_volume_tin,
     "volume-view": measure_volume_view,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -20,11 +21,13 @@ from tests.processing.methods.road.bad_recordings import (
     DrivenRecording,
     Floats,
     RunOutcome,
+    delivered,
     facing_along,
     recorded,
     road_along,
     straight,
     told_by,
+    told_of,
 )
 
 LENGTH_M = 30.0
@@ -236,3 +239,10 @@ def test_the_circles_of_a_trunk_are_told_where_they_are(
         assert one.outcomes[0].value == pytest.approx(OLD_DIAMETER_M, abs=0.1)
         assert math.dist(one.xyz[:2], place[:2]) < 0.03
         assert 0.2 < one.xyz[2] - place[2] < 2.8
+
+
+def test_without_a_trajectory_trees_are_found_all_the_same(tmp_path: Path) -> None:
+    way = straight(AVENUE_M)
+    driven = DrivenRecording(way, facing_along(way), avenue(), head=HEAD_45, pulses=1_000)
+    request = replace(delivered(driven, tmp_path), trajectories=())
+    assert len(told_of("trees", request, tmp_path).candidates) == 2

@@ -18,6 +18,7 @@ from processing.laboratory.bench.cases.peer_cases import measure_normals, measur
 from processing.laboratory.bench.cases.road_case import measure_road
 from processing.laboratory.bench.cases.road_run import StageWatch
 from processing.laboratory.bench.cases.simulate_case import measure_simulate
+from processing.laboratory.bench.cases.tree_case import measure_trees
 from processing.laboratory.bench.cases.volume_cases import (
     measure_volume,
     measure_volume_tin,
@@ -79,6 +80,13 @@ def test_noise_is_compared_with_a_peer_and_the_combined_has_a_time() -> None:
         assert row.value is not None
         assert row.value > 0
         assert row.target is not None
+
+
+def test_trees_are_measured_on_an_avenue() -> None:
+    (row,) = measure_trees(LITTLE)
+    assert row.name == "trees"
+    assert row.value is not None
+    assert row.value > 0
 
 
 def test_curbs_and_gutters_have_times_by_stage_and_length() -> None:
