@@ -169,7 +169,7 @@ def avenue() -> tuple[TriangleShape, ...]:
     half = np.array([3.1, 2.6, 2.2])
     boughs = [
         tube(
-            np.array([moved(foot, 0.0, 0.0, 2.6), moved(foot, *(1.8 * way), 4.2)]),
+            np.array([moved(foot, 0.0, 0.0, 2.6), moved(foot, 1.8 * way[0], 1.8 * way[1], 4.2)]),
             np.array([0.09, 0.03]),
             8,
         )
