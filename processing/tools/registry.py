@@ -19,6 +19,7 @@ from processing.tools.gutters import GUTTERS
 from processing.tools.noise import NOISE
 from processing.tools.normals import NORMALS
 from processing.tools.segments import SEGMENTS
+from processing.tools.signs import SIGNS
 from processing.tools.template import TEMPLATE
 from processing.tools.tool import Comparison, Tool
 from processing.tools.trees import TREES
@@ -28,6 +29,7 @@ _DECLARED = (
     CURBS,
     GUTTERS,
     TREES,
+    SIGNS,
     NOISE,
     GROUND_TOOL,
     NORMALS,

@@ -1,0 +1,54 @@
+"""From which intensity on a thing shines back at the laser as the face of a sign does.
+
+Beads and prisms of a sign's face send back many times what a white wall does. Scales of intensity
+differ between scanners and with the range, so what is bright is told by what else a head measured
+at that range.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.core.arrays import Floats
+
+CLASSES = 10
+"""Of ranges: up to 4 m, and nine of which each ends half as far again, the last one beyond 100 m."""
+
+_LEAST_POINTS = 400
+"""Of a range class that tells its own limit; others take that of all."""
+
+_SPREADS = 4.5
+"""How many times the step from the middle of all intensities to their 84 % lies above the middle
+what nothing diffuse reaches. Reflectances beside a road run from 0.1 to 0.6 about 0.35: white is
+about two steps above the middle, a sign's face of the least class at a thirtieth of its design
+value (JIS Z 9117: 70 cd/lx/m² against 0.3 of a white wall) twenty and more."""
+
+
+def bright_bounds(intensity: NDArray[np.uint16], classes: NDArray[np.int64]) -> Floats:
+    """The least intensity of a bright point, for each class of ranges.
+
+    Parameters
+    ----------
+    intensity : (n,) uint16
+        Of points of upright things.
+    classes : (n,) int64
+        Range class of each.
+
+    Returns
+    -------
+    (CLASSES,) float64
+        Infinite where nothing was measured or a recording has no intensity.
+    """
+    bounds = np.full(CLASSES, np.inf)
+    if intensity.size == 0 or not intensity.any():
+        return bounds
+    middles = np.full(CLASSES, float(np.median(intensity)))
+    for number in range(CLASSES):
+        chosen = intensity[classes == number]
+        if chosen.size >= _LEAST_POINTS:
+            middles[number] = float(np.median(chosen))
+    middles = np.maximum(middles, 1.0)
+    # One spread for all: far away a single wall may be all that there is.
+    step = float(np.quantile(intensity / middles[classes], 0.84)) - 1.0
+    return np.asarray(middles * (1.0 + _SPREADS * step)) if step > 0 else bounds

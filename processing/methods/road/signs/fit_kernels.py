@@ -1,0 +1,378 @@
+"""Loops that lay outlines on the scan lines of a plate: where each lies best, and how well.
+
+A scan line that crosses a plate tells two places of its rim: between the last pulse on the plate
+and the next one that missed it. So an outline fits where it leaves each line within one spacing
+of pulses beyond its end. An end with something nearer before it tells only that the plate reaches
+at least so far, and a turn of the scanner that met nothing tells that no plate was there.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from processing.core.arrays import Floats, Integers
+from processing.core.kernels import kernel
+
+LINE = 8
+U, V, ALONG_U, ALONG_V, LONG, SPACING, OPEN_START, OPEN_END = range(LINE)
+"""Values of a line: its start (m), direction, length, spacing of its pulses; 1 where the rim lies
+within a spacing of an end, 0 where the plate may go on behind something, −1 of a line that met
+nothing from its start on."""
+
+SIGMA_M = 0.012
+"""How far ends lie off: noise, the width of the beam, an outline that was bent."""
+
+CAP = 9.0
+"""Most that an end counts: what is farther off than three times that is another thing."""
+
+SPLIT_M = 3 * SIGMA_M
+"""What goes on so far beyond an outline belongs to another plate."""
+
+ROLL_RAD = math.radians(3.0)
+"""How far plates hang askew: posts lean and clamps turn by some degrees."""
+
+_MISSED_M = 0.05
+"""How far turns that met nothing lie off where they are expected."""
+
+_PULL = 0.25
+"""Of the middle of the interval that an end leaves: where nothing else tells, the likeliest place
+is the middle; small against what lies outside of it."""
+
+_MOST_ROLL_RAD = math.radians(12.0)
+_ROLL_PER_M = 2.0
+"""rad/m; so much a plate is turned where it is moved by a metre: the same at half a metre from its
+middle."""
+
+_FINE_STEP_M = 0.05
+"""Plates are turned in steps finer than this."""
+
+_ROUNDS = 16
+"""Steps of one length at most."""
+
+STARTS = 9
+"""Places from which an outline is moved, at most."""
+
+
+@kernel
+def chord_of(corners: Floats, line: Floats, pose: Floats) -> tuple[float, float]:
+    """Where a line enters and leaves an outline, m from the line's start.
+
+    The second is less than the first where it passes beside it.
+
+    Parameters
+    ----------
+    corners : (n, 2)
+        Of a convex outline, anticlockwise; of a circle one: its radius.
+    """
+    c, s = math.cos(pose[2]), math.sin(pose[2])
+    du, dv = line[U] - pose[0], line[V] - pose[1]
+    u, v = c * du + s * dv, c * dv - s * du
+    a, b = c * line[ALONG_U] + s * line[ALONG_V], c * line[ALONG_V] - s * line[ALONG_U]
+    if corners.shape[0] == 1:
+        along = -(u * a + v * b)
+        inside = corners[0, 0] ** 2 - (u * u + v * v - along * along)
+        if inside < 0.0:
+            return 1.0, 0.0
+        half = math.sqrt(inside)
+        return along - half, along + half
+    enters, leaves = -1e9, 1e9
+    count = corners.shape[0]
+    for k in range(count):
+        following = k + 1 if k + 1 < count else 0
+        eu, ev = corners[following, 0] - corners[k, 0], corners[following, 1] - corners[k, 1]
+        # Left of each side is inside: side × (place − corner) ≥ 0.
+        height = eu * (v - corners[k, 1]) - ev * (u - corners[k, 0])
+        slope = eu * b - ev * a
+        if abs(slope) < 1e-12:
+            if height < 0.0:
+                return 1.0, 0.0
+            continue
+        at = -height / slope
+        if slope > 0.0:
+            enters = max(enters, at)
+        else:
+            leaves = min(leaves, at)
+    return enters, leaves
+
+
+@kernel
+def _end_cost(beyond: float, spacing: float, is_open: float, sigma_m: float) -> float:
+    """What an end says against a rim so far beyond it."""
+    off = 0.0
+    if beyond < 0.0:
+        off = -beyond / sigma_m
+    elif is_open > 0.0 and beyond > spacing:
+        off = (beyond - spacing) / sigma_m
+    cost = off * off
+    if is_open > 0.0:
+        middle = (beyond - spacing / 2) / max(spacing, 1e-3)
+        cost += _PULL * min(middle * middle, 1.0)
+    return min(cost, CAP)
+
+
+@kernel
+def cost_of(corners: Floats, lines: Floats, pose: Floats, sigma_m: float, enough: float) -> float:
+    """What all lines say against an outline; no more than `enough` is added up."""
+    total = (pose[2] / ROLL_RAD) ** 2
+    for k in range(lines.shape[0]):
+        if total > enough:
+            break
+        line = lines[k]
+        enters, leaves = chord_of(corners, line, pose)
+        if line[OPEN_START] < 0.0:
+            missed = leaves - max(enters, 0.0) - line[SPACING]
+            if missed > 0.0:
+                total += min((missed / max(_MISSED_M, sigma_m)) ** 2, CAP)
+        elif leaves <= enters:
+            total += 2 * CAP
+        else:
+            total += _end_cost(-enters, line[SPACING], line[OPEN_START], sigma_m)
+            total += _end_cost(leaves - line[LONG], line[SPACING], line[OPEN_END], sigma_m)
+    return total
+
+
+@kernel
+def fit_kernel(
+    corners: Floats, lines: Floats, steps: Floats, sigma_m: float, pose: Floats
+) -> float:
+    """Move an outline to where it fits best; gives the cost there.
+
+    Parameters
+    ----------
+    corners : (n, 2)
+    lines : (m, LINE)
+    steps : (k,)
+        m, falling.
+    pose : (3,)
+        Right and up (m) and roll (rad); where to begin, made better.
+    """
+    best = cost_of(corners, lines, pose, sigma_m, math.inf)
+    trial = np.empty(3)
+    for number in range(steps.shape[0]):
+        step = steps[number]
+        for _ in range(_ROUNDS):
+            moved = False
+            for way in range(10 if step <= _FINE_STEP_M else 8):
+                trial[:] = pose
+                if way < 8:
+                    turn = way * math.pi / 4
+                    trial[0] += step * math.cos(turn)
+                    trial[1] += step * math.sin(turn)
+                else:
+                    trial[2] += _ROLL_PER_M * step * (1.0 if way == 8 else -1.0)
+                    if abs(trial[2]) > _MOST_ROLL_RAD:
+                        continue
+                cost = cost_of(corners, lines, trial, sigma_m, best)
+                if cost < best - 1e-9:
+                    best = cost
+                    pose[:] = trial
+                    moved = True
+            if not moved:
+                break
+    return best
+
+
+@kernel
+def search_kernel(
+    outlines: Floats,
+    counts: Integers,
+    lines: Floats,
+    box: Floats,
+    steps: Floats,
+    costs: Floats,
+    poses: Floats,
+) -> None:
+    """Lay each of some outlines on lines, from the middle of a box and from its sides.
+
+    Parameters
+    ----------
+    outlines : (t, c, 2)
+    counts : (t,)
+        Corners of each; 0 leaves it out.
+    box : (2, 2)
+        Lowest and highest right and up, m.
+    steps : (k,)
+        m, falling; the largest is what ends may lie off, too.
+    costs : (t, STARTS), poses : (t, STARTS, 3)
+        Filled; infinite where a start is not needed.
+    """
+    for number in range(outlines.shape[0]):
+        costs[number, :] = math.inf
+        if counts[number] == 0:
+            continue
+        corners = outlines[number, : counts[number]]
+        wide, high = _size_of(corners)
+        spare_u = box[1, 0] - box[0, 0] - wide
+        spare_v = box[1, 1] - box[0, 1] - high
+        start = 0
+        for i in range(-1, 2):
+            for j in range(-1, 2):
+                if (i != 0 and spare_u < steps[0]) or (j != 0 and spare_v < steps[0]):
+                    continue
+                pose = poses[number, start]
+                pose[0] = (box[0, 0] + box[1, 0]) / 2 + i * spare_u / 2
+                pose[1] = (box[0, 1] + box[1, 1]) / 2 + j * spare_v / 2
+                pose[2] = 0.0
+                costs[number, start] = fit_kernel(corners, lines, steps, steps[0], pose)
+                start += 1
+
+
+@kernel
+def _size_of(corners: Floats) -> tuple[float, float]:
+    if corners.shape[0] == 1:
+        return 2 * corners[0, 0], 2 * corners[0, 0]
+    return (
+        corners[:, 0].max() - corners[:, 0].min(),
+        corners[:, 1].max() - corners[:, 1].min(),
+    )
+
+
+@kernel
+def stretch_kernel(
+    lines: Floats, steps: Floats, pose: Floats, sides: Floats, fixed: Floats
+) -> float:
+    """Move and stretch a rectangle to where it fits best; gives the cost there.
+
+    Parameters
+    ----------
+    sides : (2,)
+        Width and height, m; made better.
+    fixed : (2,)
+        1 for a side that is kept.
+    """
+    corners = np.empty((4, 2))
+    _set_corners(corners, sides[0], sides[1])
+    best = math.inf
+    trial, other = np.empty(3), np.empty(2)
+    for number in range(steps.shape[0]):
+        step = steps[number]
+        sigma_m = max(SIGMA_M, step / 2)
+        _set_corners(corners, sides[0], sides[1])
+        best = cost_of(corners, lines, pose, sigma_m, math.inf)
+        for _ in range(_ROUNDS):
+            moved = False
+            for way in range(14 if step <= _FINE_STEP_M else 12):
+                trial[:] = pose
+                other[:] = sides
+                sign = 1.0 if way % 2 == 0 else -1.0
+                if way < 8:
+                    axis = way // 4
+                    if fixed[axis] > 0.0:
+                        continue
+                    # One side of the rectangle moves, the opposite one stays.
+                    other[axis] += sign * step
+                    trial[axis] += (0.5 if way % 4 < 2 else -0.5) * step
+                elif way < 12:
+                    trial[(way - 8) // 2] += sign * step
+                else:
+                    trial[2] += _ROLL_PER_M * step * sign
+                    if abs(trial[2]) > _MOST_ROLL_RAD:
+                        continue
+                if other[0] < 0.05 or other[1] < 0.05:
+                    continue
+                _set_corners(corners, other[0], other[1])
+                cost = cost_of(corners, lines, trial, sigma_m, best)
+                if cost < best - 1e-9:
+                    best = cost
+                    pose[:] = trial
+                    sides[:] = other
+                    moved = True
+            if not moved:
+                break
+    return best
+
+
+@kernel
+def _set_corners(corners: Floats, wide: float, high: float) -> None:
+    corners[0, 0], corners[0, 1] = -wide / 2, -high / 2
+    corners[1, 0], corners[1, 1] = wide / 2, -high / 2
+    corners[2, 0], corners[2, 1] = wide / 2, high / 2
+    corners[3, 0], corners[3, 1] = -wide / 2, high / 2
+
+
+@kernel
+def explain_kernel(
+    corners: Floats, lines: Floats, pose: Floats, rest: Floats, blocked: Floats
+) -> tuple[float, int, float, int, int]:
+    """What an outline explains of lines.
+
+    Parameters
+    ----------
+    rest : (2 m, LINE)
+        Filled with what is left of the lines: those beside it and what goes on beyond it.
+    blocked : (2 m, LINE)
+        Filled with where no plate can be: beyond free ends.
+
+    Returns
+    -------
+    cost, ends, pulses, lines left, lines blocked
+        Cost and number of the ends on it, and how many pulses met it.
+    """
+    cost, ends, pulses, left, free = 0.0, 0, 0.0, 0, 0
+    for k in range(lines.shape[0]):
+        line = lines[k]
+        enters, leaves = chord_of(corners, line, pose)
+        low, high = max(enters, 0.0), min(leaves, line[LONG])
+        if leaves <= enters or high - low < 0.25 * min(line[LONG], 0.1):
+            rest[left] = line
+            left += 1
+            continue
+        pulses += (high - low) / line[SPACING] + 1.0
+        if enters > SPLIT_M:
+            _cut(line, 0.0, enters, rest[left])
+            left += 1
+        else:
+            cost += _end_cost(-enters, line[SPACING], line[OPEN_START], SIGMA_M)
+            ends += 1
+            if line[OPEN_START] > 0.0:
+                _block(line, -line[SPACING], -1.0, blocked[free])
+                free += 1
+        if line[LONG] - leaves > SPLIT_M:
+            _cut(line, leaves, line[LONG], rest[left])
+            left += 1
+        else:
+            cost += _end_cost(leaves - line[LONG], line[SPACING], line[OPEN_END], SIGMA_M)
+            ends += 1
+            if line[OPEN_END] > 0.0:
+                _block(line, line[LONG] + line[SPACING], 1.0, blocked[free])
+                free += 1
+    return cost, ends, pulses, left, free
+
+
+@kernel
+def _cut(line: Floats, start: float, end: float, part: Floats) -> None:
+    """A part of a line; where it was cut, another plate begins somewhere."""
+    part[:] = line
+    part[U] = line[U] + start * line[ALONG_U]
+    part[V] = line[V] + start * line[ALONG_V]
+    part[LONG] = end - start
+    if start > 0.0:
+        part[OPEN_START] = 0.0
+    if end < line[LONG]:
+        part[OPEN_END] = 0.0
+
+
+@kernel
+def _block(line: Floats, start: float, sign: float, beyond: Floats) -> None:
+    """Where a line goes on in the free."""
+    beyond[:] = line
+    beyond[U] = line[U] + start * line[ALONG_U]
+    beyond[V] = line[V] + start * line[ALONG_V]
+    beyond[ALONG_U], beyond[ALONG_V] = sign * line[ALONG_U], sign * line[ALONG_V]
+    beyond[LONG] = 0.0
+    beyond[OPEN_START] = -1.0
+
+
+def warm_up() -> None:
+    """Compile the kernels."""
+    lines = np.array([[-0.1, 0.0, 1.0, 0.0, 0.2, 0.02, 1.0, 1.0]])
+    corners = np.array([[-0.1, -0.1], [0.1, -0.1], [0.1, 0.1], [-0.1, 0.1]])
+    steps, pose = np.array([0.01]), np.zeros(3)
+    fit_kernel(corners, lines, steps, SIGMA_M, pose)
+    stretch_kernel(lines, steps, pose, np.full(2, 0.2), np.zeros(2))
+    costs, poses = np.zeros((1, STARTS)), np.zeros((1, STARTS, 3))
+    box = np.array([[-0.1, -0.1], [0.1, 0.1]])
+    search_kernel(corners[None], np.array([4]), lines, box, steps, costs, poses)
+    explain_kernel(corners, lines, pose, np.empty((2, LINE)), np.empty((2, LINE)))

@@ -1,0 +1,200 @@
+"""Loops that link pieces of neighbouring scan lines which lie in one upright plane."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.core.arrays import Floats, Integers
+from processing.core.kernels import kernel
+from processing.methods.road.signs.piece_kernels import COUNT, FROM, PIECE, TO, VIEW
+
+FLAT_M = 0.02
+"""Both ends of a piece lie so near to a plate's plane: noise of centimetres at most, and plates
+that were bent; posts stand farther behind it."""
+
+STEEPEST = math.sin(math.radians(20.0))
+"""Of a plate's normal: large ones look down by some degrees, worn ones lean by ten and more."""
+
+_SAME_LINE_M = 0.03
+"""Two pieces whose lines lie nearer to each other say nothing about a plane."""
+
+_SAME_WAY = math.sin(math.radians(10.0))
+
+_MISSED_TURNS = 3
+"""That a plate may lack: leaves and things that pass before it."""
+
+_TRIED = 12
+"""Longest pieces of a group, of which each two are tried for its plane."""
+
+
+@kernel
+def link_kernel(
+    values: Floats, rows: Integers, is_bright: NDArray[np.bool_], reach_m: float, group: Integers
+) -> None:
+    """Number groups of linked pieces of one drive.
+
+    Parameters
+    ----------
+    values : (n, PIECE)
+    rows : (n,)
+        The turn of each, rising.
+    reach_m : float
+        Between the lines of neighbours, at most.
+    group : (n,)
+        Filled: a piece of its group, the same for all of them.
+    """
+    count = len(rows)
+    for piece in range(count):
+        group[piece] = piece
+    first = 0
+    for b in range(count):
+        while rows[first] < rows[b] - _MISSED_TURNS:
+            first += 1
+        for a in range(first, b):
+            if _are_linked(values, a, b, is_bright, reach_m):
+                one, other = _root(group, a), _root(group, b)
+                group[max(one, other)] = min(one, other)
+    for piece in range(count):
+        group[piece] = _root(group, piece)
+
+
+@kernel
+def _root(group: Integers, piece: int) -> int:
+    while group[piece] != piece:
+        group[piece] = group[group[piece]]
+        piece = group[piece]
+    return piece
+
+
+@kernel
+def _are_linked(
+    values: Floats, a: int, b: int, is_bright: NDArray[np.bool_], reach_m: float
+) -> bool:
+    """Whether two pieces are near each other and span an upright plane."""
+    most = 0.0
+    for axis in range(3):
+        middles = abs(
+            values[a, FROM + axis] + values[a, TO + axis]
+            - values[b, FROM + axis] - values[b, TO + axis]
+        ) / 2  # fmt: skip
+        most = max(most, middles)
+    normal = np.empty(3)
+    off, is_same = _plane_of(values, a, b, normal)
+    half = 0.5 * max(_length(values, a), _length(values, b))
+    if off > reach_m or most > reach_m + half:
+        return False
+    if is_same:
+        return is_bright[a] == is_bright[b]
+    if abs(normal[2]) > STEEPEST:
+        return False
+    view_a, view_b = 0.0, 0.0
+    for axis in range(3):
+        view_a += values[a, VIEW + axis] * normal[axis]
+        view_b += values[b, VIEW + axis] * normal[axis]
+    if is_bright[a] != is_bright[b] and view_a * view_b > 0:
+        return False
+    return _is_flat(values, b, values[a], normal)
+
+
+@kernel
+def _length(values: Floats, piece: int) -> float:
+    long = 0.0
+    for axis in range(3):
+        long += (values[piece, TO + axis] - values[piece, FROM + axis]) ** 2
+    return math.sqrt(long)
+
+
+@kernel
+def _is_flat(values: Floats, piece: int, base: Floats, normal: Floats) -> bool:
+    """Whether both ends of a piece lie in the plane through the middle of another one."""
+    start, end = 0.0, 0.0
+    for axis in range(3):
+        middle = (base[FROM + axis] + base[TO + axis]) / 2
+        start += (values[piece, FROM + axis] - middle) * normal[axis]
+        end += (values[piece, TO + axis] - middle) * normal[axis]
+    return abs(start) <= FLAT_M and abs(end) <= FLAT_M
+
+
+@kernel
+def _plane_of(values: Floats, a: int, b: int, normal: Floats) -> tuple[float, bool]:
+    """The normal of the plane of two pieces, how far their lines are apart, whether they are one.
+
+    Where their lines meet their directions span it, else one direction and what lies between.
+    """
+    long_a, long_b = max(_length(values, a), 1e-9), max(_length(values, b), 1e-9)
+    one, other, between = np.empty(3), np.empty(3), np.empty(3)
+    dot = 0.0
+    for axis in range(3):
+        one[axis] = (values[a, TO + axis] - values[a, FROM + axis]) / long_a
+        other[axis] = (values[b, TO + axis] - values[b, FROM + axis]) / long_b
+        between[axis] = (
+            values[b, FROM + axis] + values[b, TO + axis]
+            - values[a, FROM + axis] - values[a, TO + axis]
+        ) / 2  # fmt: skip
+        dot += between[axis] * one[axis]
+    off = 0.0
+    for axis in range(3):
+        between[axis] -= dot * one[axis]
+        off += between[axis] ** 2
+    off = math.sqrt(off)
+    if off < _SAME_LINE_M:
+        between[:] = other
+    size = 0.0
+    for axis in range(3):
+        p, q = (axis + 1) % 3, (axis + 2) % 3
+        normal[axis] = one[p] * between[q] - one[q] * between[p]
+        size += normal[axis] ** 2
+    size = math.sqrt(size)
+    is_same = off < _SAME_LINE_M and size < _SAME_WAY
+    for axis in range(3):
+        normal[axis] /= max(size, 1e-9)
+    return off, is_same
+
+
+@kernel
+def plane_kernel(values: Floats, members: Integers, chosen: NDArray[np.bool_]) -> float:
+    """Choose the pieces in the upright plane of two of them that holds the most points.
+
+    Parameters
+    ----------
+    members : (k,)
+        Pieces of a group, those with the most points first.
+    chosen : (k,)
+        Filled.
+
+    Returns
+    -------
+    float
+        The points of those that were chosen; 0: no two pieces span an upright plane.
+    """
+    most = 0.0
+    normal, best = np.empty(3), np.zeros(3)
+    base = -1
+    tried = min(len(members), _TRIED)
+    for first in range(tried):
+        for second in range(first + 1, tried):
+            a, b = members[first], members[second]
+            _, is_same = _plane_of(values, a, b, normal)
+            if is_same or abs(normal[2]) > STEEPEST:
+                continue
+            points, pieces = 0.0, 0
+            for k in range(len(members)):
+                if _is_flat(values, members[k], values[a], normal):
+                    points += values[members[k], COUNT]
+                    pieces += 1
+            if points > most and pieces > 1:
+                most, base = points, a
+                best[:] = normal
+    for k in range(len(members)):
+        chosen[k] = base >= 0 and _is_flat(values, members[k], values[base], best)
+    return most
+
+
+def warm_up() -> None:
+    """Compile the kernels."""
+    values, rows = np.zeros((2, PIECE)), np.zeros(2, np.int64)
+    link_kernel(values, rows, np.zeros(2, np.bool_), 0.3, np.zeros(2, np.int64))
+    plane_kernel(values, np.arange(2), np.zeros(2, np.bool_))

@@ -1,0 +1,344 @@
+"""Plates laid on scan lines: which shapes of which sizes hang in a plane, and where."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from processing.core.arrays import Floats, Integers
+from processing.methods.road.signs.fit_kernels import (
+    ALONG_U,
+    ALONG_V,
+    CAP,
+    LINE,
+    LONG,
+    SIGMA_M,
+    SPACING,
+    STARTS,
+    U,
+    V,
+    cost_of,
+    explain_kernel,
+    fit_kernel,
+    search_kernel,
+    stretch_kernel,
+)
+from processing.methods.road.signs.sign_shapes import (
+    RECTANGLE,
+    SignShape,
+    outline_of,
+    sharp_outline_of,
+)
+
+_COARSE = np.array([0.06, 0.03])
+_FINE = np.array([0.02, 0.01, 0.005, 0.002, 0.001])
+_STRETCH = np.array([0.12, 0.06, 0.03, 0.015, 0.007, 0.003])
+"""Steps of the search, m: a plate's rim lies between pulses centimetres apart, and its place
+follows from all of them to millimetres."""
+
+_SEARCHED_LINES = 40
+"""Longest lines that the coarse search looks at."""
+
+_TRIED = 10
+"""Outlines that are fitted finely."""
+
+_BESIDE = (4, 2, 1, 1)
+"""Of those, how many others are looked for beside, for the first plate, the second and so on."""
+
+_PLATE_COST = 10.0
+"""That another plate has to be worth: about one line that is explained at both ends."""
+
+_RECTANGLE_COST = 10.0
+"""What a rectangle has to fit better than a standard plate: its two sides are chosen freely."""
+
+_BELOW_COST = 2.0
+"""The same of a rectangle right below another plate: what hangs there is one (標識令,
+補助標識)."""
+
+_SMALL_COST = 3.0
+"""What plates of other than the usual size have to fit better (標識令: 拡大率, 縮小率 only where
+speeds or streets ask for it)."""
+
+_BELOW_M = (-0.03, 0.15)
+_CENTRED_M = 0.06
+"""How far below a plate another one belongs to it, and how far beside its middle: clamps of one
+post hold them a few centimetres apart."""
+
+_SNAP_COST = 3.0
+"""What a side may cost to be a usual one: a deviation of √3 standard deviations."""
+
+_USUAL_M = 0.1
+"""Sides of rectangles are whole decimetres (標識令: 40 and 60 cm below signs, guide signs by
+letters of 10 cm)."""
+
+_MOST_EMPTY = 60
+"""Places without a plate that are looked at: all lines of a large plate have two each."""
+
+
+class FittedPlate(NamedTuple):
+    """An outline where it fits.
+
+    Attributes
+    ----------
+    shape : SignShape
+    pose : (3,) float64
+        Middle of the outline's box, right and up (m), and roll (rad), on the plane.
+    cost : float
+        What the ends of the lines on it say against it.
+    ends : int
+        How many ends lie on it.
+    pulses : float
+        That met it.
+    """
+
+    shape: SignShape
+    pose: Floats
+    cost: float
+    ends: int
+    pulses: float
+
+
+@dataclass(frozen=True)
+class Fit:
+    """Plates that explain the lines of a plane together.
+
+    Attributes
+    ----------
+    plates : tuple of FittedPlate
+        The one that was found first explains most.
+    cost : float
+        What is left to say against them.
+    nothing : float
+        What there was to explain.
+    """
+
+    plates: tuple[FittedPlate, ...]
+    cost: float
+    nothing: float
+
+
+@dataclass(frozen=True, eq=False)
+class _Tried:
+    """A plate with what it costs, with what it leaves unexplained and without."""
+
+    whole: float
+    own: float
+    plate: FittedPlate
+    rest: Floats
+    blocked: Floats
+
+
+class _Outlines(NamedTuple):
+    """Shapes as the kernels take them."""
+
+    shapes: tuple[SignShape, ...]
+    sizes: Floats
+    corners: Floats
+    counts: Integers
+    with_rectangles: bool
+
+
+def fit_plates(
+    lines: Floats, empty: Floats, shapes: Sequence[SignShape], *, with_rectangles: bool = True
+) -> Fit:
+    """The plates that explain lines best.
+
+    Parameters
+    ----------
+    lines, empty : (k, LINE), (m, LINE) float64
+        Of the plane: on plates, and of turns that met nothing.
+    shapes : sequence of SignShape
+        What is looked for.
+    with_rectangles : bool
+        Whether rectangles of any size are, too.
+
+    Notes
+    -----
+    1. Each shape is moved from some starts to where the ends of the lines fit it; those that fit
+       best are moved finely.
+    2. What goes on beyond an outline is explained by further plates in the same way, for each of
+       the best shapes; the set of plates that leaves the least unexplained wins.
+    """
+    outlines = _outlines(tuple(shapes), with_rectangles=with_rectangles)
+    return _solve(lines, empty, outlines, ())
+
+
+def _outlines(shapes: tuple[SignShape, ...], *, with_rectangles: bool) -> _Outlines:
+    corners = [sharp_outline_of(shape) for shape in shapes]
+    every = np.zeros((len(shapes), max((len(one) for one in corners), default=1), 2))
+    for number, one in enumerate(corners):
+        every[number, : len(one)] = one
+    return _Outlines(
+        shapes,
+        np.array([(one.wide_m, one.high_m) for one in shapes]).reshape(-1, 2),
+        every,
+        np.array([len(one) for one in corners], np.int64),
+        with_rectangles,
+    )
+
+
+def _solve(
+    lines: Floats, empty: Floats, outlines: _Outlines, above: tuple[FittedPlate, ...]
+) -> Fit:
+    """The plates beside those that were found already."""
+    unexplained = _unexplained(lines)
+    best = Fit((), unexplained, unexplained)
+    if len(above) == len(_BESIDE) or len(lines) < 2 or unexplained <= _PLATE_COST:
+        return best
+    tried: list[_Tried] = []
+    for shape, pose in _best_fits(lines, empty, outlines):
+        rest, blocked = np.empty((2 * len(lines), LINE)), np.empty((2 * len(lines), LINE))
+        corners = outline_of(shape)
+        cost, ends, pulses, left, free = explain_kernel(corners, lines, pose, rest, blocked)
+        if not ends:
+            continue
+        plate = FittedPlate(shape, pose, cost, ends, pulses)
+        own = (
+            cost
+            + _PLATE_COST
+            + _prior(plate, above)
+            + cost_of(corners, empty, pose, SIGMA_M, np.inf)
+        )
+        whole = own + _unexplained(rest[:left])
+        tried.append(_Tried(whole, own, plate, rest[:left], blocked[:free]))
+    for one in _promising(tried, unexplained, len(above)):
+        if one.whole < best.cost:
+            best = Fit((one.plate,), one.whole, unexplained)
+        if one.own >= best.cost:
+            continue
+        step = max(1, len(one.blocked) // _MOST_EMPTY)
+        nothing = np.concatenate([empty, one.blocked[::step]])
+        further = _solve(one.rest, nothing, outlines, (*above, one.plate))
+        if one.own + further.cost < best.cost:
+            best = Fit((one.plate, *further.plates), one.own + further.cost, unexplained)
+    return best
+
+
+def _promising(tried: list[_Tried], unexplained: float, found: int) -> list[_Tried]:
+    """Plates beside which others are looked for.
+
+    They leave the least unexplained, or explain what they do explain best: of two plates side by
+    side each does, and what holds both leaves less.
+    """
+    chosen = sorted(tried, key=lambda one: one.whole)[: _BESIDE[found]]
+    clean = sorted(tried, key=lambda one: one.own / max(unexplained - one.whole + one.own, 1e-9))
+    return chosen + [one for one in clean[: _BESIDE[found]] if one not in chosen]
+
+
+def _prior(plate: FittedPlate, above: tuple[FittedPlate, ...]) -> float:
+    """What speaks against a plate before its ends are looked at."""
+    if plate.shape.shape == RECTANGLE:
+        return _BELOW_COST if any(hangs_below(plate, one) for one in above) else _RECTANGLE_COST
+    return 0.0 if plate.shape.is_usual else _SMALL_COST
+
+
+def hangs_below(plate: FittedPlate, upper: FittedPlate) -> bool:
+    """Whether a rectangle that is no larger hangs right below another plate."""
+    gap = (upper.pose[1] - upper.shape.high_m / 2) - (plate.pose[1] + plate.shape.high_m / 2)
+    return bool(
+        plate.shape.shape == RECTANGLE
+        and _BELOW_M[0] <= gap <= _BELOW_M[1]
+        and abs(plate.pose[0] - upper.pose[0]) <= _CENTRED_M
+        and plate.shape.high_m < upper.shape.high_m
+        and plate.shape.wide_m <= upper.shape.wide_m + _CENTRED_M
+    )
+
+
+def _unexplained(lines: Floats) -> float:
+    """What lines cost that no plate explains: two ends each, less for a pulse or two."""
+    if not len(lines):
+        return 0.0
+    pulses = lines[:, LONG] / lines[:, SPACING]
+    return float((2 * CAP * np.minimum(1.0, (pulses + 0.5) / 3.0)).sum())
+
+
+def _best_fits(lines: Floats, empty: Floats, outlines: _Outlines) -> list[tuple[SignShape, Floats]]:
+    """Shapes with their places, the best first."""
+    ends = np.concatenate(
+        [lines[:, [U, V]], lines[:, [U, V]] + lines[:, [LONG]] * lines[:, [ALONG_U, ALONG_V]]]
+    )
+    box = np.array([ends.min(axis=0), ends.max(axis=0)])
+    every = np.concatenate([lines, empty])
+    slack = 2 * (0.06 + _spacing_across(lines))
+    is_small = (outlines.sizes <= box[1] - box[0] + slack).all(axis=1)
+    longest = lines[np.argsort(-lines[:, LONG], kind="stable")[:_SEARCHED_LINES]]
+    costs = np.empty((len(outlines.shapes), STARTS))
+    poses = np.empty((len(outlines.shapes), STARTS, 3))
+    search_kernel(
+        outlines.corners,
+        np.where(is_small, outlines.counts, 0),
+        np.concatenate([longest, empty]),
+        box,
+        _COARSE,
+        costs,
+        poses,
+    )
+    fine: list[tuple[float, SignShape, Floats]] = []
+    for number in np.argsort(costs, axis=None, kind="stable")[:_TRIED].tolist():
+        which, start = divmod(number, STARTS)
+        if not np.isfinite(costs[which, start]):
+            break
+        shape, pose = outlines.shapes[which], poses[which, start].copy()
+        cost = fit_kernel(outline_of(shape), every, _FINE, SIGMA_M, pose)
+        fine.append((cost, shape, pose))
+    if outlines.with_rectangles:
+        fine += _rectangles(every, box[0], box[1])
+    fine.sort(key=lambda one: one[0])
+    found: list[tuple[SignShape, Floats]] = []
+    for _, shape, pose in fine:
+        if all(shape != one or np.hypot(*(pose - at)[:2]) > SIGMA_M for one, at in found):
+            found.append((shape, pose))
+    return found
+
+
+def _spacing_across(lines: Floats) -> float:
+    """About how far lines lie from each other, m."""
+    middles = lines[:, [U, V]] + lines[:, [LONG]] / 2 * lines[:, [ALONG_U, ALONG_V]]
+    extent = float(np.ptp(middles, axis=0).max())
+    return min(0.35, 1.5 * extent / max(1, len(lines) - 1))
+
+
+def _rectangles(every: Floats, low: Floats, high: Floats) -> list[tuple[float, SignShape, Floats]]:
+    """The best rectangles that are stretched to fit, begun as the whole and as parts of it."""
+    whole = high - low
+    starts = [(low, high)]
+    for axis, least in ((1, 0.3), (0, 0.8)):
+        if whole[axis] > least:
+            for share in (0.35, 0.65) if axis else (0.5,):
+                cut = np.where(np.arange(2) == axis, low + share * whole, high)
+                starts.append((low, cut))
+                starts.append((np.where(np.arange(2) == axis, cut, low), high))
+    found = []
+    for first, last in starts:
+        pose, sides = np.array([*(first + last) / 2, 0.0]), np.maximum(last - first, 0.08)
+        cost = stretch_kernel(every, _STRETCH, pose, sides, np.zeros(2))
+        cost, pose, sides = _snapped(every, cost, pose, sides)
+        shape = SignShape(RECTANGLE, float(sides[0]), float(sides[1]))
+        found.append((cost + _RECTANGLE_COST, shape, pose))
+    return found
+
+
+def _snapped(
+    every: Floats, cost: float, pose: Floats, sides: Floats
+) -> tuple[float, Floats, Floats]:
+    """The same with usual sides, where that costs little."""
+    fixed = np.zeros(2)
+    for axis in range(2):
+        keep = fixed.copy()
+        keep[axis] = 1.0
+        best = cost + _SNAP_COST
+        usual = round(float(sides[axis]) / _USUAL_M) * _USUAL_M
+        start_pose, start_sides = pose, sides
+        for side in (usual, usual - _USUAL_M, usual + _USUAL_M):
+            if side < _USUAL_M / 2:
+                continue
+            place, other = start_pose.copy(), start_sides.copy()
+            other[axis] = side
+            changed = stretch_kernel(every, _STRETCH[3:], place, other, keep)
+            if changed < best:
+                best, pose, sides, fixed = changed, place, other, keep
+        cost = best if fixed[axis] else cost
+    return cost, pose, sides

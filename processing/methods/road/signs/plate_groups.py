@@ -1,0 +1,259 @@
+"""Pieces of scan lines that lie on one plate: near each other, in one upright plane."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from processing.core.arrays import Floats, Integers
+from processing.core.monitor import Monitor
+from processing.methods.road.signs.link_kernels import (
+    FLAT_M,
+    STEEPEST,
+    link_kernel,
+    plane_kernel,
+)
+from processing.methods.road.signs.piece_kernels import (
+    BEFORE,
+    BEHIND,
+    BRIGHTS,
+    COUNT,
+    FIRST,
+    FREE,
+    FROM,
+    GOES_ON,
+    TO,
+    VIEW,
+)
+from processing.methods.road.signs.scan_pieces import ScanPieces
+
+_FEWEST_PIECES, _FEWEST_POINTS = 2, 8
+
+_LARGEST_M = 6.0
+_LEAST_WIDE_M, _LEAST_LONG_M = 0.08, 0.25
+"""Of a group's box, in either direction and in the larger one: the smallest plate is 10 cm by
+40 cm, a pulse may miss some of it."""
+
+_DULL_TURNS, _DULL_POINTS = 3, 20
+_DULL_LEAST_M, _DULL_LARGEST_M = 0.25, 4.0
+"""Of a dull group: turns that met it, points, and the sides of its box. Leaves and façades show many
+pieces that lie in a plane by chance, and small plates hang with larger ones."""
+
+_LEAST_CLEAR = 0.3
+"""Share of a dull group's turns on which nothing of the same goes on at either end: plates end in
+the free or behind what is nearer, walls go on."""
+
+_LEAST_SPAN = 0.2
+"""Mean length that turns draw on a dull group, over its own: lines cross a plate from rim to rim,
+pieces of a crown begin and end anywhere."""
+
+_SAME_PLANE_M = 0.04
+"""Groups whose planes lie nearer to each other are of one plate: its front and its back, and passes
+some centimetres apart. Plates that hang back to back have their post between them, 6 cm."""
+
+_SAME_WAY = np.cos(np.radians(12.0))
+_BESIDE_M = 0.2
+"""Between the boxes of groups of one plate: the post before its back hides a strip of it, twice as
+wide as itself where it is seen askew."""
+
+
+@dataclass(frozen=True)
+class PlateGroup:
+    """Pieces in one plane.
+
+    Attributes
+    ----------
+    pieces : (k,) int64
+        Their numbers.
+    middle : (3,) float64
+        m about the origin of the plan.
+    right, up, normal : (3,) float64
+        Axes of the plane as the scanner saw it: to the right, up, towards the scanner.
+    noise_m : float
+        How far its pieces lie off the plane.
+    low, high : (2,) float64
+        Its box, right and up of the middle, m.
+    """
+
+    pieces: Integers
+    middle: Floats
+    right: Floats
+    up: Floats
+    normal: Floats
+    noise_m: float
+    low: Floats
+    high: Floats
+
+    def flat(self, xyz: Floats) -> Floats:
+        """(n, 2) right and up of the middle."""
+        return np.asarray((xyz - self.middle) @ np.column_stack([self.right, self.up]))
+
+    def xyz(self, flat: Floats) -> Floats:
+        """(…, 3) places of the plane, m about the origin of the plan."""
+        return np.asarray(self.middle + flat @ np.array([self.right, self.up]))
+
+
+def plate_groups(pieces: ScanPieces, reaches: Floats, monitor: Monitor) -> list[PlateGroup]:
+    """Groups of pieces that may be plates.
+
+    Parameters
+    ----------
+    reaches : (drives,) float64
+        Between neighbouring scan lines on a plate, at most, m.
+    """
+    values = pieces.values
+    is_bright = 2 * values[:, BRIGHTS] > values[:, COUNT]
+    is_seed = is_bright | (values[:, BEFORE] == FREE) | (values[:, BEHIND] == FREE)
+    groups: list[PlateGroup] = []
+    for number, reach in enumerate(reaches.tolist()):
+        monitor.check()
+        mine = np.flatnonzero(is_seed & (pieces.drive == number))
+        mine = mine[np.argsort(pieces.row[mine], kind="stable")]
+        linked = np.empty(mine.size, np.int64)
+        link_kernel(values[mine], pieces.row[mine], is_bright[mine], reach, linked)
+        order = np.argsort(linked, kind="stable")
+        cuts = np.flatnonzero(np.diff(linked[order])) + 1
+        for members in np.split(mine[order], cuts):
+            if members.size >= _FEWEST_PIECES:
+                groups += _planes(pieces, members)
+    search = _PieceSearch(pieces)
+    whole = [search.completed(one) for one in _joined(pieces, groups)]
+    return [one for one in whole if is_bright[one.pieces].any() or _may_be_dull(pieces, one)]
+
+
+def _planes(pieces: ScanPieces, members: Integers) -> list[PlateGroup]:
+    """Planes among linked pieces, the one with the most points first."""
+    found: list[PlateGroup] = []
+    left = members[np.argsort(-pieces.values[members, COUNT], kind="stable")]
+    while left.size >= _FEWEST_PIECES and pieces.values[left, COUNT].sum() >= _FEWEST_POINTS:
+        chosen = np.zeros(left.size, np.bool_)
+        if plane_kernel(pieces.values, left, chosen) < _FEWEST_POINTS:
+            break
+        group = group_of(pieces.values, left[chosen])
+        if group is not None and _is_plate_sized(group):
+            found.append(group)
+        left = left[~chosen]
+    return found
+
+
+def _may_be_dull(pieces: ScanPieces, group: PlateGroup) -> bool:
+    """Whether lines of a group that isn't bright cross it from rim to rim."""
+    values = pieces.values[group.pieces]
+    size = group.high - group.low
+    if size.min() < _DULL_LEAST_M or size.max() > _DULL_LARGEST_M:
+        return False
+    key = pieces.drive[group.pieces] * (pieces.row.max() + 1) + pieces.row[group.pieces]
+    order = np.lexsort([values[:, FIRST], key])
+    starts = np.flatnonzero(np.diff(key[order], prepend=-1))
+    if starts.size < _DULL_TURNS or values[:, COUNT].sum() < _DULL_POINTS:
+        return False
+    first, last = order[starts], order[np.append(starts[1:], key.size) - 1]
+    is_clear = (values[first, BEFORE] != GOES_ON) & (values[last, BEHIND] != GOES_ON)
+    drawn = group.flat(values[last, TO : TO + 3]) - group.flat(values[first, FROM : FROM + 3])
+    along = (drawn * np.where(drawn[:, 1:] < 0, -1.0, 1.0)).sum(axis=0)
+    whole = float(np.abs(along) @ size / max(float(np.linalg.norm(along)), 1e-9))
+    span = float(np.linalg.norm(drawn, axis=1).mean()) / whole
+    return bool(is_clear.mean() >= _LEAST_CLEAR and span >= _LEAST_SPAN)
+
+
+def _is_plate_sized(group: PlateGroup) -> bool:
+    size = group.high - group.low
+    return bool(
+        (size <= _LARGEST_M).all() and (size >= _LEAST_WIDE_M).all() and size.max() >= _LEAST_LONG_M
+    )
+
+
+def group_of(values: Floats, members: Integers) -> PlateGroup | None:
+    """The plane of pieces by least squares; None where it isn't upright."""
+    ends = np.concatenate([values[members, FROM : FROM + 3], values[members, TO : TO + 3]])
+    weights = np.concatenate([values[members, COUNT]] * 2)
+    weights /= weights.sum()
+    middle = weights @ ends
+    about = ends - middle
+    normal = np.linalg.eigh((about * weights[:, None]).T @ about)[1][:, 0]
+    if abs(normal[2]) > STEEPEST:
+        return None
+    if (values[members, VIEW : VIEW + 3] @ normal * values[members, COUNT]).sum() > 0:
+        normal = -normal
+    right = np.array([-normal[1], normal[0], 0.0])
+    right /= np.linalg.norm(right)
+    up = np.cross(normal, right)
+    noise = float(np.sqrt(weights @ (about @ normal) ** 2))
+    flat = about @ np.column_stack([right, up])
+    return PlateGroup(members, middle, right, up, normal, noise, flat.min(axis=0), flat.max(axis=0))
+
+
+def _joined(pieces: ScanPieces, groups: list[PlateGroup]) -> list[PlateGroup]:
+    """Groups of one plate as one, those that have the most points first."""
+    if len(groups) < 2:
+        return groups
+    points = [float(pieces.values[one.pieces, COUNT].sum()) for one in groups]
+    order = np.argsort(-np.array(points), kind="stable").tolist()
+    tree = cKDTree(np.array([one.middle for one in groups]))
+    taken = np.zeros(len(groups), np.bool_)
+    found: list[PlateGroup] = []
+    for first in order:
+        if taken[first]:
+            continue
+        taken[first] = True
+        whole = groups[first]
+        near = tree.query_ball_point(whole.middle, float(np.hypot(*(whole.high - whole.low))) + 1)
+        for other in sorted(near, key=order.index if len(order) < 50 else None):
+            if not taken[other] and _are_one(whole, groups[other]):
+                both = group_of(pieces.values, np.union1d(whole.pieces, groups[other].pieces))
+                if both is not None and both.noise_m <= _SAME_PLANE_M / 2:
+                    whole, taken[other] = both, True
+        found.append(whole)
+    return found
+
+
+def _are_one(whole: PlateGroup, other: PlateGroup) -> bool:
+    if abs(whole.normal @ other.normal) < _SAME_WAY:
+        return False
+    off = (other.middle - whole.middle) @ whole.normal
+    back = (whole.middle - other.middle) @ other.normal
+    if max(abs(off), abs(back)) > _SAME_PLANE_M:
+        return False
+    corners = other.xyz(np.array([other.low, other.high]))
+    flat = whole.flat(corners)
+    low, high = flat.min(axis=0), flat.max(axis=0)
+    return bool((low <= whole.high + _BESIDE_M).all() and (high >= whole.low - _BESIDE_M).all())
+
+
+class _PieceSearch:
+    """Finds further pieces that lie on plates: what ends at things before them or beside them."""
+
+    def __init__(self, pieces: ScanPieces) -> None:
+        self._pieces = pieces
+        values = pieces.values
+        middles = (values[:, FROM : FROM + 3] + values[:, TO : TO + 3]) / 2
+        self._tree = cKDTree(middles)
+        self._is_bright = 2 * values[:, BRIGHTS] > values[:, COUNT]
+
+    def completed(self, group: PlateGroup) -> PlateGroup:
+        """A group with what else lies in its box and its plane and is as bright."""
+        values = self._pieces.values
+        low, high = group.low - 0.1, group.high + 0.1
+        reach = float(np.hypot(*(high - low)) / 2)
+        about = group.xyz((low + high) / 2)
+        near = np.setdiff1d(
+            np.array(self._tree.query_ball_point(about, reach), np.int64), group.pieces
+        )
+        is_in = np.ones(near.size, np.bool_)
+        for side in (FROM, TO):
+            xyz = values[near, side : side + 3]
+            flat = group.flat(xyz)
+            is_in &= np.abs((xyz - group.middle) @ group.normal) <= FLAT_M
+            is_in &= ((flat >= low) & (flat <= high)).all(axis=1)
+        views = values[:, VIEW : VIEW + 3]
+        of_near, of_group = views[near] @ group.normal, views[group.pieces] @ group.normal
+        for sign in (-1.0, 1.0):
+            mine = group.pieces[of_group * sign > 0]
+            if mine.size:
+                share = np.average(self._is_bright[mine], weights=values[mine, COUNT])
+                is_in &= ~((of_near * sign > 0) & (self._is_bright[near] != (share > 0.5)))
+        if not is_in.any():
+            return group
+        return group_of(values, np.concatenate([group.pieces, near[is_in]])) or group

@@ -1,0 +1,207 @@
+"""Plates in space: outlines that were fitted on planes, with which way they face and how sure."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from processing.core.arrays import Floats, Integers
+from processing.methods.road.signs.fit_kernels import (
+    ALONG_U,
+    ALONG_V,
+    LONG,
+    OPEN_END,
+    OPEN_START,
+    SIGMA_M,
+    U,
+    V,
+)
+from processing.methods.road.signs.piece_kernels import BRIGHTS, COUNT, NOISE, VIEW
+from processing.methods.road.signs.plate_fit import Fit, FittedPlate, hangs_below
+from processing.methods.road.signs.plate_groups import PlateGroup, group_of
+from processing.methods.road.signs.scan_pieces import ScanPieces
+from processing.methods.road.signs.sign_shapes import SignShape, centroid_of, outline_of
+
+_SECTORS = 12
+"""Of a plate's rim, 30 degrees each."""
+
+_INSIDE_M = 0.03
+"""How far beyond an outline the middle of a piece on it may lie."""
+
+
+class PlateEvidence(NamedTuple):
+    """What is known of a plate beside its outline.
+
+    Attributes
+    ----------
+    bright : float
+        Share of its points that shine, on the side where more do.
+    cost : float
+        Mean of what the ends of its lines say against it, 0 to 9.
+    explained : float
+        Share of what lay in its plane that plates explain.
+    open_ends : int
+        Where its rim was seen.
+    sectors : float
+        Share of the directions about its middle in which its rim was seen.
+    turns : int
+        Scan lines that met it.
+    points : int
+    noise_m : float
+        How far its points lie off it.
+    roll_rad : float
+    tilt : float
+        Sine of the angle by which it looks up or down.
+    seen_sides : int
+        1, or 2 where scanners saw front and back.
+    """
+
+    bright: float
+    cost: float
+    explained: float
+    open_ends: int
+    sectors: float
+    turns: int
+    points: int
+    noise_m: float
+    roll_rad: float
+    tilt: float
+    seen_sides: int
+
+
+@dataclass(frozen=True)
+class Plate:
+    """A plate of a survey.
+
+    Attributes
+    ----------
+    shape : SignShape
+    centre : (3,) float64
+        Of its area, m about the origin of the plan.
+    outline : (n, 3) float64
+        Corners, m about the origin of the plan.
+    normal : (3,) float64
+        Where its face looks.
+    evidence : PlateEvidence
+    upper : int
+        Number of the plate that it hangs below as its supplement, among those of its plane; −1:
+        none.
+    pieces : (k,) int64
+        Of scan lines on it.
+    """
+
+    shape: SignShape
+    centre: Floats
+    outline: Floats
+    normal: Floats
+    evidence: PlateEvidence
+    upper: int
+    pieces: Integers
+
+
+def plates_of(pieces: ScanPieces, group: PlateGroup, lines: Floats, fit: Fit) -> list[Plate]:
+    """The plates of a plane.
+
+    Parameters
+    ----------
+    lines : (k, LINE) float64
+        Of the group's pieces, in their order.
+    """
+    found = []
+    for one in fit.plates:
+        on = _inside(one, lines)
+        if not on.any():
+            continue
+        upper = next((n for n, other in enumerate(fit.plates) if hangs_below(one, other)), -1)
+        found.append(_plate(pieces, group, one, np.flatnonzero(on), (lines, fit, upper)))
+    return found
+
+
+def _inside(plate: FittedPlate, lines: Floats) -> Floats:
+    """(k,) bool: lines that cross an outline's middle part or have their own middle in it."""
+    middles = lines[:, [U, V]] + lines[:, [LONG]] / 2 * lines[:, [ALONG_U, ALONG_V]]
+    flat = _turned(middles - plate.pose[:2], -plate.pose[2])
+    half = np.array([plate.shape.wide_m, plate.shape.high_m]) / 2 + _INSIDE_M
+    return np.asarray((np.abs(flat) <= half).all(axis=1))
+
+
+def _turned(flat: Floats, by_rad: float) -> Floats:
+    c, s = np.cos(by_rad), np.sin(by_rad)
+    return np.column_stack([c * flat[:, 0] - s * flat[:, 1], s * flat[:, 0] + c * flat[:, 1]])
+
+
+def _plate(
+    pieces: ScanPieces,
+    group: PlateGroup,
+    fitted: FittedPlate,
+    on: Integers,
+    context: tuple[Floats, Fit, int],
+) -> Plate:
+    lines, fit, upper = context
+    members = group.pieces[on]
+    own = group_of(pieces.values, members) if on.size > 1 else None
+    normal, noise = group.normal, group.noise_m
+    corners = outline_of(fitted.shape)
+    if len(corners) == 1:
+        turn = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
+        corners = corners[0, 0] * np.column_stack([np.cos(turn), np.sin(turn)])
+    flat = np.vstack([centroid_of(fitted.shape)[None], corners])
+    xyz = group.xyz(_turned(flat, fitted.pose[2]) + fitted.pose[:2])
+    if own is not None and abs(own.normal @ group.normal) > np.cos(np.radians(20.0)):
+        # The plane of its own points: the group's holds those of its post, too.
+        noise, sign = own.noise_m, np.sign(own.normal @ group.normal)
+        depth = (own.middle - xyz) @ own.normal / (group.normal @ own.normal)
+        xyz, normal = xyz + depth[:, None] * group.normal, sign * own.normal
+    facing, bright, sides = _facing(pieces, members, normal)
+    open_ends, sectors = _rim(fitted, lines[on])
+    rows = pieces.drive[members] * (pieces.row.max() + 1) + pieces.row[members]
+    evidence = PlateEvidence(
+        bright=bright,
+        cost=fitted.cost / max(1, fitted.ends),
+        explained=1.0 - fit.cost / max(fit.nothing, 1e-9),
+        open_ends=open_ends,
+        sectors=sectors,
+        turns=int(np.unique(rows).size),
+        points=int(pieces.values[members, COUNT].sum()),
+        noise_m=max(noise, float(np.median(pieces.values[members, NOISE]))),
+        roll_rad=float(fitted.pose[2]),
+        tilt=float(facing[2]),
+        seen_sides=sides,
+    )
+    return Plate(fitted.shape, xyz[0], xyz[1:], facing, evidence, upper, members)
+
+
+def _facing(pieces: ScanPieces, members: Integers, normal: Floats) -> tuple[Floats, float, int]:
+    """Where a plate's face looks, the share of bright points on it, how many sides were seen.
+
+    A bright side is the face; a dull one is the back of a face that looks away.
+    """
+    values = pieces.values[members]
+    counts, brights = values[:, COUNT], values[:, BRIGHTS]
+    towards = values[:, VIEW : VIEW + 3] @ normal < 0
+    shares, seen = [], []
+    for side in (towards, ~towards):
+        seen.append(float(counts[side].sum()))
+        shares.append(float(brights[side].sum()) / seen[-1] if seen[-1] else 0.0)
+    sides = sum(count > 0 for count in seen)
+    best = int(np.argmax(shares))
+    if shares[best] > 0.5:
+        return (normal if best == 0 else -normal), shares[best], sides
+    return (-normal if seen[0] >= seen[1] else normal), shares[best], sides
+
+
+def _rim(fitted: FittedPlate, lines: Floats) -> tuple[int, float]:
+    """How many open ends lie on a plate's rim, and in which share of directions."""
+    ends = []
+    for column, along in ((OPEN_START, 0.0), (OPEN_END, 1.0)):
+        is_open = lines[:, column] > 0
+        places = lines[:, [U, V]] + along * lines[:, [LONG]] * lines[:, [ALONG_U, ALONG_V]]
+        ends.append(places[is_open])
+    flat = _turned(np.concatenate(ends) - fitted.pose[:2], -fitted.pose[2])
+    half = np.array([fitted.shape.wide_m, fitted.shape.high_m]) / 2
+    near = flat[(np.abs(flat) <= half + 3 * SIGMA_M).all(axis=1)]
+    turn = np.arctan2(near[:, 1] / half[1], near[:, 0] / half[0])
+    sectors = np.unique(np.floor((turn / (2 * np.pi) + 0.5) * _SECTORS).clip(0, _SECTORS - 1))
+    return len(near), sectors.size / _SECTORS

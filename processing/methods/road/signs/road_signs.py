@@ -1,0 +1,179 @@
+"""Road signs of a survey: plates beside and over the road, their place, shape, size and facing."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from processing.core.arrays import Floats, Integers
+from processing.core.monitor import Monitor, PartMonitor
+from processing.methods.road.objects.ground_heights import ground_heights, height_of
+from processing.methods.road.objects.sparse_plan import SparsePlan, plan_of
+from processing.methods.road.signs.piece_kernels import FIRST, FROM
+from processing.methods.road.signs.plate_fit import fit_plates
+from processing.methods.road.signs.plate_groups import plate_groups
+from processing.methods.road.signs.plate_lines import empty_lines, lines_of
+from processing.methods.road.signs.plates import Plate, plates_of
+from processing.methods.road.signs.scan_pieces import ScanPieces, scan_pieces
+from processing.methods.road.signs.sign_confidence import SignFacts, chance_of, facts_of
+from processing.methods.road.signs.sign_shapes import SignShape, standard_shapes
+from processing.recording.drive import Drive
+
+_LEAST_REACH_M, _MOST_REACH_M = 0.1, 0.8
+"""Between scan lines on a plate: dense ones, and those of a fast vehicle with a slow mirror."""
+
+_USUAL_REACH_M = 0.35
+"""Where a drive doesn't say how fast it went: 100 km/h at 100 turns a second."""
+
+_TURNS = 1.6
+"""Turns of the scanner between two lines that are neighbours on a plate: one, and what a plate that
+is seen askew and a vehicle that goes faster elsewhere add."""
+
+_ONE_PLATE_M = 0.2
+"""Centres of two plates are farther apart: half of the smallest plate."""
+
+
+@dataclass(frozen=True)
+class RoadSign:
+    """One sign, or what might be one.
+
+    Attributes
+    ----------
+    plate : Plate
+        m about the origin of the plan.
+    centre : (3,) float64
+        Of its area, m, project CRS.
+    ground_m : float
+        Height of the ground below it, project CRS.
+    facts : SignFacts
+    confidence : float
+        The share of its like that are signs.
+    is_supplement : bool
+        Whether it hangs below another plate that it explains.
+    point, drive : int
+        The measured point nearest to the centre that lies on it, and which of the drives it is of.
+    """
+
+    plate: Plate
+    centre: Floats
+    ground_m: float
+    facts: SignFacts
+    confidence: float
+    is_supplement: bool
+    point: int
+    drive: int
+
+
+ShapesAt = Callable[[Floats], Sequence[SignShape]]
+"""The shapes that plates about a place (m, project CRS) may have; none: nobody asks for them."""
+
+
+def any_shape(_place: Floats) -> Sequence[SignShape]:
+    """All shapes, wherever a plate is."""
+    return standard_shapes()
+
+
+def road_signs(
+    drives: Sequence[Drive], monitor: Monitor, shapes_at: ShapesAt = any_shape
+) -> tuple[RoadSign, ...]:
+    """All plates that may be signs; a confidence tells signs from the others.
+
+    Parameters
+    ----------
+    shapes_at : callable
+        What is looked for at a place; rectangles are looked for wherever anything is.
+
+    Notes
+    -----
+    1. Scan lines are followed over what rises above the ground and cut into straight pieces
+       (:mod:`.scan_pieces`).
+    2. Pieces of neighbouring lines that span an upright plane are plates, or parts of other flat
+       things (:mod:`.plate_groups`).
+    3. Outlines of the standard plates, and rectangles, are laid on the lines of a plane, beside
+       each other where one doesn't explain all (:mod:`.plate_fit`).
+    4. Which side shines is the face; how well a plate is explained says how sure it is.
+    """
+    plan = plan_of([(drive.info.lowest, drive.info.highest) for drive in drives])
+    ground = ground_heights(drives, plan, PartMonitor(monitor, 0.0, 0.3))
+    pieces = scan_pieces(drives, plan, ground, PartMonitor(monitor, 0.3, 0.7))
+    reaches = np.array([_reach(drive) for drive in drives])
+    groups = plate_groups(pieces, reaches, PartMonitor(monitor, 0.7, 0.8))
+    found: list[RoadSign] = []
+    for number, group in enumerate(groups):
+        monitor.check()
+        shapes = shapes_at(group.middle + plan.origin)
+        if not shapes:
+            continue
+        lines = lines_of(pieces, group)
+        fit = fit_plates(lines, empty_lines(pieces, group, lines), shapes)
+        plates = plates_of(pieces, group, lines, fit)
+        found += _signs(plates, pieces, (plan, ground))
+        monitor.report(0.8 + 0.2 * (number + 1) / len(groups))
+    return _one_of_each(found)
+
+
+def _reach(drive: Drive) -> float:
+    """How far neighbouring scan lines of a drive lie apart at most, m."""
+    revolutions, trajectory = drive.revolutions, drive.trajectory
+    if revolutions is None or trajectory is None:
+        return _USUAL_REACH_M
+    steps = np.linalg.norm(np.diff(trajectory.xyz, axis=0), axis=1)
+    speeds = steps / np.diff(trajectory.time)
+    between = float(np.quantile(speeds, 0.9)) / revolutions.revolution_rate_hz
+    return min(max(_TURNS * between, _LEAST_REACH_M), _MOST_REACH_M)
+
+
+def _signs(
+    plates: Sequence[Plate],
+    pieces: ScanPieces,
+    below: tuple[SparsePlan, NDArray[np.float32]],
+) -> list[RoadSign]:
+    """The plates of one plane with what is known of each; supplements are as sure as their sign."""
+    plan, ground = below
+    found: list[RoadSign] = []
+    for plate in plates:
+        level = height_of(ground, plan, float(plate.centre[0]), float(plate.centre[1]))
+        if not np.isfinite(level):
+            level = float(np.median(pieces.ground[plate.pieces]))
+        facts = facts_of(plate, level)
+        point, drive = _point_near(plate, pieces)
+        found.append(
+            RoadSign(
+                plate,
+                plate.centre + plan.origin,
+                level + float(plan.origin[2]),
+                facts,
+                chance_of(facts),
+                plate.upper >= 0,
+                point,
+                drive,
+            )
+        )
+    return found
+
+
+def _point_near(plate: Plate, pieces: ScanPieces) -> tuple[int, int]:
+    """A measured point on a plate: the first of the piece whose beginning is nearest."""
+    values = pieces.values[plate.pieces]
+    nearest = int(np.linalg.norm(values[:, FROM : FROM + 3] - plate.centre, axis=1).argmin())
+    return int(values[nearest, FIRST]), int(pieces.drive[plate.pieces[nearest]])
+
+
+def _one_of_each(signs: Sequence[RoadSign]) -> tuple[RoadSign, ...]:
+    """Of plates in one place the surest one."""
+    if not signs:
+        return ()
+    order = sorted(signs, key=lambda one: -one.confidence)
+    centres = np.array([one.centre for one in order])
+    near = cKDTree(centres).query_ball_point(centres, _ONE_PLATE_M)
+    taken: Integers = np.zeros(len(order), np.int64)
+    kept = []
+    for number, one in enumerate(order):
+        if not taken[number]:
+            kept.append(one)
+            taken[near[number]] = 1
+    return tuple(kept)

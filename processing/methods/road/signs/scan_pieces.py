@@ -1,0 +1,204 @@
+"""Straight pieces of scan lines that may lie on plates, of all drives of a survey."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.core.arrays import Floats, Integers
+from processing.core.monitor import Monitor
+from processing.methods.road.gutters.head_position import head_position
+from processing.methods.road.objects.drive_chunks import DriveChunk, chunks_of
+from processing.methods.road.objects.sparse_plan import SparsePlan
+from processing.methods.road.signs.brightness import CLASSES, bright_bounds
+from processing.methods.road.signs.piece_kernels import (
+    ORIGIN_EVERY,
+    PIECE,
+    ChunkPoints,
+    PieceLimits,
+    brightness_kernel,
+    heights_kernel,
+    pieces_kernel,
+    range_class,
+    range_of,
+    runs_kernel,
+)
+from processing.recording.drive import Drive
+
+_LOWEST_M = 1.0
+"""Above the ground: signs hang from 1.8 m on (道路標識設置基準 2-2), plates below them and worn
+posts lower."""
+
+_SHORTEST_M = 0.07
+"""Of a piece that isn't bright: the smallest plate is 10 cm high (標識令, 補助標識)."""
+
+_LONGEST_M = 6.0
+"""Of a piece: across the largest guide sign."""
+
+_SAMPLES = 40
+_SAMPLE_POINTS = 2_000
+"""Stretches of a drive, and points of each, from which brightness, noise and spacing follow."""
+
+_USUAL_PULSES = 2_000
+"""Of a turn, where a drive doesn't say."""
+
+_FEWEST_STRAIGHT_M = 0.012
+_STRAIGHT_NOISES = 4.0
+"""Points of a straight piece lie so near to its line: four times the noise, and what a plate that
+was bent by a few millimetres adds."""
+
+_MOST_STRAIGHT_M = 0.04
+
+
+@dataclass(frozen=True)
+class ScanPieces:
+    """Straight pieces.
+
+    Attributes
+    ----------
+    values : (n, PIECE) float64
+        Columns of :mod:`.piece_kernels`, m about the origin of the plan.
+    drive : (n,) int64
+    row : (n,) int64
+        Which turn of its drive's scanner each is of.
+    ground : (n,) float64
+        Height of the ground below its middle, m about the origin of the plan.
+    """
+
+    values: Floats
+    drive: Integers
+    row: Integers
+    ground: Floats
+
+    def __len__(self) -> int:
+        return len(self.values)
+
+
+class _Head:
+    """What is known of a drive's scanner: where it was, how fine it looks, what is bright to it."""
+
+    def __init__(self, drive: Drive, plan: SparsePlan, ground: NDArray[np.float32]) -> None:
+        self._drive, self._plan = drive, plan
+        self._ground = ground.reshape(-1)
+        self._lever = head_position(drive)
+        revolutions = drive.revolutions
+        self.pulses = revolutions.pulses_per_revolution if revolutions else _USUAL_PULSES
+        self.limits = PieceLimits(
+            _LOWEST_M, 2 * np.pi / self.pulses, _FEWEST_STRAIGHT_M, _SHORTEST_M, _LONGEST_M,
+            drive.trajectory is not None, 10.0,
+        )  # fmt: skip
+        samples = list(self._samples())
+        straight = _STRAIGHT_NOISES * _noise([one.local for one, _ in samples])
+        limit = min(max(straight, _FEWEST_STRAIGHT_M), _MOST_STRAIGHT_M)
+        self.limits = self.limits._replace(straight_m=limit)
+        self.bounds = self._bright(samples)
+
+    def points(self, start: int, local: Floats, is_noise: NDArray[np.bool_]) -> ChunkPoints:
+        """Points as the kernels take them."""
+        stop = start + len(local)
+        columns = self._drive.columns
+        return ChunkPoints(
+            np.ascontiguousarray(local),
+            np.asarray(columns["pulse"][start:stop], np.int64),
+            is_noise,
+            np.asarray(columns["intensity"][start:stop], np.uint16),
+            self._origins(start, stop),
+        )
+
+    def heights(self, local: Floats) -> NDArray[np.float32]:
+        """(n,) above the ground."""
+        heights = np.empty(len(local), np.float32)
+        heights_kernel(local, self._plan.table, self._ground, heights)
+        return heights
+
+    def _origins(self, start: int, stop: int) -> Floats:
+        """(m, 3) where the scanner was at every 256th point."""
+        trajectory = self._drive.trajectory
+        count = (stop - start - 1) // ORIGIN_EVERY + 1
+        if trajectory is None:
+            return np.zeros((count, 3))
+        times = np.asarray(self._drive.columns["time"][start:stop:ORIGIN_EVERY], np.float64)
+        times = np.clip(np.nan_to_num(times), trajectory.time[0], trajectory.time[-1])
+        is_covered = trajectory.covers(times)
+        if not is_covered.all():
+            times[~is_covered] = (
+                trajectory.time[0] if not is_covered.any() else times[is_covered][0]
+            )
+        turned = np.einsum("nij,j->ni", trajectory.rotations_at(times), self._lever)
+        return np.asarray(trajectory.positions_at(times) + turned - self._plan.origin)
+
+    def _samples(self) -> list[tuple[ChunkPoints, NDArray[np.float32]]]:
+        drive = self._drive
+        step = max(1, drive.count // _SAMPLES)
+        found = []
+        for start in range(0, drive.count, step):
+            stop = min(start + min(step, _SAMPLE_POINTS), drive.count)
+            local = drive.coordinates.chunk_about(start, stop, self._plan.origin)
+            none = np.zeros(len(local), np.bool_)
+            found.append((self.points(start, local, none), self.heights(local)))
+        return found
+
+    def _bright(self, samples: Sequence[tuple[ChunkPoints, NDArray[np.float32]]]) -> Floats:
+        intensity, classes = [], []
+        for chunk, heights in samples:
+            for point in np.flatnonzero(heights >= self.limits.lowest_m).tolist():
+                intensity.append(int(chunk.intensity[point]))
+                classes.append(range_class(range_of(chunk, point, self.limits), CLASSES))
+        return bright_bounds(np.array(intensity, np.uint16), np.array(classes, np.int64))
+
+
+def scan_pieces(
+    drives: Sequence[Drive], plan: SparsePlan, ground: NDArray[np.float32], monitor: Monitor
+) -> ScanPieces:
+    """All straight pieces of scan lines above the ground that end in the free, or are bright."""
+    heads = [_Head(drive, plan, ground) for drive in drives]
+    values: list[Floats] = []
+    owners: list[Integers] = []
+    rows: list[Integers] = []
+    for chunk in chunks_of(drives, plan.origin, monitor):
+        head = heads[chunk.drive]
+        found, pulses = _pieces_of(chunk, head)
+        values.append(found)
+        owners.append(np.full(len(found), chunk.drive, np.int64))
+        rows.append((pulses / head.pulses).astype(np.int64))
+    if not values:
+        none = np.empty(0, np.int64)
+        return ScanPieces(np.empty((0, PIECE)), none, none, np.empty(0))
+    whole = np.concatenate(values)
+    middles = np.ascontiguousarray((whole[:, 0:3] + whole[:, 3:6]) / 2)
+    heights = heads[0].heights(middles)
+    return ScanPieces(whole, np.concatenate(owners), np.concatenate(rows), middles[:, 2] - heights)
+
+
+def _pieces_of(chunk: DriveChunk, head: _Head) -> tuple[Floats, Integers]:
+    """Pieces of a chunk, and the pulse of the first point of each."""
+    points = head.points(chunk.start, chunk.local, chunk.is_noise)
+    kinds = np.empty(len(chunk.local), np.uint8)
+    brightness_kernel(points, head.heights(chunk.local), head.bounds, head.limits, kinds)
+    runs = np.empty(len(kinds), np.int32)
+    runs_kernel(points, kinds, head.limits, runs)
+    room = np.empty((int(np.count_nonzero(kinds)) // 2 + 1, PIECE))
+    found = room[: pieces_kernel(points, kinds, runs, head.limits, room)].copy()
+    pulses = points.pulses[found[:, 10].astype(np.int64)]
+    found[:, 10:12] += chunk.start
+    return found, pulses
+
+
+def _noise(parts: Sequence[Floats]) -> float:
+    """How far points lie off the line of their neighbours, m: the middle of all."""
+    off = []
+    for local in parts:
+        if len(local) < 3:
+            continue
+        chord = local[2:] - local[:-2]
+        long = np.maximum(np.linalg.norm(chord, axis=1), 1e-9)
+        beside = local[1:-1] - (local[2:] + local[:-2]) / 2
+        along = np.einsum("ij,ij->i", beside, chord) / long
+        across = np.sqrt(np.maximum(np.einsum("ij,ij->i", beside, beside) - along**2, 0.0))
+        off.append(across[long < 0.3])
+    every = np.concatenate(off) if off else np.empty(0)
+    # The second difference of three points scatters √1.5 as much as one point does.
+    return float(np.median(every) / 0.6745 / np.sqrt(1.5)) if every.size else 0.0

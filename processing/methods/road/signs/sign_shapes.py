@@ -1,0 +1,156 @@
+"""The plates that road signs are made of: shapes and standard sizes, as data."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+
+from processing.core.arrays import Floats
+
+CIRCLE, TRIANGLE, SQUARE, DIAMOND, PENTAGON, RECTANGLE = (
+    "circle",
+    "triangle",
+    "square",
+    "diamond",
+    "pentagon",
+    "rectangle",
+)
+
+STANDARD_M: dict[str, tuple[float, ...]] = {
+    CIRCLE: (0.4, 0.6, 0.9, 1.2),
+    TRIANGLE: (0.533, 0.6, 0.8, 1.2, 1.6),
+    SQUARE: (0.4, 0.45, 0.6, 0.9, 1.2, 1.35, 1.8),
+    DIAMOND: (0.45, 0.6, 0.9, 1.2),
+    PENTAGON: (0.4, 0.6, 0.9, 1.2),
+}
+"""Diameters and sides: those of Takahashi 2022, Table 8-1 (2/3, 1, 1.5 and 2 times the usual size),
+and of the Order on Road Signs (標識令, 別表第二) where that has more: warning signs (diamonds) and
+small squares of 45 cm, stop signs of 60 cm."""
+
+_USUAL_M: dict[str, tuple[float, ...]] = {
+    CIRCLE: (0.6,),
+    TRIANGLE: (0.8,),
+    SQUARE: (0.6, 0.9),
+    DIAMOND: (0.45, 0.6),
+    PENTAGON: (0.6,),
+}
+"""Sizes of scale 1 (標識令, 別表第二; Table 8-1)."""
+
+_WALL_SHARES = (2 / 3, 1 / 3)
+"""Height of a pentagon's upright sides over that of the whole, which is as high as it is wide.
+Table 8-1 gives a third of it (A×B×C = 60×20×60) without the figure that says of what: plates have
+been met whose roof is a third of their height and such whose sides are."""
+
+_CORNER_SHARE = 0.05
+"""Radius of a rounded corner over the shorter side: 3 cm of 60 cm (標識令, 別表第二, figures)."""
+
+_ARC = 3
+"""Corners that stand for a rounded one."""
+
+
+@dataclass(frozen=True)
+class SignShape:
+    """A plate's outline.
+
+    Attributes
+    ----------
+    shape : str
+        As the contract names them; a triangle stands on its tip.
+    size_m : float
+        Diameter or side; of a pentagon its base, of a rectangle its width.
+    high_m : float
+        Of the whole.
+    wall_share : float
+        Of a pentagon, the height of its upright sides over that of the whole; of others 0.
+    """
+
+    shape: str
+    size_m: float
+    high_m: float
+    wall_share: float = 0.0
+
+    @property
+    def wide_m(self) -> float:
+        """Of the whole."""
+        return self.size_m * np.sqrt(2) if self.shape == DIAMOND else self.size_m
+
+    @property
+    def is_usual(self) -> bool:
+        """Whether it has the size that is usual on ordinary roads."""
+        return self.size_m in _USUAL_M[self.shape]
+
+
+def shape_of(shape: str, size_m: float) -> SignShape:
+    """A plate of one size; rectangles have two and are made directly."""
+    high = {TRIANGLE: np.sqrt(3) / 2, DIAMOND: np.sqrt(2)}.get(shape, 1.0) * size_m
+    return SignShape(shape, size_m, float(high), _WALL_SHARES[0] if shape == PENTAGON else 0.0)
+
+
+@cache
+def standard_shapes() -> tuple[SignShape, ...]:
+    """All plates but rectangles."""
+    return tuple(
+        SignShape(one.shape, one.size_m, one.high_m, share)
+        for name, sizes in STANDARD_M.items()
+        for one in (shape_of(name, size) for size in sizes)
+        for share in (_WALL_SHARES if name == PENTAGON else (0.0,))
+    )
+
+
+@cache
+def sharp_outline_of(shape: SignShape) -> Floats:
+    """(n, 2) corners, m: right and up about the middle of the outline's box, anticlockwise.
+
+    Of a circle one row, its radius.
+    """
+    half, tall = shape.wide_m / 2, shape.high_m / 2
+    if shape.shape == CIRCLE:
+        corners = [[half, 0.0]]
+    elif shape.shape == TRIANGLE:
+        corners = [[0.0, -tall], [half, tall], [-half, tall]]
+    elif shape.shape == DIAMOND:
+        corners = [[0.0, -tall], [half, 0.0], [0.0, tall], [-half, 0.0]]
+    elif shape.shape == PENTAGON:
+        eaves = -tall + shape.high_m * shape.wall_share
+        corners = [[-half, -tall], [half, -tall], [half, eaves], [0.0, tall], [-half, eaves]]
+    else:
+        corners = [[-half, -tall], [half, -tall], [half, tall], [-half, tall]]
+    return np.array(corners)
+
+
+@cache
+def outline_of(shape: SignShape) -> Floats:
+    """The same with rounded corners."""
+    corners = sharp_outline_of(shape)
+    if len(corners) == 1:
+        return corners
+    return _rounded(corners, _CORNER_SHARE * min(shape.size_m, shape.high_m))
+
+
+def centroid_of(shape: SignShape) -> Floats:
+    """(2,) middle of the area, right and up of the middle of the outline's box."""
+    corners = outline_of(shape)
+    if len(corners) == 1:
+        return np.zeros(2)
+    ahead = np.roll(corners, -1, axis=0)
+    cross = corners[:, 0] * ahead[:, 1] - ahead[:, 0] * corners[:, 1]
+    return np.asarray(((corners + ahead) * cross[:, None]).sum(axis=0) / (3 * cross.sum()))
+
+
+def _rounded(corners: Floats, radius: float) -> Floats:
+    before, ahead = np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0)
+    places = []
+    for one, previous, following in zip(corners, before, ahead, strict=True):
+        back = (previous - one) / np.linalg.norm(previous - one)
+        on = (following - one) / np.linalg.norm(following - one)
+        half = np.arccos(np.clip(back @ on, -1, 1)) / 2
+        middle = (back + on) / np.linalg.norm(back + on)
+        centre = one + middle * radius / np.sin(half)
+        start = one + back * radius / np.tan(half) - centre
+        end = one + on * radius / np.tan(half) - centre
+        turn = np.arctan2(start[0] * end[1] - start[1] * end[0], start @ end)
+        angles = np.arctan2(start[1], start[0]) + np.linspace(0, turn, _ARC)
+        places.append(centre + radius * np.column_stack([np.cos(angles), np.sin(angles)]))
+    return np.concatenate(places)

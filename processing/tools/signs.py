@@ -1,0 +1,186 @@
+"""The tool SIGNS: road signs with shape, size and facing, found or by positions that are given."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from processing.core.arrays import Floats
+from processing.core.monitor import Monitor
+from processing.core.parameters import file, least_confidence
+from processing.core.text import Text
+from processing.methods.road.signs.asked_signs import asked_signs, is_near, shapes_near
+from processing.methods.road.signs.initial_positions import (
+    FARTHEST_M,
+    InitialPosition,
+    MissedPositions,
+    misplaced,
+    read_positions,
+)
+from processing.methods.road.signs.road_signs import RoadSign, road_signs
+from processing.methods.road.signs.sign_shapes import SignShape, standard_shapes
+from processing.recording.drive import Drive
+from processing.scoring.scorers import SIGN_SCORER
+from processing.tools.tool import (
+    Candidate,
+    CandidateResult,
+    CandidateValue,
+    Needs,
+    SurveyFinder,
+    Tool,
+    ToolButton,
+)
+
+_ONE_POST_M = 0.8
+"""Between middles of plates that hang on one post, in plan: side by side, or back to back."""
+
+_CUT_OUT_M = 3.0
+"""About a position, plates are looked at (Takahashi 2022, 8.3)."""
+
+
+@dataclass(frozen=True)
+class SignParameters:
+    """Where signs are known to be, and how sure one must be to be shown."""
+
+    positions: str = file(
+        name=Text("Initial positions", "初期位置"),
+        explanation=Text(
+            "A CSV file of rough positions (easting_m, northing_m, and where known height_m, "
+            "shape, size_m): only these signs are measured. Without it all signs are looked for.",
+            "概略位置のCSVファイル（easting_m, northing_m、分かればheight_m, shape, size_m）。"
+            "指定すると、その標識だけを計測します。指定しない場合は全ての標識を探します。",
+        ),
+    )
+    least_confidence: float = least_confidence(
+        0.5,
+        Text(
+            "What is less likely to be a sign is left out.",
+            "標識である見込みがこの値より低いものは出力しません。",
+        ),
+    )
+
+
+def find_signs(
+    drives: tuple[Drive, ...], parameters: SignParameters, monitor: Monitor
+) -> CandidateResult:
+    """Road signs of a survey: one result for all heads and passes.
+
+    Raises
+    ------
+    BadFile, UserError
+        The file of positions isn't a table of them, or can't be read.
+    """
+    if parameters.positions.strip():
+        return _by_positions(drives, read_positions(Path(parameters.positions)), monitor)
+    found = road_signs(drives, monitor)
+    signs = [one for one in found if one.confidence >= parameters.least_confidence]
+    return CandidateResult(_candidates(signs), _note(drives, found, signs))
+
+
+def _by_positions(
+    drives: Sequence[Drive], positions: Sequence[InitialPosition], monitor: Monitor
+) -> CandidateResult:
+    """The signs of given positions; those without one are named."""
+    lowest = np.min([drive.info.lowest for drive in drives], axis=0)
+    highest = np.max([drive.info.highest for drive in drives], axis=0)
+    missed = misplaced(positions, lowest, highest)
+    elsewhere = {*missed.outside, *missed.swapped, *missed.degrees}
+    here = [one for one in positions if one.line not in elsewhere]
+
+    def shapes_at(place: Floats) -> Sequence[SignShape]:
+        if not is_near(place, here, _CUT_OUT_M + FARTHEST_M):
+            return ()
+        return shapes_near(place, here, standard_shapes())
+
+    signs, without = asked_signs(road_signs(drives, monitor, shapes_at), here)
+    nothing = tuple(one.line for one in without)
+    whole = MissedPositions(missed.outside, missed.swapped, missed.degrees, nothing)
+    return CandidateResult(_candidates(signs), whole.note())
+
+
+def _note(drives: Sequence[Drive], found: Sequence[RoadSign], signs: Sequence[RoadSign]) -> Text:
+    if not any(drive.count for drive in drives):
+        return Text("The drive has no points.", "走行データに点がありません。")
+    dull = [drive.info.name for drive in drives if _has_no_intensity(drive)]
+    if dull:
+        return Text(
+            "Points have no intensity, so that fronts and backs of signs look alike: {names}.",
+            "反射強度がないため、標識板の表と裏を区別できません: {names}",
+        ).filled(names=", ".join(dull))
+    if signs:
+        return Text("", "")
+    if not found:
+        return Text(
+            "No upright plate was measured beside the road.",
+            "道路沿いに、標識板とみなせる平らな板は計測されていません。",
+        )
+    return Text(
+        f"None of {len(found)} flat things looks like a sign.",
+        f"平らな物{len(found)}件のうち、標識とみなせるものはありませんでした。",
+    )
+
+
+def _has_no_intensity(drive: Drive) -> bool:
+    step = max(1, drive.count // 10_000)
+    return drive.count > 0 and not np.asarray(drive.columns["intensity"][::step]).any()
+
+
+def _candidates(signs: Sequence[RoadSign]) -> tuple[Candidate, ...]:
+    places = np.array([one.centre[:2] for one in signs]).reshape(-1, 2)
+    counts = [int((np.hypot(*(places - one.centre[:2]).T) <= _ONE_POST_M).sum()) for one in signs]
+    return tuple(_candidate(one, count) for one, count in zip(signs, counts, strict=True))
+
+
+def _candidate(sign: RoadSign, plates: int) -> Candidate:
+    plate = sign.plate
+    normal = plate.normal
+    edge = float(plate.outline[:, 2].min() - plate.centre[2] + sign.centre[2]) - sign.ground_m
+    attributes: dict[str, CandidateValue] = {
+        "shape": plate.shape.shape,
+        "size_m": round(plate.shape.size_m, 3),
+        "width_m": round(plate.shape.wide_m, 3),
+        "plate_high_m": round(plate.shape.high_m, 3),
+        "facing_deg": round(float(np.degrees(np.arctan2(normal[0], normal[1])) % 360), 1) % 360,
+        "height_m": round(float(sign.centre[2]) - sign.ground_m, 2),
+        "lower_edge_m": round(edge, 2),
+        "tilt_deg": round(float(np.degrees(np.arcsin(np.clip(normal[2], -1, 1)))), 1),
+        "roll_deg": round(float(np.degrees(plate.evidence.roll_rad)), 1),
+        "supplementary": sign.is_supplement,
+        "plates": plates,
+        "scan_lines": plate.evidence.turns,
+        "front_seen": plate.evidence.bright > 0.5,
+    }
+    return Candidate(
+        "sign",
+        "point",
+        sign.centre[None],
+        np.array([sign.point], np.int64),
+        sign.confidence,
+        attributes,
+        np.array([sign.drive], np.int64),
+    )
+
+
+SIGNS = Tool(
+    id="signs",
+    name=Text("Road signs", "道路標識の抽出"),
+    explanation=Text(
+        "Finds road signs on posts, poles, arms and walls, or those near given positions, and "
+        "tells place, shape, size and facing from all heads and passes of a survey.",
+        "支柱・電柱・アーム・壁面などの道路標識、または指定した概略位置の標識を"
+        "全スキャナー・全走行のデータから抽出し、位置・形・寸法・向きを計測します。",
+    ),
+    group=Text("Road", "道路"),
+    needs=Needs.POINTS,
+    parameters=SignParameters,
+    method=SurveyFinder(find_signs),
+    makes=("sign",),
+    sought=("positions",),
+    button=ToolButton(
+        Text("Find road signs", "道路標識を抽出"), "Ctrl+Shift+F7", "mdi6.sign-direction"
+    ),
+    scorer=SIGN_SCORER,
+)
