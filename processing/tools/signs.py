@@ -107,8 +107,9 @@ def _note(drives: Sequence[Drive], found: Sequence[RoadSign], signs: Sequence[Ro
     dull = [drive.info.name for drive in drives if _has_no_intensity(drive)]
     if dull:
         return Text(
-            "Points have no intensity, so that fronts and backs of signs look alike: {names}.",
-            "反射強度がないため、標識板の表と裏を区別できません: {names}",
+            "Points have no intensity, or all the same, so that fronts and backs of signs look "
+            "alike: {names}.",
+            "反射強度がない（または一定の）ため、標識板の表と裏を区別できません: {names}",
         ).filled(names=", ".join(dull))
     if signs:
         return Text("", "")
@@ -125,7 +126,7 @@ def _note(drives: Sequence[Drive], found: Sequence[RoadSign], signs: Sequence[Ro
 
 def _has_no_intensity(drive: Drive) -> bool:
     step = max(1, drive.count // 10_000)
-    return drive.count > 0 and not np.asarray(drive.columns["intensity"][::step]).any()
+    return drive.count > 0 and not np.ptp(drive.columns["intensity"][::step])
 
 
 def _candidates(signs: Sequence[RoadSign]) -> tuple[Candidate, ...]:
@@ -138,12 +139,13 @@ def _candidate(sign: RoadSign, plates: int) -> Candidate:
     plate = sign.plate
     normal = plate.normal
     edge = float(plate.outline[:, 2].min() - plate.centre[2] + sign.centre[2]) - sign.ground_m
+    facing = round(float(np.degrees(np.arctan2(normal[0], normal[1]))) % 360, 1)
     attributes: dict[str, CandidateValue] = {
         "shape": plate.shape.shape,
         "size_m": round(plate.shape.size_m, 3),
         "width_m": round(plate.shape.wide_m, 3),
         "plate_high_m": round(plate.shape.high_m, 3),
-        "facing_deg": round(float(np.degrees(np.arctan2(normal[0], normal[1])) % 360), 1) % 360,
+        "facing_deg": facing % 360,
         "height_m": round(float(sign.centre[2]) - sign.ground_m, 2),
         "lower_edge_m": round(edge, 2),
         "tilt_deg": round(float(np.degrees(np.arcsin(np.clip(normal[2], -1, 1)))), 1),

@@ -35,6 +35,7 @@ from processing.tools.normals import NORMALS, NormalsParameters
 from processing.tools.registry import TOOLS, point_tools
 from processing.tools.runner import RunRequest, columns_of, run
 from processing.tools.segments import SEGMENTS, SegmentsParameters, compute_segments
+from processing.tools.signs import SIGNS
 from processing.tools.template import TEMPLATE
 from processing.tools.tool import FinishedColumns, PointBlock, PointResult
 from processing.tools.trees import TREES
@@ -69,7 +70,7 @@ IN_SPACE = (
     (GROUND_TOOL.id, GroundParameters(method="lowest", tolerance_m=0.1)),
 )
 """Tools that look around in space, whenever a neighbour was measured, by parts of their own."""
-CHUNKS = (TEMPLATE.id, CURBS.id, GUTTERS.id, TREES.id)
+CHUNKS = (TEMPLATE.id, CURBS.id, GUTTERS.id, SIGNS.id, TREES.id)
 """Tools that find candidates, and read the street a stretch at a time."""
 
 

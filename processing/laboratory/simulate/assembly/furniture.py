@@ -6,6 +6,7 @@ from processing.laboratory.simulate.border.barriers import add_barriers
 from processing.laboratory.simulate.border.boxes import add_boxes
 from processing.laboratory.simulate.border.land import add_land
 from processing.laboratory.simulate.border.lots import add_lots
+from processing.laboratory.simulate.roadside.boards import add_boards
 from processing.laboratory.simulate.roadside.bollards import add_bollards
 from processing.laboratory.simulate.roadside.lights import add_lights
 from processing.laboratory.simulate.roadside.mirrors import add_mirrors
@@ -38,6 +39,7 @@ KINDS = (
     add_weeds,
     add_boxes,
     add_barriers,
+    add_boards,
 )
 """In this order: what comes first chooses its places first."""
 

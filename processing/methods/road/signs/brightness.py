@@ -12,15 +12,19 @@ from numpy.typing import NDArray
 
 from processing.core.arrays import Floats
 
+_SHARE, _STEPS_OF_SHARE = 0.7, 0.524
+"""Quantile from which the spread follows, and how many standard deviations it lies above the
+middle: where little rises beside the road up to a quarter of that may be faces of signs."""
+
 CLASSES = 10
-"""Of ranges: up to 4 m, and nine of which each ends half as far again, the last one beyond 100 m."""
+"""Of ranges: up to 4 m, and nine that each end half as far again, the last one beyond 100 m."""
 
 _LEAST_POINTS = 400
 """Of a range class that tells its own limit; others take that of all."""
 
 _SPREADS = 4.5
-"""How many times the step from the middle of all intensities to their 84 % lies above the middle
-what nothing diffuse reaches. Reflectances beside a road run from 0.1 to 0.6 about 0.35: white is
+"""How many standard deviations of all intensities lies above their middle what nothing diffuse
+reaches. Reflectances beside a road run from 0.1 to 0.6 about 0.35: white is
 about two steps above the middle, a sign's face of the least class at a thirtieth of its design
 value (JIS Z 9117: 70 cd/lx/m² against 0.3 of a white wall) twenty and more."""
 
@@ -50,5 +54,5 @@ def bright_bounds(intensity: NDArray[np.uint16], classes: NDArray[np.int64]) -> 
             middles[number] = float(np.median(chosen))
     middles = np.maximum(middles, 1.0)
     # One spread for all: far away a single wall may be all that there is.
-    step = float(np.quantile(intensity / middles[classes], 0.84)) - 1.0
+    step = (float(np.quantile(intensity / middles[classes], _SHARE)) - 1.0) / _STEPS_OF_SHARE
     return np.asarray(middles * (1.0 + _SPREADS * step)) if step > 0 else bounds

@@ -18,8 +18,14 @@ from processing.core.kernels import kernel
 LINE = 8
 U, V, ALONG_U, ALONG_V, LONG, SPACING, OPEN_START, OPEN_END = range(LINE)
 """Values of a line: its start (m), direction, length, spacing of its pulses; 1 where the rim lies
-within a spacing of an end, 0 where the plate may go on behind something, −1 of a line that met
-nothing from its start on."""
+within a spacing of an end, 0 where the plate may go on behind something, 2 where the line was cut
+at the rim of another plate, −1 of a line that met nothing from its start on."""
+
+_CUT = 2.0
+
+_GAP_M = 0.12
+"""Between plates on one post, at most: a pulse or two pass between them, so that scan lines go on
+from one to the other."""
 
 SIGMA_M = 0.012
 """How far ends lie off: noise, the width of the beam, an outline that was bent."""
@@ -36,6 +42,9 @@ ROLL_RAD = math.radians(3.0)
 _MISSED_M = 0.05
 """How far turns that met nothing lie off where they are expected."""
 
+_MISSED_CAP = 5.0
+"""Most that such a turn counts: something may have hidden the plate from it."""
+
 _PULL = 0.25
 """Of the middle of the interval that an end leaves: where nothing else tells, the likeliest place
 is the middle; small against what lies outside of it."""
@@ -48,11 +57,17 @@ middle."""
 _FINE_STEP_M = 0.05
 """Plates are turned in steps finer than this."""
 
+_LEAST_SIDE_M = 0.05
+"""Of a rectangle: half of the smallest there is."""
+
 _ROUNDS = 16
 """Steps of one length at most."""
 
 STARTS = 9
 """Places from which an outline is moved, at most."""
+
+_MOVED = 40
+"""Of all outlines at all starts that are moved: those that fit best before."""
 
 
 @kernel
@@ -101,12 +116,14 @@ def chord_of(corners: Floats, line: Floats, pose: Floats) -> tuple[float, float]
 def _end_cost(beyond: float, spacing: float, is_open: float, sigma_m: float) -> float:
     """What an end says against a rim so far beyond it."""
     off = 0.0
-    if beyond < 0.0:
+    if is_open == _CUT and beyond < 0.0:
+        off = max(0.0, -beyond - _GAP_M) / sigma_m
+    elif beyond < 0.0:
         off = -beyond / sigma_m
     elif is_open > 0.0 and beyond > spacing:
         off = (beyond - spacing) / sigma_m
     cost = off * off
-    if is_open > 0.0:
+    if is_open == 1.0:
         middle = (beyond - spacing / 2) / max(spacing, 1e-3)
         cost += _PULL * min(middle * middle, 1.0)
     return min(cost, CAP)
@@ -124,7 +141,7 @@ def cost_of(corners: Floats, lines: Floats, pose: Floats, sigma_m: float, enough
         if line[OPEN_START] < 0.0:
             missed = leaves - max(enters, 0.0) - line[SPACING]
             if missed > 0.0:
-                total += min((missed / max(_MISSED_M, sigma_m)) ** 2, CAP)
+                total += min((missed / max(_MISSED_M, sigma_m)) ** 2, _MISSED_CAP)
         elif leaves <= enters:
             total += 2 * CAP
         else:
@@ -196,8 +213,9 @@ def search_kernel(
     steps : (k,)
         m, falling; the largest is what ends may lie off, too.
     costs : (t, STARTS), poses : (t, STARTS, 3)
-        Filled; infinite where a start is not needed.
+        Filled; infinite where a start is not needed, or far from the best ones.
     """
+    pose = np.empty(3)
     for number in range(outlines.shape[0]):
         costs[number, :] = math.inf
         if counts[number] == 0:
@@ -211,12 +229,21 @@ def search_kernel(
             for j in range(-1, 2):
                 if (i != 0 and spare_u < steps[0]) or (j != 0 and spare_v < steps[0]):
                     continue
-                pose = poses[number, start]
                 pose[0] = (box[0, 0] + box[1, 0]) / 2 + i * spare_u / 2
                 pose[1] = (box[0, 1] + box[1, 1]) / 2 + j * spare_v / 2
                 pose[2] = 0.0
-                costs[number, start] = fit_kernel(corners, lines, steps, steps[0], pose)
+                poses[number, start] = pose
+                costs[number, start] = cost_of(corners, lines, pose, 2 * steps[0], math.inf)
                 start += 1
+    bound = np.sort(costs.ravel())[min(_MOVED, costs.size - 1)]
+    for number in range(outlines.shape[0]):
+        for start in range(STARTS):
+            if costs[number, start] > bound or math.isinf(costs[number, start]):
+                costs[number, start] = math.inf
+                continue
+            corners = outlines[number, : counts[number]]
+            pose = poses[number, start]
+            costs[number, start] = fit_kernel(corners, lines, steps, steps[0], pose)
 
 
 @kernel
@@ -256,21 +283,7 @@ def stretch_kernel(
             for way in range(14 if step <= _FINE_STEP_M else 12):
                 trial[:] = pose
                 other[:] = sides
-                sign = 1.0 if way % 2 == 0 else -1.0
-                if way < 8:
-                    axis = way // 4
-                    if fixed[axis] > 0.0:
-                        continue
-                    # One side of the rectangle moves, the opposite one stays.
-                    other[axis] += sign * step
-                    trial[axis] += (0.5 if way % 4 < 2 else -0.5) * step
-                elif way < 12:
-                    trial[(way - 8) // 2] += sign * step
-                else:
-                    trial[2] += _ROLL_PER_M * step * sign
-                    if abs(trial[2]) > _MOST_ROLL_RAD:
-                        continue
-                if other[0] < 0.05 or other[1] < 0.05:
+                if not _changed(way, step, fixed, trial, other):
                     continue
                 _set_corners(corners, other[0], other[1])
                 cost = cost_of(corners, lines, trial, sigma_m, best)
@@ -282,6 +295,25 @@ def stretch_kernel(
             if not moved:
                 break
     return best
+
+
+@kernel
+def _changed(way: int, step: float, fixed: Floats, pose: Floats, sides: Floats) -> bool:
+    """Move or stretch a rectangle in one of 14 ways; False where that may not be.
+
+    Of the first eight one side moves and the opposite one stays.
+    """
+    sign = 1.0 if way % 2 == 0 else -1.0
+    if way < 8:
+        axis = way // 4
+        sides[axis] += sign * step
+        pose[axis] += (0.5 if way % 4 < 2 else -0.5) * step
+        return fixed[axis] == 0.0 and sides[axis] >= _LEAST_SIDE_M
+    if way < 12:
+        pose[(way - 8) // 2] += sign * step
+        return True
+    pose[2] += _ROLL_PER_M * step * sign
+    return abs(pose[2]) <= _MOST_ROLL_RAD
 
 
 @kernel
@@ -320,22 +352,22 @@ def explain_kernel(
             left += 1
             continue
         pulses += (high - low) / line[SPACING] + 1.0
-        if enters > SPLIT_M:
+        if enters > (_GAP_M if line[OPEN_START] == _CUT else SPLIT_M):
             _cut(line, 0.0, enters, rest[left])
             left += 1
         else:
             cost += _end_cost(-enters, line[SPACING], line[OPEN_START], SIGMA_M)
             ends += 1
-            if line[OPEN_START] > 0.0:
+            if line[OPEN_START] == 1.0:
                 _block(line, -line[SPACING], -1.0, blocked[free])
                 free += 1
-        if line[LONG] - leaves > SPLIT_M:
+        if line[LONG] - leaves > (_GAP_M if line[OPEN_END] == _CUT else SPLIT_M):
             _cut(line, leaves, line[LONG], rest[left])
             left += 1
         else:
             cost += _end_cost(leaves - line[LONG], line[SPACING], line[OPEN_END], SIGMA_M)
             ends += 1
-            if line[OPEN_END] > 0.0:
+            if line[OPEN_END] == 1.0:
                 _block(line, line[LONG] + line[SPACING], 1.0, blocked[free])
                 free += 1
     return cost, ends, pulses, left, free
@@ -349,9 +381,9 @@ def _cut(line: Floats, start: float, end: float, part: Floats) -> None:
     part[V] = line[V] + start * line[ALONG_V]
     part[LONG] = end - start
     if start > 0.0:
-        part[OPEN_START] = 0.0
+        part[OPEN_START] = _CUT
     if end < line[LONG]:
-        part[OPEN_END] = 0.0
+        part[OPEN_END] = _CUT
 
 
 @kernel

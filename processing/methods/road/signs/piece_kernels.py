@@ -44,7 +44,9 @@ less deep (サッシ: 10 to 20 cm)."""
 
 
 class PieceLimits(NamedTuple):
-    """``lowest_m``: above the ground; ``radians``: between pulses; ``straight_m``: off a line;
+    """What is followed.
+
+    ``lowest_m``: above the ground; ``radians``: between pulses; ``straight_m``: off a line;
     ``shortest_m``, ``longest_m``: of a piece; ``has_origin``: whether the scanner's place is known;
     ``usual_m``: range where it is not.
     """
@@ -81,6 +83,14 @@ def range_of(chunk: ChunkPoints, point: int, limits: PieceLimits) -> float:
     north = chunk.local[point, 1] - place[1]
     up = chunk.local[point, 2] - place[2]
     return math.sqrt(east * east + north * north + up * up)
+
+
+def ranges_of(chunk: ChunkPoints, limits: PieceLimits) -> Floats:
+    """(n,) how far points are from the scanner, m."""
+    if not limits.has_origin:
+        return np.full(len(chunk.local), limits.usual_m)
+    places = np.repeat(chunk.origins, ORIGIN_EVERY, axis=0)[: len(chunk.local)]
+    return np.asarray(np.linalg.norm(chunk.local - places, axis=1))
 
 
 @kernel
@@ -146,19 +156,8 @@ def runs_kernel(
         runs[point] = -1
         if kinds[point] == LOW:
             continue
-        pulse = chunk.pulses[point]
         step = range_of(chunk, point, limits) * limits.radians
-        best, least = -1, math.inf
-        for slot in range(_OPEN_RUNS):
-            if last[slot] < 0:
-                continue
-            ahead = pulse - chunk.pulses[last[slot]]
-            if ahead > _MISSING or ahead < 0:
-                last[slot] = -1
-            elif ahead > 0:
-                off = _apart(chunk.local, point, last[slot]) / ahead
-                if off < least:
-                    best, least = slot, off
+        best, least = _nearest_run(chunk, point, last)
         if best < 0 or least > _LOOSE * step + 2 * limits.straight_m:
             # The run that was followed last of all gives way.
             best = 0
@@ -171,6 +170,26 @@ def runs_kernel(
             runs[point] = runs[last[best]]
         last[best] = point
     return count
+
+
+@kernel
+def _nearest_run(chunk: ChunkPoints, point: int, last: Integers) -> tuple[int, float]:
+    """The open run whose last point is nearest, over the pulses between; −1: none is open.
+
+    Runs that ended too long ago are closed.
+    """
+    best, least = -1, math.inf
+    for slot in range(_OPEN_RUNS):
+        if last[slot] < 0:
+            continue
+        ahead = chunk.pulses[point] - chunk.pulses[last[slot]]
+        if ahead > _MISSING or ahead < 0:
+            last[slot] = -1
+        elif ahead > 0:
+            off = _apart(chunk.local, point, last[slot]) / ahead
+            if off < least:
+                best, least = slot, off
+    return best, least
 
 
 @kernel
@@ -201,10 +220,36 @@ def pieces_kernel(
     int
         How many pieces were kept.
     """
+    starts, points = _by_run(runs)
+    kept = 0
+    stack = np.empty((256, 2), np.int64)
+    for run in range(len(starts) - 1):
+        first, stop = starts[run], starts[run + 1]
+        if stop - first < 2:
+            continue
+        depth = 1
+        stack[0, 0], stack[0, 1] = first, stop - 1
+        while depth > 0:
+            depth -= 1
+            low, high = stack[depth, 0], stack[depth, 1]
+            cut = _cut_of(chunk.local, points, low, high, limits.straight_m)
+            if cut < 0:
+                cut = _change_of(kinds, points, low, high)
+            if cut < 0:
+                kept += _keep(chunk, kinds, points[low : high + 1], limits, pieces[kept])
+            elif depth + 2 < len(stack):
+                stack[depth, 0], stack[depth, 1] = low, cut
+                stack[depth + 1, 0], stack[depth + 1, 1] = cut + 1, high
+                depth += 2
+    return kept
+
+
+@kernel
+def _by_run(runs: NDArray[np.int32]) -> tuple[Integers, Integers]:
+    """Where the points of each run begin, and the points run by run, in their order."""
     total = 0
     for point in range(len(runs)):
-        if runs[point] + 1 > total:
-            total = runs[point] + 1
+        total = max(total, runs[point] + 1)
     starts = np.zeros(total + 1, np.int64)
     for point in range(len(runs)):
         if runs[point] >= 0:
@@ -217,40 +262,13 @@ def pieces_kernel(
         if runs[point] >= 0:
             points[filled[runs[point]]] = point
             filled[runs[point]] += 1
-    kept = 0
-    stack = np.empty((256, 2), np.int64)
-    for run in range(total):
-        first, stop = starts[run], starts[run + 1]
-        if stop - first < 2:
-            continue
-        depth = 1
-        stack[0, 0], stack[0, 1] = first, stop - 1
-        while depth > 0:
-            depth -= 1
-            low, high = stack[depth, 0], stack[depth, 1]
-            cut = _cut_of(chunk.local, points, low, high, limits.straight_m)
-            if cut < 0:
-                cut = _change_of(kinds, points, low, high)
-                if cut >= 0 and depth + 2 < len(stack):
-                    stack[depth, 0], stack[depth, 1] = low, cut
-                    stack[depth + 1, 0], stack[depth + 1, 1] = cut + 1, high
-                    depth += 2
-                    continue
-                kept += _keep(chunk, kinds, points[low : high + 1], limits, pieces[kept])
-            elif depth + 2 < len(stack):
-                # The point of the bend belongs to the longer side's line as well as to the other.
-                stack[depth, 0], stack[depth, 1] = low, cut
-                stack[depth + 1, 0], stack[depth + 1, 1] = cut + 1, high
-                depth += 2
-    return kept
+    return starts, points
 
 
 @kernel
 def _cut_of(local: Floats, points: Integers, low: int, high: int, straight_m: float) -> int:
     """Behind which point a run is cut; −1: it is straight."""
     if high - low < 2:
-        if high == low:
-            return -1
         return -1
     a, b = points[low], points[high]
     east = local[b, 0] - local[a, 0]
@@ -410,7 +428,7 @@ def _beyond(
 def warm_up() -> None:
     """Compile the kernels."""
     none = np.zeros((2, 3))
-    limits = PieceLimits(1.0, 0.003, 0.02, 0.1, 6.0, True, 10.0)
+    limits = PieceLimits(1.0, 0.003, 0.02, 0.1, 6.0, has_origin=True, usual_m=10.0)
     chunk = ChunkPoints(
         none, np.arange(2), np.zeros(2, np.bool_), np.zeros(2, np.uint16), np.ones((1, 3))
     )

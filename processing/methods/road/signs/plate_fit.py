@@ -35,15 +35,20 @@ from processing.methods.road.signs.sign_shapes import (
 
 _COARSE = np.array([0.06, 0.03])
 _FINE = np.array([0.02, 0.01, 0.005, 0.002, 0.001])
-_STRETCH = np.array([0.12, 0.06, 0.03, 0.015, 0.007, 0.003])
+_STRETCH_COARSE = np.array([0.1, 0.04])
+_STRETCH = np.array([0.02, 0.008, 0.003])
 """Steps of the search, m: a plate's rim lies between pulses centimetres apart, and its place
 follows from all of them to millimetres."""
 
 _SEARCHED_LINES = 40
 """Longest lines that the coarse search looks at."""
 
-_TRIED = 10
-"""Outlines that are fitted finely."""
+_TRIED, _RECTANGLES = 8, 2
+"""Outlines of standard plates, and rectangles, that are fitted finely."""
+
+_MOST_LINES = 120
+"""Of a plane that outlines are laid on: more lie nearer to each other than a plate's rim is
+known."""
 
 _BESIDE = (4, 2, 1, 1)
 """Of those, how many others are looked for beside, for the first plate, the second and so on."""
@@ -66,6 +71,11 @@ _BELOW_M = (-0.03, 0.15)
 _CENTRED_M = 0.06
 """How far below a plate another one belongs to it, and how far beside its middle: clamps of one
 post hold them a few centimetres apart."""
+
+_BELOW_WIDE_M, _BELOW_HIGH_M = (0.4, 0.6), 0.2
+"""Usual widths and a height to begin with of what hangs below (標識令, 補助標識)."""
+
+_BELOW_STEPS = np.array([0.04, 0.015, 0.005])
 
 _SNAP_COST = 3.0
 """What a side may cost to be a usual one: a deviation of √3 standard deviations."""
@@ -163,7 +173,8 @@ def fit_plates(
        the best shapes; the set of plates that leaves the least unexplained wins.
     """
     outlines = _outlines(tuple(shapes), with_rectangles=with_rectangles)
-    return _solve(lines, empty, outlines, ())
+    step = -(-len(lines) // _MOST_LINES)
+    return _solve(lines[::step], empty, outlines, ())
 
 
 def _outlines(shapes: tuple[SignShape, ...], *, with_rectangles: bool) -> _Outlines:
@@ -189,7 +200,10 @@ def _solve(
     if len(above) == len(_BESIDE) or len(lines) < 2 or unexplained <= _PLATE_COST:
         return best
     tried: list[_Tried] = []
-    for shape, pose in _best_fits(lines, empty, outlines):
+    fits = _best_fits(lines, empty, outlines)
+    if outlines.with_rectangles:
+        fits += [one for upper in above for one in _below(lines, empty, upper)]
+    for shape, pose in fits:
         rest, blocked = np.empty((2 * len(lines), LINE)), np.empty((2 * len(lines), LINE))
         corners = outline_of(shape)
         cost, ends, pulses, left, free = explain_kernel(corners, lines, pose, rest, blocked)
@@ -207,7 +221,7 @@ def _solve(
     for one in _promising(tried, unexplained, len(above)):
         if one.whole < best.cost:
             best = Fit((one.plate,), one.whole, unexplained)
-        if one.own >= best.cost:
+        if one.own + _PLATE_COST >= best.cost:
             continue
         step = max(1, len(one.blocked) // _MOST_EMPTY)
         nothing = np.concatenate([empty, one.blocked[::step]])
@@ -311,13 +325,33 @@ def _rectangles(every: Floats, low: Floats, high: Floats) -> list[tuple[float, S
                 cut = np.where(np.arange(2) == axis, low + share * whole, high)
                 starts.append((low, cut))
                 starts.append((np.where(np.arange(2) == axis, cut, low), high))
-    found = []
+    coarse = []
     for first, last in starts:
         pose, sides = np.array([*(first + last) / 2, 0.0]), np.maximum(last - first, 0.08)
+        cost = stretch_kernel(every, _STRETCH_COARSE, pose, sides, np.zeros(2))
+        coarse.append((cost, pose, sides))
+    coarse.sort(key=lambda one: one[0])
+    found = []
+    for _, pose, sides in coarse[:_RECTANGLES]:
         cost = stretch_kernel(every, _STRETCH, pose, sides, np.zeros(2))
         cost, pose, sides = _snapped(every, cost, pose, sides)
         shape = SignShape(RECTANGLE, float(sides[0]), float(sides[1]))
         found.append((cost + _RECTANGLE_COST, shape, pose))
+    return found
+
+
+def _below(lines: Floats, empty: Floats, upper: FittedPlate) -> list[tuple[SignShape, Floats]]:
+    """Supplementary plates of the usual widths under the middle of another plate."""
+    every = np.concatenate([lines, empty])
+    bottom = upper.pose[1] - upper.shape.high_m / 2
+    found = []
+    for wide in _BELOW_WIDE_M:
+        if wide > upper.shape.wide_m + _CENTRED_M:
+            continue
+        pose = np.array([upper.pose[0], bottom - _BELOW_HIGH_M / 2 - 0.03, upper.pose[2]])
+        sides = np.array([wide, _BELOW_HIGH_M])
+        stretch_kernel(every, _BELOW_STEPS, pose, sides, np.array([1.0, 0.0]))
+        found.append((SignShape(RECTANGLE, float(sides[0]), float(sides[1])), pose))
     return found
 
 
@@ -337,7 +371,7 @@ def _snapped(
                 continue
             place, other = start_pose.copy(), start_sides.copy()
             other[axis] = side
-            changed = stretch_kernel(every, _STRETCH[3:], place, other, keep)
+            changed = stretch_kernel(every, _STRETCH[1:], place, other, keep)
             if changed < best:
                 best, pose, sides, fixed = changed, place, other, keep
         cost = best if fixed[axis] else cost

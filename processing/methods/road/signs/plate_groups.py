@@ -38,8 +38,8 @@ _LEAST_WIDE_M, _LEAST_LONG_M = 0.08, 0.25
 
 _DULL_TURNS, _DULL_POINTS = 3, 20
 _DULL_LEAST_M, _DULL_LARGEST_M = 0.25, 4.0
-"""Of a dull group: turns that met it, points, and the sides of its box. Leaves and façades show many
-pieces that lie in a plane by chance, and small plates hang with larger ones."""
+"""Of a dull group: turns that met it, points, and the sides of its box. Leaves and façades show
+many pieces that lie in a plane by chance, and small plates hang with larger ones."""
 
 _LEAST_CLEAR = 0.3
 """Share of a dull group's turns on which nothing of the same goes on at either end: plates end in

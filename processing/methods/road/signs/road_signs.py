@@ -33,6 +33,9 @@ _TURNS = 1.6
 """Turns of the scanner between two lines that are neighbours on a plate: one, and what a plate that
 is seen askew and a vehicle that goes faster elsewhere add."""
 
+_EVERY = 20
+"""Records of a trajectory of which one is kept: a tenth of a second."""
+
 _ONE_PLATE_M = 0.2
 """Centres of two plates are farther apart: half of the smallest plate."""
 
@@ -103,6 +106,7 @@ def road_signs(
     reaches = np.array([_reach(drive) for drive in drives])
     groups = plate_groups(pieces, reaches, PartMonitor(monitor, 0.7, 0.8))
     found: list[RoadSign] = []
+    ways = _Ways(drives)
     for number, group in enumerate(groups):
         monitor.check()
         shapes = shapes_at(group.middle + plan.origin)
@@ -111,9 +115,29 @@ def road_signs(
         lines = lines_of(pieces, group)
         fit = fit_plates(lines, empty_lines(pieces, group, lines), shapes)
         plates = plates_of(pieces, group, lines, fit)
-        found += _signs(plates, pieces, (plan, ground))
+        found += _signs(plates, pieces, (plan, ground), ways)
         monitor.report(0.8 + 0.2 * (number + 1) / len(groups))
     return _one_of_each(found)
+
+
+class _Ways:
+    """Which way the vehicles of drives went, wherever they were."""
+
+    def __init__(self, drives: Sequence[Drive]) -> None:
+        places, steps = [], []
+        for drive in drives:
+            if drive.trajectory is not None:
+                places.append(drive.trajectory.xyz[::_EVERY, :2])
+                heading = np.radians(drive.trajectory.roll_pitch_heading_deg[::_EVERY, 2])
+                steps.append(np.column_stack([np.sin(heading), np.cos(heading)]))
+        self._tree = cKDTree(np.concatenate(places)) if places else None
+        self._steps = np.concatenate(steps) if steps else np.empty((0, 2))
+
+    def at(self, place: Floats) -> Floats:
+        """(2,) unit vector in plan of the way beside a place; NaN without one."""
+        if self._tree is None:
+            return np.full(2, np.nan)
+        return np.asarray(self._steps[int(self._tree.query(place[:2])[1])])
 
 
 def _reach(drive: Drive) -> float:
@@ -131,6 +155,7 @@ def _signs(
     plates: Sequence[Plate],
     pieces: ScanPieces,
     below: tuple[SparsePlan, NDArray[np.float32]],
+    ways: _Ways,
 ) -> list[RoadSign]:
     """The plates of one plane with what is known of each; supplements are as sure as their sign."""
     plan, ground = below
@@ -139,7 +164,7 @@ def _signs(
         level = height_of(ground, plan, float(plate.centre[0]), float(plate.centre[1]))
         if not np.isfinite(level):
             level = float(np.median(pieces.ground[plate.pieces]))
-        facts = facts_of(plate, level)
+        facts = facts_of(plate, level, ways.at(plate.centre + plan.origin))
         point, drive = _point_near(plate, pieces)
         found.append(
             RoadSign(

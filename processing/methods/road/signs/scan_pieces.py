@@ -23,7 +23,7 @@ from processing.methods.road.signs.piece_kernels import (
     heights_kernel,
     pieces_kernel,
     range_class,
-    range_of,
+    ranges_of,
     runs_kernel,
 )
 from processing.recording.drive import Drive
@@ -44,6 +44,10 @@ _SAMPLE_POINTS = 2_000
 
 _USUAL_PULSES = 2_000
 """Of a turn, where a drive doesn't say."""
+
+_LEAST_HIGH = 0.1
+"""Share of points that rise above the ground from which they tell what is bright; where fewer do,
+signs are many of them, and the road tells it too."""
 
 _FEWEST_STRAIGHT_M = 0.012
 _STRAIGHT_NOISES = 4.0
@@ -90,7 +94,7 @@ class _Head:
             _LOWEST_M, 2 * np.pi / self.pulses, _FEWEST_STRAIGHT_M, _SHORTEST_M, _LONGEST_M,
             drive.trajectory is not None, 10.0,
         )  # fmt: skip
-        samples = list(self._samples())
+        samples = self._samples()
         straight = _STRAIGHT_NOISES * _noise([one.local for one, _ in samples])
         limit = min(max(straight, _FEWEST_STRAIGHT_M), _MOST_STRAIGHT_M)
         self.limits = self.limits._replace(straight_m=limit)
@@ -142,12 +146,13 @@ class _Head:
         return found
 
     def _bright(self, samples: Sequence[tuple[ChunkPoints, NDArray[np.float32]]]) -> Floats:
-        intensity, classes = [], []
-        for chunk, heights in samples:
-            for point in np.flatnonzero(heights >= self.limits.lowest_m).tolist():
-                intensity.append(int(chunk.intensity[point]))
-                classes.append(range_class(range_of(chunk, point, self.limits), CLASSES))
-        return bright_bounds(np.array(intensity, np.uint16), np.array(classes, np.int64))
+        high = np.concatenate([heights >= self.limits.lowest_m for _, heights in samples])
+        intensity = np.concatenate([chunk.intensity for chunk, _ in samples])
+        ranges = np.concatenate([ranges_of(chunk, self.limits) for chunk, _ in samples])
+        if high.mean() < _LEAST_HIGH:
+            high[:] = True
+        classes = [range_class(one, CLASSES) for one in ranges[high].tolist()]
+        return bright_bounds(intensity[high], np.array(classes, np.int64))
 
 
 def scan_pieces(

@@ -1,0 +1,106 @@
+"""What tells road signs from other flat things, learnt from known streets.
+
+``python -m processing.laboratory.road_training.sign_training``.
+
+Simulates streets of ``--seeds`` and ``--worn``, finds plates on them without leaving any out, and
+fits the weights of `processing.methods.road.signs.sign_confidence` to which of them are signs;
+streets of ``--check`` are not learnt from. ``--deliveries`` are further streets to learn from,
+recorded before. Prints the weights and how many plates of each confidence are signs: of streets
+learnt from by weights that were fitted without the street itself.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from processing.core.monitor import SilentMonitor
+from processing.core.output_streams import write_every_character
+from processing.formats.vectors.mapped_shapes import read_mapped
+from processing.laboratory.accuracy.road.road_scenes import RoadScene
+from processing.laboratory.road_training.learned_confidence import (
+    LabelledThings,
+    WeightPrior,
+    learn_weights,
+)
+from processing.laboratory.road_training.training_streets import training_streets
+from processing.methods.road.signs.road_signs import road_signs
+from processing.methods.road.signs.sign_confidence import SignFacts
+from processing.scoring.object_matches import positions_of
+
+EXPECTED = WeightPrior(
+    (
+        -5.0,
+        *SignFacts(
+            bright=5.0,
+            cost=-4.0,
+            explained=3.0,
+            sectors=4.0,
+            turns=1.5,
+            open_ends=2.0,
+            noise=-2.0,
+            low=-3.0,
+            askew=-1.0,
+            is_plain=-2.0,
+            is_large=-1.0,
+            high=-2.0,
+            across=-1.0,
+        ),
+    ),
+    (
+        3.0,
+        *SignFacts(
+            bright=2.0,
+            cost=3.0,
+            explained=2.0,
+            sectors=2.5,
+            turns=1.5,
+            open_ends=2.0,
+            noise=2.0,
+            low=2.0,
+            askew=1.0,
+            is_plain=1.5,
+            is_large=1.0,
+            high=1.5,
+            across=1.0,
+        ),
+    ),
+)
+"""Before anything is learnt: a face shines, an outline fits and is seen all round."""
+
+_SEEDS, _WORN, _CHECK = "700-713", "", "714-717"
+"""Streets that the weights were learnt from, and such that they were looked at with."""
+
+_WITHIN_M = 0.3
+"""Of a true plate's centre: half of a plate; neighbours on one post are farther apart."""
+
+
+def known_plates(scenes: Iterator[RoadScene]) -> LabelledThings:
+    """All plates on some streets, and which of them are signs."""
+    rows: list[tuple[SignFacts, bool, float, int]] = []
+    for number, scene in enumerate(scenes):
+        rows += [(*one, number) for one in _judged(scene)]
+        sys.stderr.write(f"{scene.name}: {len(rows)} plates\n")
+    return LabelledThings.of(rows, len(SignFacts._fields))
+
+
+def _judged(scene: RoadScene) -> Iterator[tuple[SignFacts, bool, float]]:
+    true = positions_of(read_mapped(scene.truth("signs")).features)
+    for one in road_signs(scene.drives, SilentMonitor()):
+        away = np.linalg.norm(true - one.centre, axis=1)
+        yield one.facts, bool(away.size and away.min() <= _WITHIN_M), 1.0
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """The command."""
+    asked = training_streets("sign_training", arguments, seeds=(_SEEDS, _CHECK), worn=_WORN)
+    known, check = known_plates(asked.learnt), known_plates(asked.check)
+    sys.stdout.write(learn_weights(SignFacts._fields, EXPECTED, known, check))
+    return 0
+
+
+if __name__ == "__main__":
+    write_every_character()
+    sys.exit(main())
