@@ -54,8 +54,9 @@ class SignParameters:
             "指定すると、その標識だけを計測します。指定しない場合は全ての標識を探します。",
         ),
     )
+    # Half of the F that can be reached is the limit that reaches it (Lipton et al. 2014).
     least_confidence: float = least_confidence(
-        0.5,
+        0.45,
         Text(
             "What is less likely to be a sign is left out.",
             "標識である見込みがこの値より低いものは出力しません。",

@@ -132,7 +132,7 @@ def _end_cost(beyond: float, spacing: float, is_open: float, sigma_m: float) -> 
 @kernel
 def cost_of(corners: Floats, lines: Floats, pose: Floats, sigma_m: float, enough: float) -> float:
     """What all lines say against an outline; no more than `enough` is added up."""
-    total = (pose[2] / ROLL_RAD) ** 2
+    total = float((pose[2] / ROLL_RAD) ** 2)
     for k in range(lines.shape[0]):
         if total > enough:
             break
@@ -166,25 +166,25 @@ def fit_kernel(
         Right and up (m) and roll (rad); where to begin, made better.
     """
     best = cost_of(corners, lines, pose, sigma_m, math.inf)
-    trial = np.empty(3)
+    tested = np.empty(3)
     for number in range(steps.shape[0]):
         step = steps[number]
         for _ in range(_ROUNDS):
             moved = False
             for way in range(10 if step <= _FINE_STEP_M else 8):
-                trial[:] = pose
+                tested[:] = pose
                 if way < 8:
                     turn = way * math.pi / 4
-                    trial[0] += step * math.cos(turn)
-                    trial[1] += step * math.sin(turn)
+                    tested[0] += step * math.cos(turn)
+                    tested[1] += step * math.sin(turn)
                 else:
-                    trial[2] += _ROLL_PER_M * step * (1.0 if way == 8 else -1.0)
-                    if abs(trial[2]) > _MOST_ROLL_RAD:
+                    tested[2] += _ROLL_PER_M * step * (1.0 if way == 8 else -1.0)
+                    if abs(tested[2]) > _MOST_ROLL_RAD:
                         continue
-                cost = cost_of(corners, lines, trial, sigma_m, best)
+                cost = cost_of(corners, lines, tested, sigma_m, best)
                 if cost < best - 1e-9:
                     best = cost
-                    pose[:] = trial
+                    pose[:] = tested
                     moved = True
             if not moved:
                 break
@@ -272,7 +272,7 @@ def stretch_kernel(
     corners = np.empty((4, 2))
     _set_corners(corners, sides[0], sides[1])
     best = math.inf
-    trial, other = np.empty(3), np.empty(2)
+    tested, other = np.empty(3), np.empty(2)
     for number in range(steps.shape[0]):
         step = steps[number]
         sigma_m = max(SIGMA_M, step / 2)
@@ -281,15 +281,15 @@ def stretch_kernel(
         for _ in range(_ROUNDS):
             moved = False
             for way in range(14 if step <= _FINE_STEP_M else 12):
-                trial[:] = pose
+                tested[:] = pose
                 other[:] = sides
-                if not _changed(way, step, fixed, trial, other):
+                if not _changed(way, step, fixed, tested, other):
                     continue
                 _set_corners(corners, other[0], other[1])
-                cost = cost_of(corners, lines, trial, sigma_m, best)
+                cost = cost_of(corners, lines, tested, sigma_m, best)
                 if cost < best - 1e-9:
                     best = cost
-                    pose[:] = trial
+                    pose[:] = tested
                     sides[:] = other
                     moved = True
             if not moved:
@@ -308,12 +308,12 @@ def _changed(way: int, step: float, fixed: Floats, pose: Floats, sides: Floats) 
         axis = way // 4
         sides[axis] += sign * step
         pose[axis] += (0.5 if way % 4 < 2 else -0.5) * step
-        return fixed[axis] == 0.0 and sides[axis] >= _LEAST_SIDE_M
+        return bool(fixed[axis] == 0.0 and sides[axis] >= _LEAST_SIDE_M)
     if way < 12:
         pose[(way - 8) // 2] += sign * step
         return True
     pose[2] += _ROLL_PER_M * step * sign
-    return abs(pose[2]) <= _MOST_ROLL_RAD
+    return bool(abs(pose[2]) <= _MOST_ROLL_RAD)
 
 
 @kernel

@@ -115,7 +115,12 @@ def _position(path: Path, line: int, names: list[str], row: list[str]) -> Initia
             line,
         )
     return InitialPosition(
-        line, *(numbers[name] for name in _NUMBERS[:3]), shape, numbers["size_m"]
+        line,
+        numbers["easting_m"],
+        numbers["northing_m"],
+        numbers["height_m"],
+        shape,
+        numbers["size_m"],
     )
 
 

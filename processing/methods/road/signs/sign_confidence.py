@@ -21,7 +21,9 @@ on the ground lower."""
 _FULL_TURNS = 12
 """Scan lines beyond which a plate is no better known."""
 
-_FULL_NOISE_M = 0.01
+_NOISE_M, _FULL_NOISE_M = 0.005, 0.01
+"""How far points lie off a plate that is flat, by the noise of most scanners; leaves and rough walls
+scatter more."""
 _LARGE_M = 1.0
 _HIGH_M = 3.5
 """Signs beside a road hang lower; over a road they are guide signs, and their backs plain."""
@@ -51,7 +53,7 @@ class SignFacts(NamedTuple):
     open_ends : float
         Share of its lines' ends at which it was seen to end.
     noise : float
-        How far points lie off it, 1 for 1 cm.
+        How far points lie off it, 0 up to 5 mm, 1 from 1 cm on.
     low : float
         How far its lower edge is below 1.6 m above the ground, m, 0 to 1.
     askew : float
@@ -83,25 +85,25 @@ class SignFacts(NamedTuple):
     across: float
 
 
-# By `python -m processing.laboratory.road_training.sign_training` on 1,799 plates, 60 of them signs,
-# of 12 simulated streets of five scanners (seeds 700 to 711, 70 m each). Left out one street at a
-# time, all 38 of those given 0.9 and more were signs, 60 % of those from 0.7, 44 % of those from
-# 0.5, 22 % of those from 0.3, and 10 of 1,733 below.
-_CONSTANT = -7.28
+# By `python -m processing.laboratory.road_training.sign_training` on 1,767 plates, 99 of them signs,
+# of 17 simulated streets of five scanners (seeds 700 to 717 but 703, 70 m each). Left out one
+# street at a time, 66 of the 68 given 0.9 and more were signs, 85 % of those from 0.7, 43 % of
+# those from 0.5, 23 % of those from 0.3, and 16 of 1,666 below.
+_CONSTANT = -6.00
 _WEIGHTS = SignFacts(
-    bright=4.19,
-    cost=-3.59,
-    explained=3.60,
-    sectors=5.37,
+    bright=2.41,
+    cost=-1.94,
+    explained=3.51,
+    sectors=4.40,
     turns=0.0,
-    open_ends=1.30,
-    noise=-5.37,
-    low=-5.92,
-    askew=-1.80,
-    is_plain=-1.54,
-    is_large=-1.01,
-    high=-2.48,
-    across=0.0,
+    open_ends=0.92,
+    noise=-1.96,
+    low=-6.33,
+    askew=-1.18,
+    is_plain=-1.77,
+    is_large=-1.49,
+    high=-2.62,
+    across=-2.79,
 )
 
 
@@ -127,7 +129,7 @@ def facts_of(plate: Plate, ground_m: float, along: Floats) -> SignFacts:
         sectors=one.sectors,
         turns=min(math.log(max(one.turns, 1)) / math.log(_FULL_TURNS), 1.0),
         open_ends=min(one.open_ends / (2.0 * len(plate.pieces)), 1.0),
-        noise=min(one.noise_m / _FULL_NOISE_M, 1.0),
+        noise=_over(one.noise_m, _NOISE_M, _FULL_NOISE_M),
         low=min(max(_LOW_EDGE_M - edge, 0.0), 1.0),
         askew=min((abs(math.degrees(one.roll_rad)) + abs(math.degrees(one.tilt))) / 10.0, 1.0),
         is_plain=float(is_plain),
@@ -135,6 +137,11 @@ def facts_of(plate: Plate, ground_m: float, along: Floats) -> SignFacts:
         high=min(max(high / _HIGH_M - 1.0, 0.0), 1.0) * (one.bright < _BRIGHT),
         across=_across(plate, along),
     )
+
+
+def _over(value: float, low: float, high: float) -> float:
+    """Where a value lies between two, 0 to 1."""
+    return min(max((value - low) / (high - low), 0.0), 1.0)
 
 
 def _across(plate: Plate, along: Floats) -> float:
