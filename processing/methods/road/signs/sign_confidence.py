@@ -22,8 +22,8 @@ _FULL_TURNS = 12
 """Scan lines beyond which a plate is no better known."""
 
 _NOISE_M, _FULL_NOISE_M = 0.005, 0.01
-"""How far points lie off a plate that is flat, by the noise of most scanners; leaves and rough walls
-scatter more."""
+"""How far points lie off a plate that is flat, by the noise of most scanners; leaves and rough
+walls scatter more."""
 _LARGE_M = 1.0
 _HIGH_M = 3.5
 """Signs beside a road hang lower; over a road they are guide signs, and their backs plain."""
@@ -85,9 +85,9 @@ class SignFacts(NamedTuple):
     across: float
 
 
-# By `python -m processing.laboratory.road_training.sign_training` on 1,767 plates, 99 of them signs,
-# of 17 simulated streets of five scanners (seeds 700 to 717 but 703, 70 m each). Left out one
-# street at a time, 66 of the 68 given 0.9 and more were signs, 85 % of those from 0.7, 43 % of
+# By `python -m processing.laboratory.road_training.sign_training` on 1,767 plates, of which 99 were
+# signs, of 17 simulated streets of five scanners (seeds 700 to 717 but 703, 70 m each). Left out
+# one street at a time, 66 of the 68 given 0.9 and more were signs, 85 % of those from 0.7, 43 % of
 # those from 0.5, 23 % of those from 0.3, and 16 of 1,666 below.
 _CONSTANT = -6.00
 _WEIGHTS = SignFacts(

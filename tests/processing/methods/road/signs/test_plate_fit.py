@@ -1,0 +1,105 @@
+"""Outlines on scan lines: the plate that lines were cut from is the one that is found."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from processing.core.arrays import Floats
+from processing.methods.road.signs.fit_kernels import (
+    LINE,
+    OPEN_END,
+    OPEN_START,
+    SIGMA_M,
+    chord_of,
+    cost_of,
+    fit_kernel,
+)
+from processing.methods.road.signs.plate_fit import Fit, fit_plates, hangs_below
+from processing.methods.road.signs.sign_shapes import (
+    RECTANGLE,
+    SignShape,
+    outline_of,
+    shape_of,
+    standard_shapes,
+)
+
+SPACING_M = 0.02
+TURN_M = 0.09
+ALONG = np.array([np.cos(1.2), np.sin(1.2)])
+
+
+def lines_on(shape: SignShape, middle: tuple[float, float], hidden_m: float = np.inf) -> Floats:
+    """Scan lines over a plate, pulses 2 cm apart; beyond a height leaves hide it."""
+    across = np.array([-ALONG[1], ALONG[0]])
+    random = np.random.default_rng(2)
+    found = []
+    for offset in np.arange(-1.5, 1.5, TURN_M):
+        line = np.zeros(LINE)
+        line[:2], line[2:4] = offset * across - 3 * ALONG, ALONG
+        enters, leaves = chord_of(outline_of(shape), line, np.array([*middle, 0.0]))
+        pulses = np.arange(enters + random.uniform(0, SPACING_M), leaves, SPACING_M)
+        seen = pulses[line[1] + pulses * ALONG[1] < hidden_m] if leaves > enters else pulses[:0]
+        if seen.size < 2:
+            continue
+        line[:2] += seen[0] * ALONG
+        line[4:6] = seen[-1] - seen[0], SPACING_M
+        line[OPEN_START], line[OPEN_END] = 1.0, float(seen.size == pulses.size)
+        found.append(line)
+    return np.array(found)
+
+
+def fitted(lines: Floats) -> Fit:
+    return fit_plates(lines, np.empty((0, LINE)), standard_shapes())
+
+
+@pytest.mark.parametrize(
+    "shape",
+    [shape_of("circle", 0.6), shape_of("circle", 0.4), shape_of("triangle", 0.8),
+     shape_of("diamond", 0.45), shape_of("square", 0.9), shape_of("pentagon", 0.6)],
+    ids=lambda one: f"{one.shape} {one.size_m}",
+)  # fmt: skip
+def test_a_plate_is_found_with_its_shape_and_size(shape: SignShape) -> None:
+    plates = fitted(lines_on(shape, (0.13, -0.21))).plates
+    assert [one.shape for one in plates] == [shape]
+    assert plates[0].pose[:2] == pytest.approx([0.13, -0.21], abs=0.01)
+
+
+def test_a_rectangle_is_as_wide_and_high_as_it_is() -> None:
+    plates = fitted(lines_on(SignShape(RECTANGLE, 1.2, 0.75), (0.0, 0.0))).plates
+    assert len(plates) == 1
+    assert plates[0].shape.shape == RECTANGLE
+    assert plates[0].shape.size_m == pytest.approx(1.2, abs=0.03)
+    assert plates[0].shape.high_m == pytest.approx(0.75, abs=0.03)
+
+
+def test_a_plate_half_behind_leaves_keeps_its_size() -> None:
+    plates = fitted(lines_on(shape_of("circle", 0.6), (0.0, 0.0), hidden_m=0.05)).plates
+    assert [one.shape for one in plates] == [shape_of("circle", 0.6)]
+    assert plates[0].pose[:2] == pytest.approx([0.0, 0.0], abs=0.02)
+
+
+def test_plates_side_by_side_and_below_are_told_apart() -> None:
+    circle, square = shape_of("circle", 0.6), shape_of("square", 0.6)
+    beside = np.concatenate([lines_on(circle, (-0.33, 0.0)), lines_on(square, (0.33, 0.0))])
+    assert {one.shape for one in fitted(beside).plates} == {circle, square}
+    small = SignShape(RECTANGLE, 0.4, 0.2)
+    below = np.concatenate([lines_on(circle, (0.0, 0.0)), lines_on(small, (0.0, -0.44))])
+    upper, lower = fitted(below).plates
+    assert upper.shape == circle
+    assert hangs_below(lower, upper)
+    assert lower.shape.size_m == pytest.approx(0.4)
+
+
+def test_kernels_say_the_same_as_plain_functions() -> None:
+    circle = shape_of("circle", 0.6)
+    lines, pose = lines_on(circle, (0.0, 0.0)), np.array([0.02, 0.01, 0.0])
+    assert cost_of(outline_of(circle), lines, pose, SIGMA_M, np.inf) > 0
+    other = pose.copy()
+    cost = fit_kernel(outline_of(circle), lines, np.array([0.01, 0.002]), SIGMA_M, pose)
+    plain = fit_kernel.py_func(  # type: ignore[attr-defined]  # numba keeps the plain function
+        outline_of(circle), lines, np.array([0.01, 0.002]), SIGMA_M, other
+    )
+    assert cost == pytest.approx(plain)
+    assert pose == pytest.approx(other)
+    assert np.hypot(*pose[:2]) < 0.01
