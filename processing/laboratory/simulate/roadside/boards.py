@@ -1,7 +1,7 @@
 """Flat things beside the road that are no road signs, and signs that hang on walls.
 
-Things (label 1): ``bus_stop``, ``billboard``, ``shop_sign``, ``banner``, ``vending_machine``, and
-the ``wall`` that a sign hangs on. Boards are as bright as paint or plastic, not as a sign's face.
+Things (label 1): ``bus_stop``, ``billboard``, ``shop_sign``, ``banner``, and the ``wall`` that a
+sign hangs on. Boards are as bright as paint or plastic, not as a sign's face.
 """
 
 from __future__ import annotations
@@ -200,22 +200,5 @@ def _banner(
     add_post(built, post, 2.5, "other", material=Material.PLASTIC)
 
 
-def _vending_machine(
-    positions: FreePositions, built: SectionBuilder, random: Generator, where: tuple[int, float]
-) -> None:
-    """A machine with a window, 1.83 m high (自動販売機)."""
-    side, at = where
-    spot = positions.beside(random, side, at, 0.6)
-    if spot is None:
-        return
-    looks = positions.section.heading(at) - side * np.pi / 2
-    instance = built.thing("vending_machine")
-    body = block((-0.75, 0.0), (-0.5, 0.5), (-_BELOW_M, 1.83))
-    pane = block((0.0, 0.01), (-0.42, 0.42), (0.95, 1.7))
-    for shape, material in ((body, Material.PAINTED_METAL), (pane, Material.GLASS)):
-        placed = place_shape(shape, positions.where(spot).tolist(), looks)
-        built.mesh.add(placed, material, OTHER, instance)
-
-
-_KINDS = (_bus_stop, _billboard, _wall_sign, _shop_sign, _banner, _vending_machine)
+_KINDS = (_bus_stop, _billboard, _wall_sign, _shop_sign, _banner)
 """The first three stand in the country, too."""

@@ -53,6 +53,10 @@ known."""
 _BESIDE = (4, 2, 1, 1)
 """Of those, how many others are looked for beside, for the first plate, the second and so on."""
 
+_MOST_DOUBT = 0.3
+"""What a plate costs over what it explains: plates cost a tenth as a rule, pieces of walls and
+crowns half and more."""
+
 _PLATE_COST = 10.0
 """That another plate has to be worth: about one line that is explained at both ends."""
 
@@ -237,9 +241,14 @@ def _promising(tried: list[_Tried], unexplained: float, found: int) -> list[_Tri
     They leave the least unexplained, or explain what they do explain best: of two plates side by
     side each does, and what holds both leaves less.
     """
-    chosen = sorted(tried, key=lambda one: one.whole)[: _BESIDE[found]]
-    clean = sorted(tried, key=lambda one: one.own / max(unexplained - one.whole + one.own, 1e-9))
-    return chosen + [one for one in clean[: _BESIDE[found]] if one not in chosen]
+
+    def doubt(one: _Tried) -> float:
+        return one.own / max(unexplained - one.whole + one.own, 1e-9)
+
+    likely = [one for one in tried if doubt(one) <= _MOST_DOUBT]
+    chosen = sorted(likely, key=lambda one: one.whole)[: _BESIDE[found]]
+    clean = sorted(likely, key=doubt)[: _BESIDE[found]]
+    return chosen + [one for one in clean if one not in chosen]
 
 
 def _prior(plate: FittedPlate, above: tuple[FittedPlate, ...]) -> float:
