@@ -87,7 +87,7 @@ def _are_linked(
     if off > reach_m or most > reach_m + half:
         return False
     if is_same:
-        return is_bright[a] == is_bright[b]
+        return bool(is_bright[a] == is_bright[b])
     if abs(normal[2]) > STEEPEST:
         return False
     view_a, view_b = 0.0, 0.0

@@ -53,9 +53,9 @@ known."""
 _BESIDE = (4, 2, 1, 1)
 """Of those, how many others are looked for beside, for the first plate, the second and so on."""
 
-_MOST_DOUBT = 0.3
+_MOST_DOUBT = 0.4
 """What a plate costs over what it explains: plates cost a tenth as a rule, pieces of walls and
-crowns half and more."""
+crowns half of it and more."""
 
 _PLATE_COST = 10.0
 """That another plate has to be worth: about one line that is explained at both ends."""
