@@ -12,7 +12,7 @@ from processing.core.arrays import Floats
 from processing.core.monitor import Monitor
 from processing.core.parameters import file, least_confidence
 from processing.core.text import Text
-from processing.methods.road.signs.asked_signs import asked_signs, is_near, shapes_near
+from processing.methods.road.signs.asked_signs import asked_signs, is_near
 from processing.methods.road.signs.initial_positions import (
     FARTHEST_M,
     InitialPosition,
@@ -92,9 +92,7 @@ def _by_positions(
     here = [one for one in positions if one.line not in elsewhere]
 
     def shapes_at(place: Floats) -> Sequence[SignShape]:
-        if not is_near(place, here, _CUT_OUT_M + FARTHEST_M):
-            return ()
-        return shapes_near(place, here, standard_shapes())
+        return standard_shapes() if is_near(place, here, _CUT_OUT_M + FARTHEST_M) else ()
 
     signs, without = asked_signs(road_signs(drives, monitor, shapes_at), here)
     nothing = tuple(one.line for one in without)

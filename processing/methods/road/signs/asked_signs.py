@@ -12,7 +12,6 @@ from scipy.optimize import linear_sum_assignment
 from processing.core.arrays import Floats
 from processing.methods.road.signs.initial_positions import FARTHEST_M, InitialPosition
 from processing.methods.road.signs.road_signs import RoadSign
-from processing.methods.road.signs.sign_shapes import SignShape
 
 _OFF_M = 0.8
 """Standard deviation of a given position in plan: errors reach 2 m (Takahashi 2022, 8.3)."""
@@ -80,37 +79,9 @@ def _cost(sign: RoadSign, position: InitialPosition) -> float:
     return cost
 
 
-def shapes_near(
-    middle: Floats, positions: Sequence[InitialPosition], shapes: Sequence[SignShape]
-) -> tuple[SignShape, ...]:
-    """The shapes that plates about a place may have by what is said of the positions near it.
-
-    Parameters
-    ----------
-    middle : (3,) float64
-        m, project CRS.
-    shapes : sequence of SignShape
-        All that are known.
-    """
-    near = [
-        one
-        for one in positions
-        if math.hypot(middle[0] - one.easting_m, middle[1] - one.northing_m) <= FARTHEST_M
-    ]
-    if not near or any(not one.shape for one in near):
-        return tuple(shapes)
-    return tuple(shape for shape in shapes if any(_may_be(shape, one) for one in near))
-
-
 def is_near(middle: Floats, positions: Sequence[InitialPosition], reach_m: float) -> bool:
     """Whether a position lies so near to a place in plan."""
     return any(
         math.hypot(middle[0] - one.easting_m, middle[1] - one.northing_m) <= reach_m
         for one in positions
     )
-
-
-def _may_be(shape: SignShape, position: InitialPosition) -> bool:
-    if shape.shape != position.shape:
-        return False
-    return math.isnan(position.size_m) or abs(shape.size_m / position.size_m - 1) <= _SIZE_SHARE
