@@ -178,6 +178,7 @@ def _columns_of(slabs: NDArray[np.uint32]) -> list[tuple[Floats, int]]:
     # Of cells that are alike, the weights themselves tell.
     about += 1e-3 * weights
     # Within a ring of filled cells, as a thick trunk is one, nothing was measured.
+    # A cell between two columns has most about it without being one.
     about[~is_column] = 0.0
     best = ndimage.maximum_filter(about, 2 * _APART_CELLS + 1, mode="constant")
     found: list[tuple[Floats, int]] = []
