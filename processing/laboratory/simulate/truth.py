@@ -20,7 +20,7 @@ from processing.laboratory.simulate.scene.mesh import Floats, Integers
 from processing.laboratory.simulate.scene.things import Thing, TrueFeature
 from processing.laboratory.simulate.street.sweep import FACE_PIECE
 
-TRUTH_FILES = ("curbs", "gutters", "trees", "signs", "poles")
+TRUTH_FILES = ("curbs", "gutters", "trees", "signs", "poles", "wires")
 CURB_PIECE_M, CURB_SECTION_M = 0.5, 2.0
 BREAST_PIECES, TRUNK_PIECE = range(1, 37), 37
 FRONT_PIECE, BACK_PIECE = 1, 2
@@ -125,6 +125,8 @@ def _member(one: TrueFeature, seen: RecordingEvidence, origin: Floats) -> TruthP
     facts["instance"] = one.instance
     if one.file == "curbs":
         facts.update(_curb(one, pieces, seen))
+    elif one.file == "wires":
+        facts.update(_wire(one, pieces, seen))
     else:
         facts.update(_SHOWN[one.file](pieces))
         facts["in_span"] = seen.passes(one.xyz.mean(axis=0)[None])[0]
@@ -165,6 +167,16 @@ def _curb(one: TrueFeature, pieces: Integers, seen: RecordingEvidence) -> TruthP
             }
         )
     return {"length_m": round(long, 3), "sections": sections}
+
+
+def _wire(one: TrueFeature, pieces: Integers, seen: RecordingEvidence) -> TruthProperties:
+    """The points on each straight piece of a wire, and whether the vehicle passed it."""
+    counts = pieces[: len(one.xyz) - 1]
+    return {
+        "points": int(counts.sum()),
+        "piece_points": counts.tolist(),
+        "piece_in_span": seen.passes((one.xyz[:-1] + one.xyz[1:]) / 2),
+    }
 
 
 def _gutter(pieces: Integers) -> TruthProperties:

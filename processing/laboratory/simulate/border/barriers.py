@@ -1,7 +1,7 @@
 """Where guard rails, fences and rubber poles stand along a section.
 
 Things (label 1): ``guardrail``, ``guard_pipe``, ``guard_cable``, ``fence``, ``parapet``,
-``noise_barrier``; ``rubber_pole`` (label 66), which is a pole of the truth. Barriers
+``noise_barrier``; ``rubber_pole`` (label 66), which is a delineator of the truth. Barriers
 are open where the curb is dropped and where something stands already.
 """
 
@@ -158,7 +158,7 @@ def _add_rubber_poles(
         built.mesh.add(posts(foot[None], 0.1, 0.03), Material.RUBBER, POLE, instance)
         facts: dict[str, Fact] = {
             "kind": "pole",
-            "type": "rubber_pole",
+            "type": "delineator",
             "height_m": high,
             "diameter_m": 2 * radius,
         }

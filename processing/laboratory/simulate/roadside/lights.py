@@ -135,8 +135,8 @@ def _add_lamp_post(
         spot,
         instance,
         foot,
-        type="lamp_post",
-        height_m=float(max(end[2] + 0.1, path[-1, 2]) - foot[2]),
+        type="street_light",
+        height_m=high,
         diameter_m=float(kind.foot_m + slope * _BREAST_M),
     )
 

@@ -71,7 +71,7 @@ def _add_arm(
     lowest = _edge_m(positions, post) + _CLEAR_M + float(random.uniform(0.0, 0.4))
     middle = lowest + tall / 2
     levels = [middle + tall * 0.3, middle - tall * 0.3] if tall > 1.0 else [middle]
-    pole = add_post(built, post, max(levels) + float(random.uniform(0.1, 0.4)), "sign_pole")
+    pole = add_post(built, post, max(levels) + float(random.uniform(0.1, 0.4)), "arm_pole")
     heading = positions.section.heading(post.spot.chainage_m)
     towards = -post.spot.side * np.array([-np.sin(heading), np.cos(heading), 0.0])
     reach = float(random.uniform(0.4, 1.8)) + plate.size_m / 2
@@ -118,8 +118,8 @@ def _add_gantry(
     level = max(one.ground_m + _edge_m(positions, one) for one in (left, right)) + _CLEAR_M + 1.0
     lows = [one.at(level - one.ground_m) for one in (left, right)]
     highs = [one.at(level + 0.8 - one.ground_m) for one in (left, right)]
-    pole = add_post(built, left, level + 0.9 - left.ground_m, "sign_pole")
-    add_post(built, right, level + 0.9 - right.ground_m, "sign_pole")
+    pole = add_post(built, left, level + 0.9 - left.ground_m, "arm_pole")
+    add_post(built, right, level + 0.9 - right.ground_m, "arm_pole")
     beams = join_shapes([rod(lows[0], lows[1], 0.08, 8), rod(highs[0], highs[1], 0.08, 8)])
     built.mesh.add(beams, Material.PAINTED_METAL, POLE, pole)
     across = lows[1] - lows[0]

@@ -12,7 +12,7 @@ from processing.laboratory.simulate.roadside.poles import POLE, SUNK_M, WIRE, po
 from processing.laboratory.simulate.roadside.rods import rods
 from processing.laboratory.simulate.scene.materials import Material
 from processing.laboratory.simulate.scene.mesh import Floats
-from processing.laboratory.simulate.scene.things import SectionBuilder
+from processing.laboratory.simulate.scene.things import SectionBuilder, TrueFeature
 from processing.laboratory.simulate.street.free_positions import (
     FreePosition,
     FreePositions,
@@ -20,7 +20,9 @@ from processing.laboratory.simulate.street.free_positions import (
 )
 
 LONGEST_SPAN_M = 75.0
-_STEPS = 12
+_SIDES = 5
+_STEPS = 24  # straight pieces of a cable: 1.3 m of a usual span, off its curve by a millimetre
+_DROP_SAG_M = 0.15
 _USUAL_SPAN_M = 30.0
 _SEEN_WIDER_M = 0.004  # a beam 15 m away is as wide as a wire, and returns from its edge too
 
@@ -52,14 +54,11 @@ def add_wires(positions: FreePositions, built: SectionBuilder) -> None:
         sags = (
             line.cables[:, 3] * (span / _USUAL_SPAN_M) ** 2 * random.uniform(0.8, 1.25, len(ends))
         )
-        radii = (line.cables[:, 2] + _SEEN_WIDER_M)[:, None]
-        instance = built.thing("wire")
-        built.mesh.add(
-            rods(hanging(starts, ends, sags), np.repeat(radii, _STEPS + 1, 1), 5, is_closed=False),
-            Material.CABLE,
-            WIRE,
-            instance,
-        )
+        at = (pole.spot.chainage_m + following.spot.chainage_m) / 2
+        paths = hanging(starts, ends, sags)
+        radii = line.cables[:, 2] + _SEEN_WIDER_M
+        for path, sag, radius in zip(paths, sags.tolist(), radii.tolist(), strict=True):
+            _add_cable(built, path, (radius, sag, at))
     for pole in line.poles:
         if pole.section == section.plan.index:
             _add_drop_wires(positions, built, pole)
@@ -84,8 +83,20 @@ def _add_drop_wires(positions: FreePositions, built: SectionBuilder, pole: LineP
         crosses = side != pole.spot.side
         high = float(random.uniform(5.6, 7.0) if crosses else random.uniform(4.2, 6.2))
         top = _add_service_pole(positions, built, spot, high)
-        lines = hanging(start[None], top[None], np.array([0.15]))
-        built.mesh.add(rods(lines, 0.006, 5), Material.CABLE, WIRE, built.thing("wire"))
+        path = hanging(start[None], top[None], np.array([_DROP_SAG_M]))[0]
+        _add_cable(built, path, (0.006, _DROP_SAG_M, spot.chainage_m))
+
+
+def _add_cable(built: SectionBuilder, path: Floats, shape: tuple[float, float, float]) -> None:
+    """One cable with its truth; a piece of it for each step (``shape``: radius, sag, chainage)."""
+    radius, sag, at = shape
+    instance = built.thing("wire")
+    vertices, triangles = rods(path[None], radius, _SIDES, is_closed=False)
+    # The first half of the triangles has one of each pair, the second the other.
+    piece = np.tile(np.repeat(np.arange(_STEPS), _SIDES), 2)
+    built.mesh.add((vertices, triangles), Material.CABLE, WIRE, instance, piece=piece)
+    facts = {"kind": "wire", "sag_m": sag, "diameter_m": 2 * radius}
+    built.truth.append(TrueFeature("wires", "LineString", path, facts, instance, at))
 
 
 def _add_service_pole(
@@ -101,5 +112,5 @@ def _add_service_pole(
     material = Material.PAINTED_METAL if random.random() < 0.7 else Material.STEEL
     built.mesh.add(rods(path[None], radius, 12), material, POLE, instance, piece=1)
     facts = {"height_m": high_m, "diameter_m": 2 * radius}
-    pole_truth(built, spot, instance, foot, type="service_pole", **facts)
+    pole_truth(built, spot, instance, foot, type="other", **facts)
     return np.asarray(top - [0.0, 0.0, 0.1], np.float64)

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from processing.laboratory.simulate.scene.mesh import Floats, Mesh, MeshBuilder
 
 Fact = str | int | float | bool | list[float] | None
-TruthFile = Literal["curbs", "gutters", "trees", "signs", "poles"]
+TruthFile = Literal["curbs", "gutters", "trees", "signs", "poles", "wires"]
 
 THINGS_PER_SECTION = 20_000
 NO_THING = 0
@@ -42,7 +42,8 @@ class TrueFeature:
     Attributes
     ----------
     file : str
-        Whose truth it belongs to: ``curbs``, ``gutters``, ``trees``, ``signs``, ``poles``.
+        Whose truth it belongs to: ``curbs``, ``gutters``, ``trees``, ``signs``, ``poles``,
+        ``wires``.
     geometry : str
         ``Point``, ``LineString`` or ``Polygon`` (closed ring).
     xyz : (n, 3) float64

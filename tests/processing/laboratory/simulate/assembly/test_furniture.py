@@ -20,7 +20,7 @@ from processing.laboratory.simulate.street.plan import LEFT, RIGHT
 from processing.laboratory.simulate.street.styles import HIGHWAY, URBAN
 
 BREAST_M = 1.2
-TALL = ("utility_pole", "service_pole", "lamp_post", "sign_pole", "signal_pole", "mirror_pole")
+TALL = ("utility_pole", "street_light", "sign_pole", "signal_pole", "mirror_pole", "arm_pole")
 
 
 @pytest.fixture(scope="module")
