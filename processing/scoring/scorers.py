@@ -59,10 +59,10 @@ CURB_SCORER = FeatureScorer("curbs", Text("Curbs", "縁石"), curb_score)
 GUTTER_SCORER = FeatureScorer("gutters", Text("Covered gutters", "蓋付き側溝"), gutter_score)
 SIGN_SCORER = FeatureScorer("signs", Text("Road signs", "道路標識"), sign_score)
 TREE_SCORER = FeatureScorer("trees", Text("Street trees", "街路樹"), tree_score)
+POLE_SCORER = FeatureScorer("poles", Text("Poles", "柱状物"), pole_score)
 VOLUME_SCORER = VolumeScorer("volume", Text("Volumes", "土量"), volume_score)
 
 SCORERS_WITHOUT_TOOL: tuple[Scorer, ...] = (
     CLASS_SCORER,
-    FeatureScorer("poles", Text("Poles", "柱状物"), pole_score),
 )
 """Of results that other programs and persons make; a tool of that id brings its scorer itself."""

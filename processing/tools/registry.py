@@ -18,6 +18,7 @@ from processing.tools.ground import GROUND_TOOL
 from processing.tools.gutters import GUTTERS
 from processing.tools.noise import NOISE
 from processing.tools.normals import NORMALS
+from processing.tools.poles import POLES
 from processing.tools.segments import SEGMENTS
 from processing.tools.signs import SIGNS
 from processing.tools.template import TEMPLATE
@@ -30,6 +31,7 @@ _DECLARED = (
     GUTTERS,
     TREES,
     SIGNS,
+    POLES,
     NOISE,
     GROUND_TOOL,
     NORMALS,

@@ -32,6 +32,7 @@ from processing.tools.ground import GROUND_TOOL, GroundParameters
 from processing.tools.gutters import GUTTERS
 from processing.tools.noise import NOISE, NoiseParameters
 from processing.tools.normals import NORMALS, NormalsParameters
+from processing.tools.poles import POLES
 from processing.tools.registry import TOOLS, point_tools
 from processing.tools.runner import RunRequest, columns_of, run
 from processing.tools.segments import SEGMENTS, SegmentsParameters, compute_segments
@@ -70,7 +71,7 @@ IN_SPACE = (
     (GROUND_TOOL.id, GroundParameters(method="lowest", tolerance_m=0.1)),
 )
 """Tools that look around in space, whenever a neighbour was measured, by parts of their own."""
-CHUNKS = (TEMPLATE.id, CURBS.id, GUTTERS.id, SIGNS.id, TREES.id)
+CHUNKS = (TEMPLATE.id, CURBS.id, GUTTERS.id, SIGNS.id, TREES.id, POLES.id)
 """Tools that find candidates, and read the street a stretch at a time."""
 
 

@@ -1,0 +1,1 @@
+"""Poles: shafts among the columns beside a road, what they carry, and of which type each is."""

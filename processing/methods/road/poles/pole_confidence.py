@@ -1,0 +1,127 @@
+"""How sure a shaft is a pole: the share of right ones among its like."""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+from processing.methods.road.poles.shaft_kernels import ARC, FREE, INSIDE, POINTS, SLABS
+from processing.methods.road.poles.shafts import Shaft
+from processing.methods.road.poles.surroundings import Surroundings
+
+_MOST_NOISE = 4.0
+"""Times the noise of the recording's smooth shafts; bark, cloth and edges are no smoother."""
+
+_MOST_POINTS = 3.0
+"""Decimal logarithm: a thousand points tell as much as ten thousand."""
+
+_HALF = 0.5
+"""Of its circumference one scanner sees of any round thing."""
+
+_TALL_M = 5.0
+"""A higher shaft is no surer."""
+
+_USUAL_TAPER = 0.012
+"""Metres of radius lost in a metre: twice what poles of concrete have (JIS A 5373: 1/75 of the
+diameter), and no pole widens upwards."""
+
+_USUAL_M = 0.2
+"""Radius up to which poles are common."""
+
+_MOST_LOGIT = 30.0
+"""Guard of the exponential."""
+
+
+class PoleFacts(NamedTuple):
+    """What speaks for a pole and against one; bounded, so that none outweighs all others.
+
+    Attributes
+    ----------
+    rough : float
+        Its noise over that of the recording's smooth shafts, logarithm to the base 2, 0 to 2.
+    slabs : float
+        Share of its heights that show it.
+    inside : float
+        Points in it for each on it, 0 to 1.
+    free : float
+        Share of the heights that have less beside it than on it.
+    arc : float
+        Share of the circumference that was seen, up to a half.
+    points : float
+        Decimal logarithm of their number, up to 3.
+    tall : float
+        Height over 5 m, up to 1.
+    hidden_m : float
+        How far above the ground it comes in sight, up to 1 m.
+    rails : float
+        Share of the heights with something on two opposite sides.
+    cover : float
+        Share of the plan about its top that is filled.
+    crown : float
+        Share of the directions about the axis that twigs fill, times how far their middle is on
+        the axis: a neighbour's crown hangs aside.
+    leafy : float
+        Decimal logarithm of the cells that twigs fill, and one, up to 2.
+    flat : float
+        Share of the cells about the axis that are planes or lines.
+    tapered : float
+        How far its taper is off what poles have, over 0.012, up to 2.
+    thick_m : float
+        Radius beyond 0.2 m.
+    """
+
+    rough: float
+    slabs: float
+    inside: float
+    free: float
+    arc: float
+    points: float
+    tall: float
+    hidden_m: float
+    rails: float
+    cover: float
+    crown: float
+    leafy: float
+    flat: float
+    tapered: float
+    thick_m: float
+
+
+_CONSTANT = 0.0
+_WEIGHTS = PoleFacts(*([0.0] * 15))
+
+
+def facts_of(shaft: Shaft, beside: Surroundings, usual_noise_m: float) -> PoleFacts:
+    """The facts of a shaft.
+
+    Parameters
+    ----------
+    usual_noise_m : float
+        How far points lie off the smooth shafts of this recording.
+    """
+    told, crown = shaft.told, beside.crown
+    rough = min(max(shaft.noise_m / usual_noise_m, 1.0), _MOST_NOISE)
+    taper = max(-shaft.taper, shaft.taper - _USUAL_TAPER, 0.0)
+    return PoleFacts(
+        rough=math.log2(rough),
+        slabs=float(told[SLABS]),
+        inside=min(float(told[INSIDE]), 1.0),
+        free=float(told[FREE]),
+        arc=min(float(told[ARC]), _HALF),
+        points=min(math.log10(max(float(told[POINTS]), 1.0)), _MOST_POINTS),
+        tall=min(shaft.top_m / _TALL_M, 1.0),
+        hidden_m=min(max(shaft.low_m, 0.0), 1.0),
+        rails=beside.rails,
+        cover=beside.cover,
+        crown=crown.sectors / 12 * (1 - min(crown.aside, 1.0)) if crown else 0.0,
+        leafy=min(math.log10(1 + crown.cells), 2.0) if crown else 0.0,
+        flat=crown.flat_share if crown else 1.0,
+        tapered=min(taper / _USUAL_TAPER, 2.0),
+        thick_m=max(0.0, shaft.radius_m - _USUAL_M),
+    )
+
+
+def chance_of(facts: PoleFacts) -> float:
+    """The chance of being a pole, 0 to 1."""
+    logit = _CONSTANT + sum(weight * fact for weight, fact in zip(_WEIGHTS, facts, strict=True))
+    return 1 / (1 + math.exp(-max(-_MOST_LOGIT, min(_MOST_LOGIT, logit))))

@@ -1,0 +1,212 @@
+"""Shafts: the straight round bodies among the columns beside a road, each with its foot."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.core.arrays import Floats, Integers
+from processing.core.monitor import Monitor, PartMonitor
+from processing.methods.road.objects.column_points import ColumnPoints, points_about
+from processing.methods.road.objects.columns import FoundColumns, find_columns
+from processing.methods.road.objects.foot import foot_height
+from processing.methods.road.objects.ground_heights import ground_heights
+from processing.methods.road.objects.sparse_plan import SparsePlan
+from processing.methods.road.poles.shaft_kernels import (
+    ARC,
+    DEVIATION,
+    EAST,
+    INSIDE,
+    LEAN_EAST,
+    LEVEL_M,
+    LOW,
+    NOISE,
+    NORTH,
+    POINTS,
+    RADIUS,
+    SHAFT_WIDTH,
+    SLABS,
+    TAPER,
+    TOP,
+    ShaftLimits,
+    shafts_kernel,
+)
+from processing.recording.drive import Drive
+
+_ABOUT_M = 0.7
+"""Points so near to a column may be of its shaft: half the thickest and what columns are off."""
+
+_OF_COLUMN = 2
+"""Shafts of a column: a post and the trunk, wall or stay beside it."""
+
+_LIMITS = ShaftLimits(
+    least_m=0.01, most_m=0.3, steepest=0.25, low_m=0.15, high_m=3.0, gap_m=1.5, noise_m=0.015
+)
+"""Radii from canes of banners to the feet of the thickest poles (JIS A 5373: 17 m, 46 cm), leans to
+14 degrees; first looked for between grass and most crowns; hidden by plates and twigs for 1.5 m."""
+
+_LEAST_LONG_M = 0.4
+"""The shortest delineators, 0.5 m, with a decimetre hidden."""
+
+_LEAST_SLABS, _LEAST_ARC, _MOST_INSIDE = 0.5, 0.24, 0.6
+"""Of the heights that show it, of its circumference, and of points within it for each on it: a
+scanner sees nearly half of any post on all its heights, and nothing inside."""
+
+_SAME_M = 0.1
+"""Axes nearer than this are of one shaft that two columns showed."""
+
+
+@dataclass(frozen=True)
+class Shaft:
+    """One shaft.
+
+    Attributes
+    ----------
+    foot : (3,) float64
+        Where its axis meets the ground, m about the plan's origin.
+    lean : (2,) float64
+        Metres that the axis moves to the east and north in a metre of height.
+    radius_m, taper : float
+        Radius at the foot, m; what it loses in a metre of height.
+    deviation_m : float
+        Standard deviation of the radius, m.
+    noise_m : float
+        How far its points lie off it.
+    low_m, top_m : float
+        Between which heights above the foot it was seen.
+    told : (SHAFT_WIDTH,) float64
+        All that the kernel told of it, about its column.
+    drives, points : (n,) int64
+        Its points, the lowest first: of which drive each is, and its number there.
+    """
+
+    foot: Floats
+    lean: Floats
+    radius_m: float
+    taper: float
+    deviation_m: float
+    noise_m: float
+    low_m: float
+    top_m: float
+    told: Floats
+    drives: Integers
+    points: Integers
+
+    def radius_at(self, height_m: float) -> float:
+        """Radius at a height above the foot, m."""
+        return self.radius_m - self.taper * height_m
+
+
+def find_shafts(drives: Sequence[Drive], plan: SparsePlan, monitor: Monitor) -> list[Shaft]:
+    """All shafts of a survey; many are trunks, posts of fences and edges of walls.
+
+    Parameters
+    ----------
+    plan : SparsePlan
+        Gets the tiles of all points.
+    """
+    ground = ground_heights(drives, plan, PartMonitor(monitor, 0.0, 0.3))
+    columns = find_columns(drives, plan, ground, PartMonitor(monitor, 0.3, 0.6))
+    gathered = points_about(drives, plan, columns.middles, _ABOUT_M, PartMonitor(monitor, 0.6, 0.9))
+    found: list[Shaft] = []
+    for members in _passes(drives):
+        monitor.check()
+        found += _of_pass(columns, _only(gathered, members))
+    return _one_of_each(found)
+
+
+def _passes(drives: Sequence[Drive]) -> list[list[int]]:
+    """Drives recorded at the same time; those of other passes lie centimetres apart."""
+    passes: list[tuple[float, float, list[int]]] = []
+    for number, drive in enumerate(drives):
+        first, last = _span(drive)
+        met = [one for one in passes if one[0] <= last and first <= one[1]]
+        passes = [one for one in passes if one not in met]
+        members = [number, *(member for one in met for member in one[2])]
+        first, last = min([first, *(m[0] for m in met)]), max([last, *(m[1] for m in met)])
+        passes.append((first, last, sorted(members)))
+    return [one[2] for one in passes]
+
+
+def _span(drive: Drive) -> tuple[float, float]:
+    """First and last time, s; any time for a recording without times."""
+    if not drive.count or not drive.info.has_measured_times:
+        return -np.inf, np.inf
+    first, last = drive.columns["time"][[0, drive.count - 1]].tolist()
+    return min(first, last), max(first, last)
+
+
+def _only(gathered: ColumnPoints, members: Sequence[int]) -> ColumnPoints:
+    """The points of some drives."""
+    is_in = np.isin(gathered.drives, members)
+    if is_in.all():
+        return gathered
+    starts = np.concatenate([[0], np.cumsum(is_in)])[gathered.starts]
+    return ColumnPoints(
+        starts, gathered.local[is_in], gathered.drives[is_in], gathered.points[is_in]
+    )
+
+
+def _of_pass(columns: FoundColumns, gathered: ColumnPoints) -> list[Shaft]:
+    owner = np.repeat(np.arange(len(columns)), np.diff(gathered.starts))
+    about = gathered.local - np.column_stack([columns.middles, columns.ground])[owner]
+    told = np.zeros((len(columns), _OF_COLUMN, SHAFT_WIDTH))
+    shafts_kernel(about, gathered.starts, _LIMITS, told)
+    return [
+        _standing(columns, gathered, column, told[column, number])
+        for column, number in np.argwhere(_are_shafts(told)).tolist()
+    ]
+
+
+def _are_shafts(told: Floats) -> NDArray[np.bool_]:
+    is_shaft = (told[..., RADIUS] > 0) & (told[..., TOP] - told[..., LOW] >= _LEAST_LONG_M)
+    is_shaft &= (told[..., SLABS] >= _LEAST_SLABS) & (told[..., ARC] >= _LEAST_ARC)
+    return np.asarray(is_shaft & (told[..., INSIDE] <= _MOST_INSIDE))
+
+
+def _standing(columns: FoundColumns, gathered: ColumnPoints, column: int, told: Floats) -> Shaft:
+    """A shaft with its foot on the ground and its points."""
+    part = gathered.of(column)
+    local = gathered.local[part]
+    coarse = float(columns.ground[column])
+    lean = told[LEAN_EAST : LEAN_EAST + 2]
+    middle = columns.middles[column] + told[EAST : NORTH + 1] - LEVEL_M * lean
+    height = foot_height(local, middle, coarse, float(told[RADIUS]))
+    rise = height - coarse
+    up = local[:, 2] - coarse - LEVEL_M
+    off = local[:, :2] - columns.middles[column] - told[EAST : NORTH + 1] - up[:, None] * lean
+    away = np.abs(np.hypot(off[:, 0], off[:, 1]) - told[RADIUS] + told[TAPER] * up)
+    is_on = (away < max(0.008, 3 * told[NOISE])) & (up > -LEVEL_M + 0.05)
+    is_on &= up <= told[TOP] - LEVEL_M
+    lines = np.flatnonzero(is_on)
+    lines = lines[np.argsort(up[lines], kind="stable")]
+    return Shaft(
+        foot=np.array([*(middle + lean * rise), height]),
+        lean=lean.copy(),
+        radius_m=float(told[RADIUS] + told[TAPER] * (LEVEL_M - rise)),
+        taper=float(told[TAPER]),
+        deviation_m=float(told[DEVIATION]),
+        noise_m=float(told[NOISE]),
+        low_m=float(told[LOW] - rise),
+        top_m=float(told[TOP] - rise),
+        told=told.copy(),
+        drives=gathered.drives[part][lines],
+        points=gathered.points[part][lines],
+    )
+
+
+def _one_of_each(found: Sequence[Shaft]) -> list[Shaft]:
+    """Of shafts on one axis the one with the most points."""
+    kept: list[Shaft] = []
+    for shaft in sorted(found, key=lambda one: -one.told[POINTS]):
+        level = min(shaft.top_m, LEVEL_M)
+        same = any(
+            np.hypot(*(shaft.foot - one.foot)[:2] + level * (shaft.lean - one.lean)) < _SAME_M
+            for one in kept
+        )
+        if not same:
+            kept.append(shaft)
+    return kept

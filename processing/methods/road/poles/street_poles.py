@@ -1,0 +1,137 @@
+"""Poles of a survey: shafts beside the road, how sure each is a pole, and of which type.
+
+The steps stand in a file each: shafts among the columns, what stands beside them, what they carry.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from processing.core.arrays import Floats, Integers
+from processing.core.monitor import Monitor, PartMonitor
+from processing.methods.road.objects.column_points import points_about
+from processing.methods.road.objects.sparse_plan import plan_of
+from processing.methods.road.poles.carried import Carried, carried_of, type_of
+from processing.methods.road.poles.pole_confidence import chance_of, facts_of
+from processing.methods.road.poles.shaft_kernels import LEVEL_M, POINTS
+from processing.methods.road.poles.shafts import Shaft, find_shafts
+from processing.methods.road.poles.surroundings import surroundings_of
+from processing.recording.drive import Drive
+
+REACH_M = 5.0
+"""Points so near to a shaft may be of what it carries: arms over the road reach 4 to 5 m."""
+
+_APART_M = 0.4
+"""Two poles never stand nearer to each other: the surer one stays."""
+
+_LEAST_CHANCE = 0.05
+"""What is less likely a pole is measured no further."""
+
+_MANY_POINTS, _SMOOTH_SHARE, _LEAST_NOISE_M = 60, 0.2, 5e-4
+"""Points of a shaft whose noise counts; the share of shafts that are smoother than the recording's
+usual ones; and the least noise of any scanner."""
+
+
+@dataclass(frozen=True)
+class StreetPole:
+    """One pole, or what might be one.
+
+    Attributes
+    ----------
+    foot : (3,) float64
+        Where its axis meets the ground, m, project CRS.
+    shaft : Shaft
+    carried : Carried
+    type : str
+        The contract's name.
+    height_m : float
+        Of its shaft's top above the foot.
+    diameter_m, diameter_within_m : float
+        1.2 m above the foot, of low ones at half their height; off by no more in 95 of 100 cases.
+    confidence : float
+        The share of its like that are poles.
+    """
+
+    foot: Floats
+    shaft: Shaft
+    carried: Carried
+    type: str
+    height_m: float
+    diameter_m: float
+    diameter_within_m: float
+    confidence: float
+
+    @property
+    def lean_deg(self) -> float:
+        """From the vertical."""
+        return math.degrees(math.atan(float(np.hypot(*self.shaft.lean))))
+
+    @property
+    def points(self) -> Integers:
+        """Measured points of the shaft by their number in their drive, the lowest first."""
+        return self.shaft.points
+
+    @property
+    def drives(self) -> Integers:
+        """Which of the drives each is of."""
+        return self.shaft.drives
+
+
+def street_poles(drives: Sequence[Drive], monitor: Monitor) -> tuple[StreetPole, ...]:
+    """All shafts that may be poles; a confidence tells poles from the others.
+
+    Notes
+    -----
+    1. Columns stand free at some heights (:mod:`processing.methods.road.objects.columns`); in
+       each, straight cones are fitted and followed upwards, pass by pass.
+    2. Rails, roofs and crowns about a shaft speak against a pole.
+    3. Wires, arms and plates tell its type.
+    """
+    plan = plan_of([(drive.info.lowest, drive.info.highest) for drive in drives])
+    shafts = find_shafts(drives, plan, PartMonitor(monitor, 0.0, 0.7))
+    if not shafts:
+        return ()
+    feet = np.array([one.foot[:2] for one in shafts])
+    around = points_about(drives, plan, feet, REACH_M, PartMonitor(monitor, 0.7, 0.9))
+    usual_m = usual_noise_m(shafts)
+    sure: list[tuple[float, int]] = []
+    for number, shaft in enumerate(shafts):
+        monitor.check()
+        local = around.local[around.of(number)] - shaft.foot
+        chance = chance_of(facts_of(shaft, surroundings_of(local, shaft, usual_m), usual_m))
+        if chance >= _LEAST_CHANCE:
+            sure.append((chance, number))
+    poles: list[StreetPole] = []
+    for chance, number in sorted(sure, reverse=True):
+        shaft = shafts[number]
+        if all(np.hypot(*(shaft.foot - one.shaft.foot)[:2]) >= _APART_M for one in poles):
+            local = around.local[around.of(number)] - shaft.foot
+            poles.append(_pole(shaft, carried_of(local, shaft), chance, plan.origin))
+    monitor.report(1.0)
+    return tuple(poles)
+
+
+def usual_noise_m(shafts: Sequence[Shaft]) -> float:
+    """How far points lie off the smooth shafts of a recording, m."""
+    noise = [one.noise_m for one in shafts if one.told[POINTS] >= _MANY_POINTS]
+    if not noise:
+        noise = [one.noise_m for one in shafts]
+    return max(float(np.quantile(noise, _SMOOTH_SHARE)), _LEAST_NOISE_M)
+
+
+def _pole(shaft: Shaft, carried: Carried, chance: float, origin: Floats) -> StreetPole:
+    level = min(LEVEL_M, shaft.top_m / 2)
+    return StreetPole(
+        foot=shaft.foot + origin,
+        shaft=shaft,
+        carried=carried,
+        type=type_of(shaft, carried, 0.0),
+        height_m=shaft.top_m,
+        diameter_m=2 * shaft.radius_at(level),
+        diameter_within_m=1.96 * 2 * math.hypot(shaft.deviation_m, shaft.noise_m / 2),
+        confidence=chance,
+    )

@@ -1,0 +1,147 @@
+"""What stands beside and over a shaft: rails, roofs, crowns; posts of poles stand free.
+
+A fence's post has rails on two opposite sides, a shelter's a roof over it, a trunk a crown. What a
+pole carries is narrow: an arm, a plate, a lamp.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from processing.core.arrays import Floats
+from processing.core.kernels import kernel
+from processing.methods.road.poles.shaft_kernels import FREE
+from processing.methods.road.poles.shafts import Shaft
+from processing.methods.road.trees.crowns import Crown, crown_of
+from processing.methods.road.trees.stems import FittedStem
+
+_RAIL_FROM_M, _RAIL_TO_M = 0.06, 0.6
+"""How far from a shaft's surface rails, meshes and walls are looked for."""
+
+_SLAB_M, _SLABS = 0.1, 160
+
+_SECTORS = 8
+"""Of 45 degrees about the axis."""
+
+_COVER_M, _CELL_M = 1.25, 0.25
+"""How far about the top a roof is looked for, in cells of the plan: an arm fills a tenth of them,
+a sign's plate fewer."""
+
+_BELOW_TOP_M, _ABOVE_TOP_M = 0.3, 1.2
+
+_LEAST_CROWN_M = 1.8
+"""Lower shafts carry none."""
+
+_ROUGH, _LEAST_FREE = 2.5, 0.25
+"""Noise over the usual one, and share of free heights, beyond which nobody asks for a crown."""
+
+RAILS, COVER, WIDE = range(3)
+"""Share of the heights with something on two opposite sides; share of the plan about the top that
+is filled; the same at half its height."""
+
+
+@dataclass(frozen=True)
+class Surroundings:
+    """What was measured beside and over a shaft.
+
+    Attributes
+    ----------
+    rails : float
+        Share of its heights that have something on two opposite sides.
+    cover : float
+        Share of the plan within 1.25 m about its top that something fills.
+    wide : float
+        The same about its middle.
+    crown : Crown or None
+        What could be a crown; None of low shafts, and of those too rough or hemmed in for a pole.
+    """
+
+    rails: float
+    cover: float
+    wide: float
+    crown: Crown | None
+
+
+def surroundings_of(points: Floats, shaft: Shaft, usual_noise_m: float) -> Surroundings:
+    """What stands about a shaft.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        m about its foot; those that are nearer to no other shaft.
+    usual_noise_m : float
+        How far points lie off the smooth shafts of this recording.
+    """
+    told = np.zeros(3)
+    axis = np.array([*shaft.lean, shaft.radius_m, shaft.taper, shaft.low_m, shaft.top_m])
+    surroundings_kernel(points, axis, told)
+    crown = None
+    is_rough = shaft.noise_m > _ROUGH * usual_noise_m or shaft.told[FREE] < _LEAST_FREE
+    if shaft.top_m > _LEAST_CROWN_M and len(points) and not is_rough:
+        crown = crown_of(points, (_as_stem(shaft),))
+    return Surroundings(float(told[RAILS]), float(told[COVER]), float(told[WIDE]), crown)
+
+
+def _as_stem(shaft: Shaft) -> FittedStem:
+    return FittedStem(
+        base=np.zeros(2),
+        lean=shaft.lean,
+        radius_m=shaft.radius_m,
+        taper=shaft.taper,
+        deviation_m=shaft.deviation_m,
+        noise_m=shaft.noise_m,
+        low_m=shaft.low_m,
+        high_m=shaft.top_m,
+        arc=0.5,
+        lines=np.empty(0, np.int64),
+    )
+
+
+@kernel
+def surroundings_kernel(points: Floats, axis: Floats, told: Floats) -> None:
+    """Fill sectors of heights and cells of the plan, and count them.
+
+    Parameters
+    ----------
+    axis : (6,) float64
+        Lean to the east and north, radius at the foot, taper, low and top.
+    """
+    beside = np.zeros((_SLABS, _SECTORS), np.bool_)
+    side = 2 * int(_COVER_M / _CELL_M)
+    plans = np.zeros((2, side, side), np.bool_)
+    low, top = axis[4], axis[5]
+    middle = (low + top) / 2
+    for point in range(len(points)):
+        up = points[point, 2]
+        east, north = points[point, 0] - axis[0] * up, points[point, 1] - axis[1] * up
+        off = math.hypot(east, north) - axis[2] + axis[3] * up
+        if off < _RAIL_FROM_M:
+            continue
+        if off < _RAIL_TO_M and 0.0 <= up < _SLABS * _SLAB_M:
+            sector = int((math.atan2(north, east) / math.pi + 1) / 2 * _SECTORS)
+            beside[int(up / _SLAB_M), min(sector, _SECTORS - 1)] = True
+        i = math.floor(east / _CELL_M) + side // 2
+        j = math.floor(north / _CELL_M) + side // 2
+        if 0 <= i < side and 0 <= j < side:
+            if top - _BELOW_TOP_M <= up <= top + _ABOVE_TOP_M:
+                plans[0, i, j] = True
+            if abs(up - middle) < _BELOW_TOP_M:
+                plans[1, i, j] = True
+    first, last = max(int(low / _SLAB_M), 2), min(int(top / _SLAB_M), _SLABS)
+    opposite = 0
+    for slab in range(first, last):
+        for sector in range(_SECTORS // 2):
+            across = sector + _SECTORS // 2
+            if beside[slab, sector] and (
+                beside[slab, across]
+                or beside[slab, across - 1]
+                or beside[slab, (across + 1) % _SECTORS]
+            ):
+                opposite += 1
+                break
+    told[RAILS] = opposite / max(last - first, 1)
+    told[COVER] = plans[0].sum() / (side * side)
+    told[WIDE] = plans[1].sum() / (side * side)

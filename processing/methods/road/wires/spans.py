@@ -1,0 +1,255 @@
+"""Spans: pieces of wires fitted as they hang, split where they are held and joined over gaps.
+
+In plan a wire is a straight line; upwards it is a catenary, which at the sags of spans along a
+street differs from a parabola by less than half a millimetre (30 m with a sag of 1 m: s⁴/24a³ with
+a = 112 m, Irvine 1981, Cable Structures, 1.2).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from processing.core.arrays import Floats, Integers
+
+_FEWEST, _LEAST_LONG_M = 6, 1.0
+"""Points and length of a piece that tells a direction."""
+
+_TRIM, _LEAST_TRIM_M = 3.0, 0.012
+"""Points off by more than so many times the noise, and by more than that, are another thing's."""
+
+_TURNS = 4
+
+_USUAL_BEND, _BEND_OFF = 0.004, 0.004
+"""Half of the second derivative of usual wires, 1/m, and how far others are off: spans of 25 to
+35 m sag by 0.3 to 1.2 m, which is 4 · sag / length²."""
+
+_MOST_OFF_M = 0.03
+"""Noise of a piece that is one wire: a cable's thickness, two passes and the scanner's own."""
+
+_GAP_M, _GAP_SHARE = 15.0, 1.5
+"""Over which a wire is joined, and how many times as long as both sides together."""
+
+_TURN = 0.03
+"""Sine between the directions of two pieces of one wire: short ones are off by their noise."""
+
+_WORSE, _WORSE_M = 1.35, 0.003
+"""Noise of two pieces joined over that of the worse: more, and they are two wires."""
+
+_SIDE_M = 0.05
+"""How far the end of a piece may lie off what its neighbour foretells for the middle of a gap."""
+
+
+@dataclass(frozen=True)
+class Span:
+    """A wire between two places.
+
+    Attributes
+    ----------
+    middle : (2,) float64
+        In plan, m about the plan's origin.
+    way : (2,) float64
+        Unit vector along it in plan.
+    aside : (2,) float64
+        Distance to the left of the way at the middle, m, and what it gains in a metre.
+    rise : (3,) float64
+        Height at the middle, m, its first derivative, and half its second one, 1/m.
+    start_m, end_m : float
+        Along the way from the middle: where it was seen.
+    noise_m : float
+        How far its points lie off it.
+    lines : (n,) int64
+        Its points by their line among all on wires, in order along it.
+    """
+
+    middle: Floats
+    way: Floats
+    aside: Floats
+    rise: Floats
+    start_m: float
+    end_m: float
+    noise_m: float
+    lines: Integers
+
+    @property
+    def long_m(self) -> float:
+        """Between its ends, in plan."""
+        return self.end_m - self.start_m
+
+    @property
+    def sag_m(self) -> float:
+        """How far it hangs below the straight line between its ends."""
+        return float(self.rise[2] * self.long_m**2 / 4)
+
+    def at(self, along_m: Floats) -> Floats:
+        """(n, 3) places along it, m about the plan's origin."""
+        left = np.array([-self.way[1], self.way[0]])
+        aside = self.aside[0] + self.aside[1] * along_m
+        plan = self.middle + along_m[:, None] * self.way + aside[:, None] * left
+        height = self.rise[0] + self.rise[1] * along_m + self.rise[2] * along_m**2
+        return np.column_stack([plan, height])
+
+    def along(self, places: Floats) -> Floats:
+        """(n,) how far along it places lie."""
+        return np.asarray((places[:, :2] - self.middle) @ self.way)
+
+
+def spans_of(local: Floats, group: Integers) -> list[Span]:
+    """The wires that groups of points are.
+
+    Parameters
+    ----------
+    local : (n, 3) float64
+        m about the plan's origin.
+    group : (n,) int64
+    """
+    order = np.argsort(group, kind="stable")
+    _, first = np.unique(group[order], return_index=True)
+    pieces: list[Span] = []
+    for lines in np.split(order, first[1:]):
+        if lines.size >= _FEWEST:
+            pieces += _pieces(local, lines)
+    return _joined(local, pieces)
+
+
+def _fit(local: Floats, lines: Integers) -> Span | None:
+    """A wire through points; None where they are too few or too short."""
+    points = local[lines]
+    middle = points[:, :2].mean(axis=0)
+    plan = points[:, :2] - middle
+    _, axes = np.linalg.eigh(plan.T @ plan)
+    way = axes[:, 1]
+    along = plan @ way
+    if np.ptp(along) < _LEAST_LONG_M:
+        return None
+    left = plan @ np.array([-way[1], way[0]])
+    kept = np.ones(lines.size, np.bool_)
+    off = np.zeros(lines.size)
+    for _ in range(_TURNS):
+        if np.count_nonzero(kept) < _FEWEST or np.ptp(along[kept]) < _LEAST_LONG_M:
+            return None
+        noise = max(float(np.sqrt(np.mean(off[kept] ** 2))), 0.003)
+        level = np.column_stack([np.ones(lines.size), along])
+        aside = np.linalg.lstsq(level[kept], left[kept], rcond=None)[0]
+        bent = np.column_stack([level, along**2])
+        normal = bent[kept].T @ bent[kept]
+        right = bent[kept].T @ points[kept, 2]
+        weight = (noise / _BEND_OFF) ** 2
+        normal[2, 2] += weight
+        right[2] += weight * _USUAL_BEND
+        rise = np.linalg.solve(normal, right)
+        off = np.hypot(left - level @ aside, points[:, 2] - bent @ rise)
+        usual = 1.2 * float(np.median(off[kept]))
+        kept = off < max(_TRIM * usual, _LEAST_TRIM_M)
+    inside = np.flatnonzero(kept)
+    inside = inside[np.argsort(along[inside], kind="stable")]
+    return Span(
+        middle,
+        way,
+        aside,
+        rise,
+        float(along[inside].min()),
+        float(along[inside].max()),
+        float(np.sqrt(np.mean(off[inside] ** 2))),
+        lines[inside],
+    )
+
+
+def _pieces(local: Floats, lines: Integers) -> list[Span]:
+    """A group as one wire, or split where it is held by a pole or another one begins."""
+    span = _fit(local, lines)
+    if span is None:
+        return []
+    is_whole = span.lines.size > 0.9 * lines.size and span.noise_m < _MOST_OFF_M / 2
+    if is_whole or lines.size < 2 * _FEWEST:
+        return [span] if span.noise_m < _MOST_OFF_M else []
+    order = lines[np.argsort(span.along(local[lines]), kind="stable")]
+    best: tuple[float, list[Span]] | None = None
+    for share in np.linspace(0.1, 0.9, 17):
+        cut = int(share * lines.size)
+        parts = [_fit(local, part) for part in (order[:cut], order[cut:])]
+        found = [part for part in parts if part is not None]
+        if not found:
+            continue
+        covered = sum(part.lines.size for part in found)
+        cost = sum(part.noise_m**2 * part.lines.size for part in found)
+        cost += (lines.size - covered) * _MOST_OFF_M**2
+        if best is None or cost < best[0]:
+            best = (cost, found)
+    alone = span.noise_m**2 * span.lines.size + (lines.size - span.lines.size) * _MOST_OFF_M**2
+    if best is None or best[0] > 0.6 * alone:
+        return [span] if span.noise_m < _MOST_OFF_M else []
+    return [one for part in best[1] for one in _pieces(local, np.sort(part.lines))]
+
+
+def _joined(local: Floats, pieces: Sequence[Span]) -> list[Span]:
+    """Pieces of one wire as one, the nearest joined first."""
+    spans = list(pieces)
+    of_piece = list(range(len(pieces)))
+    for a, b in _neighbours(pieces):
+        first, second = of_piece[a], of_piece[b]
+        if first == second:
+            continue
+        both = _both(local, spans[first], spans[second])
+        if both is not None:
+            spans.append(both)
+            of_piece = [len(spans) - 1 if one in (first, second) else one for one in of_piece]
+    return [spans[number] for number in sorted(set(of_piece))]
+
+
+def _neighbours(pieces: Sequence[Span]) -> list[tuple[int, int]]:
+    """Pairs of pieces whose ends are near each other, the nearest first."""
+    from scipy.spatial import cKDTree
+
+    if len(pieces) < 2:
+        return []
+    ends = np.concatenate([one.at(np.array([one.start_m, one.end_m])) for one in pieces])
+    pairs = cKDTree(ends).query_pairs(_GAP_M, output_type="ndarray")
+    pairs = pairs[pairs[:, 0] // 2 != pairs[:, 1] // 2]
+    away = np.linalg.norm(ends[pairs[:, 0]] - ends[pairs[:, 1]], axis=1)
+    found: dict[tuple[int, int], float] = {}
+    for (a, b), gap in zip((pairs // 2).tolist(), away.tolist(), strict=True):
+        key = (min(a, b), max(a, b))
+        found[key] = min(found.get(key, np.inf), gap)
+    return sorted(found, key=lambda key: found[key])
+
+
+def _both(local: Floats, one: Span, other: Span) -> Span | None:
+    """Two pieces as one wire; None where they aren't."""
+    if abs(one.way[0] * other.way[1] - one.way[1] * other.way[0]) > _TURN + 0.1 / min(
+        one.long_m, other.long_m
+    ):
+        return None
+    ends = one.along(other.at(np.array([other.start_m, other.end_m])))
+    low, high = float(ends.min()), float(ends.max())
+    gap = max(low - one.end_m, one.start_m - high)
+    if gap > min(_GAP_M, _GAP_SHARE * (one.long_m + other.long_m)):
+        return None
+    if min(high, one.end_m) - max(low, one.start_m) > 0.5 * min(one.long_m, other.long_m):
+        return None if not _same(one, other) else _fit(local, _lines(one, other))
+    both = _fit(local, _lines(one, other))
+    if both is None or both.lines.size < 0.9 * (one.lines.size + other.lines.size):
+        return None
+    worse = max(one.noise_m, other.noise_m)
+    if both.noise_m > max(_WORSE * worse, worse + _WORSE_M) or both.noise_m > _MOST_OFF_M:
+        return None
+    is_kept = all(_near_ends(both, part) < _SIDE_M for part in (one, other))
+    return both if is_kept else None
+
+
+def _lines(one: Span, other: Span) -> Integers:
+    return np.unique(np.concatenate([one.lines, other.lines]))
+
+
+def _same(one: Span, other: Span) -> bool:
+    """Whether two pieces beside each other are of one wire: two passes, two heads."""
+    return _near_ends(one, other) < _SIDE_M
+
+
+def _near_ends(span: Span, part: Span) -> float:
+    """How far the ends and the middle of a piece lie off a wire at most."""
+    places = part.at(np.array([part.start_m, (part.start_m + part.end_m) / 2, part.end_m]))
+    off = places - span.at(span.along(places))
+    return float(np.linalg.norm(off, axis=1).max())

@@ -1,0 +1,185 @@
+"""Points of thin things high above the street, and the groups in which they lie on one line.
+
+A scan line crosses a wire in one or a few points with the sky before and behind; walls and roofs
+give long runs of points. What is left of crowns and railings lies in no thin free line.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.core.arrays import Flags, Floats, Integers
+from processing.core.kernels import kernel
+from processing.core.monitor import Monitor
+from processing.methods.road.objects.drive_chunks import chunks_of
+from processing.methods.road.objects.ground_heights import GROUND_CELLS
+from processing.methods.road.objects.sparse_plan import SparsePlan, cell_of
+from processing.methods.road.wires.wire_kernels import (
+    CellGrid,
+    LineLimits,
+    crowded_kernel,
+    groups_kernel,
+    lines_kernel,
+    short_runs_kernel,
+)
+from processing.recording.drive import Drive
+
+_NEAR_M = 0.3
+"""Points of neighbouring pulses on one wall are nearer, but for walls seen askew."""
+
+_PULSES = 1.6
+"""Time between points of neighbouring pulses over the pulse interval: no pulse is missing."""
+
+_INTERVAL_SHARE = 0.2
+"""Of the times between points: fewer pulses come early, and on most follows another point."""
+
+_LONGEST_M = 0.35
+"""Of a run on a wire: a cable of 4 cm that is crossed askew."""
+
+_CELL_M = 0.8
+"""How far about a point its line is looked for: scan lines of a fast vehicle, 0.28 m apart at 100
+turns a second and 100 km/h, meet it six times."""
+
+_MOST_FILLED = 24
+"""Of 64 parts of such a cell: a wire fills four or five, a line of five side by side 20 to 25."""
+
+_LIMITS = LineLimits(
+    reach_m=_CELL_M,
+    core_m=0.03,
+    ring_m=0.045,
+    free_m=0.085,
+    fewest=4,
+    steepest=0.8,
+    beside=0.5,
+)
+"""A wire and its noise, and the free room about it: wires of one line hang 10 cm apart and more;
+service drops fall by half their run."""
+
+
+@dataclass(frozen=True)
+class WirePoints:
+    """Points on thin lines.
+
+    Attributes
+    ----------
+    local : (n, 3) float64
+        m about the plan's origin.
+    direction : (n, 3) float64
+        Unit vectors along the line through each.
+    group : (n,) int64
+        The same for points that lie on each other's lines.
+    drives, points : (n,) int64
+        Which of the drives each is of, and its number there.
+    """
+
+    local: Floats
+    direction: Floats
+    group: Integers
+    drives: Integers
+    points: Integers
+
+
+def wire_points(
+    drives: Sequence[Drive],
+    plan: SparsePlan,
+    ground: NDArray[np.float32],
+    lowest_m: float,
+    monitor: Monitor,
+) -> WirePoints:
+    """All points that lie on thin free lines.
+
+    Parameters
+    ----------
+    ground : (tiles, 16, 16) float32
+        As :func:`ground_heights` found it.
+    lowest_m : float
+        Above the ground; lower lines are no wires.
+    """
+    parts: list[tuple[Floats, Integers, Integers]] = []
+    intervals = [_pulse_interval(drive) for drive in drives]
+    for chunk in chunks_of(drives, plan.origin, monitor):
+        stop = chunk.start + len(chunk.local)
+        times = np.asarray(drives[chunk.drive].columns["time"][chunk.start : stop], np.float64)
+        interval = intervals[chunk.drive]
+        if interval == 0.0:
+            times, interval = np.arange(len(times), dtype=np.float64), 1.0
+        short = np.empty(len(chunk.local), np.bool_)
+        short_runs_kernel(chunk.local, times, _NEAR_M, _PULSES * interval, _LONGEST_M, short)
+        short &= ~chunk.is_noise
+        high_kernel(chunk.local, plan.table, ground.reshape(-1), lowest_m, short)
+        kept = np.flatnonzero(short)
+        drive = np.full(kept.size, chunk.drive, np.int64)
+        parts.append((chunk.local[kept], drive, chunk.start + kept))
+    local = np.concatenate([np.empty((0, 3)), *(one[0] for one in parts)])
+    which = np.concatenate([np.empty(0, np.int64), *(one[1] for one in parts)])
+    numbers = np.concatenate([np.empty(0, np.int64), *(one[2] for one in parts)])
+    monitor.check()
+    return _on_lines(local, which, numbers)
+
+
+def _pulse_interval(drive: Drive) -> float:
+    """Time between pulses, s; 0 for a recording without times."""
+    if not drive.info.has_measured_times or drive.count < 3:
+        return 0.0
+    times = np.asarray(drive.columns["time"][: min(drive.count, 200_000)], np.float64)
+    steps = np.diff(times)
+    steps = steps[steps > 0]
+    return float(np.quantile(steps, _INTERVAL_SHARE)) if steps.size else 0.0
+
+
+def _on_lines(local: Floats, which: Integers, numbers: Integers) -> WirePoints:
+    order, _, starts, grid = _sorted(local)
+    local, which, numbers = local[order], which[order], numbers[order]
+    crowded = np.zeros(len(local), np.bool_)
+    crowded_kernel(local, starts, grid, _MOST_FILLED, crowded)
+    local, which, numbers = local[~crowded], which[~crowded], numbers[~crowded]
+    for _ in range(2):
+        # Points on lines tell the lines again, without what lay beside them.
+        order, cells, starts, grid = _sorted(local)
+        local, which, numbers = local[order], which[order], numbers[order]
+        direction = np.zeros_like(local)
+        lines_kernel(local, cells, starts, grid, _LIMITS, direction)
+        is_on = direction.any(axis=1)
+        local, which, numbers = local[is_on], which[is_on], numbers[is_on]
+    direction = direction[is_on]
+    order, cells, starts, grid = _sorted(local)
+    local, direction = local[order], direction[order]
+    group = np.empty(len(local), np.int64)
+    groups_kernel(local, direction, cells, starts, grid, _LIMITS.core_m, group)
+    return WirePoints(local, direction, group, which[order], numbers[order])
+
+
+def _sorted(local: Floats) -> tuple[Integers, Integers, Integers, CellGrid]:
+    """The order of points by cells, the filled cells, where each begins, and the grid."""
+    if not len(local):
+        none = np.empty(0, np.int64)
+        return none, none, np.zeros(1, np.int64), CellGrid(np.zeros(3), np.ones(3, np.int64), 1.0)
+    # A cell more on each side, so that the neighbours of each are others.
+    low = local.min(axis=0) - 1.5 * _CELL_M
+    shape = ((local.max(axis=0) - low) / _CELL_M).astype(np.int64) + 3
+    where = ((local - low) / _CELL_M).astype(np.int64)
+    keys = (where[:, 0] * shape[1] + where[:, 1]) * shape[2] + where[:, 2]
+    order = np.argsort(keys, kind="stable")
+    cells, first = np.unique(keys[order], return_index=True)
+    starts = np.concatenate([first, [len(local)]]).astype(np.int64)
+    return order, cells, starts, CellGrid(low, shape, _CELL_M)
+
+
+@kernel
+def high_kernel(
+    local: Floats,
+    table: NDArray[np.int32],
+    ground: NDArray[np.float32],
+    lowest_m: float,
+    kept: Flags,
+) -> None:
+    """Drop what is low, or over no known ground."""
+    for point in range(len(local)):
+        if not kept[point]:
+            continue
+        cell = cell_of(local[point, 0], local[point, 1], table, GROUND_CELLS)
+        kept[point] = cell >= 0 and local[point, 2] - ground[cell] >= lowest_m
