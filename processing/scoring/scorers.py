@@ -24,6 +24,7 @@ from processing.scoring.poles import pole_score
 from processing.scoring.signs import sign_score
 from processing.scoring.trees import tree_score
 from processing.scoring.volumes import volume_score
+from processing.scoring.wires import wire_score
 
 Scorer = PointScorer | FeatureScorer | VolumeScorer
 """One per kind of result."""
@@ -60,6 +61,7 @@ GUTTER_SCORER = FeatureScorer("gutters", Text("Covered gutters", "蓋付き側�
 SIGN_SCORER = FeatureScorer("signs", Text("Road signs", "道路標識"), sign_score)
 TREE_SCORER = FeatureScorer("trees", Text("Street trees", "街路樹"), tree_score)
 POLE_SCORER = FeatureScorer("poles", Text("Poles", "柱状物"), pole_score)
+WIRE_SCORER = FeatureScorer("wires", Text("Wires", "架線"), wire_score)
 VOLUME_SCORER = VolumeScorer("volume", Text("Volumes", "土量"), volume_score)
 
 SCORERS_WITHOUT_TOOL: tuple[Scorer, ...] = (

@@ -25,6 +25,7 @@ from processing.tools.template import TEMPLATE
 from processing.tools.tool import Comparison, Tool
 from processing.tools.trees import TREES
 from processing.tools.volume import VOLUME
+from processing.tools.wires import WIRES
 
 _DECLARED = (
     CURBS,
@@ -32,6 +33,7 @@ _DECLARED = (
     TREES,
     SIGNS,
     POLES,
+    WIRES,
     NOISE,
     GROUND_TOOL,
     NORMALS,

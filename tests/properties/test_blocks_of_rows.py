@@ -40,6 +40,7 @@ from processing.tools.signs import SIGNS
 from processing.tools.template import TEMPLATE
 from processing.tools.tool import FinishedColumns, PointBlock, PointResult
 from processing.tools.trees import TREES
+from processing.tools.wires import WIRES
 from tests.builders import simulated_drive
 from tests.camera_scene import looking, photograph
 from tests.processing.image.recordings import (
@@ -71,7 +72,7 @@ IN_SPACE = (
     (GROUND_TOOL.id, GroundParameters(method="lowest", tolerance_m=0.1)),
 )
 """Tools that look around in space, whenever a neighbour was measured, by parts of their own."""
-CHUNKS = (TEMPLATE.id, CURBS.id, GUTTERS.id, SIGNS.id, TREES.id, POLES.id)
+CHUNKS = (TEMPLATE.id, CURBS.id, GUTTERS.id, SIGNS.id, TREES.id, POLES.id, WIRES.id)
 """Tools that find candidates, and read the street a stretch at a time."""
 
 

@@ -204,7 +204,8 @@ def test_the_kinds_of_the_extraction_tools_have_the_attributes_of_the_contract(
         "gutter_lid": {"type", "width_m", "length_m", "run"},
         "street_tree": {"girth_m", "dbh_m", "height_m", "crown_m", "stems"},
         "sign": {"shape", "size_m", "facing_deg", "height_m"},
-        "pole": {"height_m", "diameter_m", "type"},
+        "pole": {"height_m", "diameter_m", "type", "lean_deg"},
+        "wire": {"sag_m", "clearance_m"},
     }
     for kind, attributes in named.items():
         assert attributes <= {one.id for one in bundled[kind].attributes}

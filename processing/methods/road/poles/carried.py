@@ -45,6 +45,9 @@ _TURNS, _STRIP_M, _BIN_M = 48, 0.5, 0.25
 _ARM_BELOW_M, _ABOVE_ARM_M = 1.6, 1.3
 """Arms leave a shaft near its top, the lower of two a plate's height below, and may rise beyond."""
 
+_HANG_M = 0.3
+"""Cells in which an arm hangs together: scan lines cross it every 0.3 m or nearer."""
+
 _MOST_TURNS = 0.4
 """Share of the directions in which something reaches as far: an arm's strip fills a quarter of
 them, a crown or a wall more."""
@@ -195,6 +198,7 @@ def _arm(points: Floats, shaft: Shaft) -> tuple[float, float, float, float, floa
     none = (0.0, 0.0, 0.0, 0.0, 0.0)
     from_top = points[:, 2] - shaft.top_m
     points = points[(from_top > -_ARM_BELOW_M) & (from_top < _ABOVE_ARM_M)]
+    points = points[_hang_on(points, shaft)]
     if len(points) < _WIRE_FEWEST:
         return none
     turns = np.arange(_TURNS) * (2 * np.pi / _TURNS)
@@ -228,6 +232,24 @@ def _arm(points: Floats, shaft: Shaft) -> tuple[float, float, float, float, floa
         _tallest(along[end, best], heights),
         float(np.quantile(sides, 0.95) - np.quantile(sides, 0.05)),
     )
+
+
+def _hang_on(points: Floats, shaft: Shaft) -> NDArray[np.bool_]:
+    """(n,) points that hang together with the shaft: wires pass by, crowns stand beside."""
+    from scipy import ndimage
+
+    if not len(points):
+        return np.zeros(0, np.bool_)
+    cells = np.floor(points / _HANG_M).astype(np.int64)
+    cells -= cells.min(axis=0)
+    grid = np.zeros(cells.max(axis=0) + 1, np.bool_)
+    where = tuple(cells.T)
+    grid[where] = True
+    parts, _ = ndimage.label(grid, np.ones((3, 3, 3)))
+    part = parts[where]
+    away = np.hypot(points[:, 0], points[:, 1]) - shaft.radius_at(shaft.top_m)
+    touches = (away < _HANG_M) & (points[:, 2] < shaft.top_m + _HANG_M)
+    return np.isin(part, np.unique(part[touches]))
 
 
 def _reach(filled: NDArray[np.bool_]) -> int:

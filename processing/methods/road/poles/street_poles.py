@@ -16,7 +16,7 @@ from processing.core.monitor import Monitor, PartMonitor
 from processing.methods.road.objects.column_points import points_about
 from processing.methods.road.objects.sparse_plan import plan_of
 from processing.methods.road.poles.carried import Carried, carried_of, type_of
-from processing.methods.road.poles.pole_confidence import chance_of, facts_of
+from processing.methods.road.poles.pole_confidence import chance_of, facts_of, is_low
 from processing.methods.road.poles.shaft_kernels import LEVEL_M, POINTS
 from processing.methods.road.poles.shafts import Shaft, find_shafts
 from processing.methods.road.poles.surroundings import surroundings_of
@@ -102,7 +102,8 @@ def street_poles(drives: Sequence[Drive], monitor: Monitor) -> tuple[StreetPole,
     for number, shaft in enumerate(shafts):
         monitor.check()
         local = around.local[around.of(number)] - shaft.foot
-        chance = chance_of(facts_of(shaft, surroundings_of(local, shaft, usual_m), usual_m))
+        facts = facts_of(shaft, surroundings_of(local, shaft, usual_m), usual_m)
+        chance = chance_of(facts, is_low=is_low(shaft))
         if chance >= _LEAST_CHANCE:
             sure.append((chance, number))
     poles: list[StreetPole] = []

@@ -21,6 +21,9 @@ from processing.methods.road.trees.stems import FittedStem
 _RAIL_FROM_M, _RAIL_TO_M = 0.06, 0.6
 """How far from a shaft's surface rails, meshes and walls are looked for."""
 
+_PLATE_M = 0.4
+"""What goes on beside a shaft beyond is longer than half a sign's plate: a rail, a wall."""
+
 _SLAB_M, _SLABS = 0.1, 160
 
 _SECTORS = 8
@@ -38,9 +41,12 @@ _LEAST_CROWN_M = 1.8
 _ROUGH, _LEAST_FREE = 2.5, 0.25
 """Noise over the usual one, and share of free heights, beyond which nobody asks for a crown."""
 
-RAILS, COVER, WIDE = range(3)
-"""Share of the heights with something on two opposite sides; share of the plan about the top that
-is filled; the same at half its height."""
+_OVER_FROM_M, _OVER_TO_M, _OVER_BESIDE_M = 0.15, 1.15, 0.3
+"""Between which heights above its top a shaft may go on: a trunk that bends, a person, an edge."""
+
+RAILS, COVER, OVER = range(3)
+"""Share of the heights with something on two opposite sides, or a rail on one; share of the plan
+about the top that is filled; share of the metre above the top that is."""
 
 
 @dataclass(frozen=True)
@@ -50,18 +56,18 @@ class Surroundings:
     Attributes
     ----------
     rails : float
-        Share of its heights that have something on two opposite sides.
+        Share of its heights that have something on two opposite sides, or a rail on one.
     cover : float
         Share of the plan within 1.25 m about its top that something fills.
-    wide : float
-        The same about its middle.
+    over : float
+        Share of the metre above its top that something fills near its axis.
     crown : Crown or None
         What could be a crown; None of low shafts, and of those too rough or hemmed in for a pole.
     """
 
     rails: float
     cover: float
-    wide: float
+    over: float
     crown: Crown | None
 
 
@@ -82,7 +88,7 @@ def surroundings_of(points: Floats, shaft: Shaft, usual_noise_m: float) -> Surro
     is_rough = shaft.noise_m > _ROUGH * usual_noise_m or shaft.told[FREE] < _LEAST_FREE
     if shaft.top_m > _LEAST_CROWN_M and len(points) and not is_rough:
         crown = crown_of(points, (_as_stem(shaft),))
-    return Surroundings(float(told[RAILS]), float(told[COVER]), float(told[WIDE]), crown)
+    return Surroundings(float(told[RAILS]), float(told[COVER]), float(told[OVER]), crown)
 
 
 def _as_stem(shaft: Shaft) -> FittedStem:
@@ -110,38 +116,42 @@ def surroundings_kernel(points: Floats, axis: Floats, told: Floats) -> None:
         Lean to the east and north, radius at the foot, taper, low and top.
     """
     beside = np.zeros((_SLABS, _SECTORS), np.bool_)
+    beyond = np.zeros((_SLABS, _SECTORS), np.bool_)
     side = 2 * int(_COVER_M / _CELL_M)
-    plans = np.zeros((2, side, side), np.bool_)
+    plan = np.zeros((side, side), np.bool_)
+    over = np.zeros(10, np.bool_)
     low, top = axis[4], axis[5]
-    middle = (low + top) / 2
     for point in range(len(points)):
         up = points[point, 2]
         east, north = points[point, 0] - axis[0] * up, points[point, 1] - axis[1] * up
         off = math.hypot(east, north) - axis[2] + axis[3] * up
+        if top + _OVER_FROM_M <= up < top + _OVER_TO_M and off < _OVER_BESIDE_M:
+            over[min(int((up - top - _OVER_FROM_M) * over.size), over.size - 1)] = True
         if off < _RAIL_FROM_M:
             continue
         if off < _RAIL_TO_M and 0.0 <= up < _SLABS * _SLAB_M:
             sector = int((math.atan2(north, east) / math.pi + 1) / 2 * _SECTORS)
-            beside[int(up / _SLAB_M), min(sector, _SECTORS - 1)] = True
+            sector = min(sector, _SECTORS - 1)
+            beside[int(up / _SLAB_M), sector] = True
+            beyond[int(up / _SLAB_M), sector] |= off > _PLATE_M
         i = math.floor(east / _CELL_M) + side // 2
         j = math.floor(north / _CELL_M) + side // 2
         if 0 <= i < side and 0 <= j < side:
-            if top - _BELOW_TOP_M <= up <= top + _ABOVE_TOP_M:
-                plans[0, i, j] = True
-            if abs(up - middle) < _BELOW_TOP_M:
-                plans[1, i, j] = True
+            plan[i, j] |= top - _BELOW_TOP_M <= up <= top + _ABOVE_TOP_M
     first, last = max(int(low / _SLAB_M), 2), min(int(top / _SLAB_M), _SLABS)
-    opposite = 0
+    hemmed = 0
     for slab in range(first, last):
-        for sector in range(_SECTORS // 2):
+        for sector in range(_SECTORS):
             across = sector + _SECTORS // 2
-            if beside[slab, sector] and (
-                beside[slab, across]
-                or beside[slab, across - 1]
+            opposite = (
+                beside[slab, across % _SECTORS]
+                or beside[slab, (across - 1) % _SECTORS]
                 or beside[slab, (across + 1) % _SECTORS]
-            ):
-                opposite += 1
+            )
+            # The last post of a fence has rails on one side, longer than half a plate.
+            if beside[slab, sector] and (opposite or beyond[slab, sector]):
+                hemmed += 1
                 break
-    told[RAILS] = opposite / max(last - first, 1)
-    told[COVER] = plans[0].sum() / (side * side)
-    told[WIDE] = plans[1].sum() / (side * side)
+    told[RAILS] = hemmed / max(last - first, 1)
+    told[COVER] = plan.sum() / (side * side)
+    told[OVER] = over.sum() / over.size

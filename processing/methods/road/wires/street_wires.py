@@ -1,0 +1,163 @@
+"""Wires of a survey with their sag and how high they hang over the ground and over the road."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.core.arrays import Floats, Integers
+from processing.core.monitor import Monitor, PartMonitor
+from processing.methods.road.objects.ground_heights import ground_heights, height_of
+from processing.methods.road.objects.sparse_plan import SparsePlan, plan_of
+from processing.methods.road.wires.spans import Span, spans_of
+from processing.methods.road.wires.wire_confidence import chance_of, facts_of
+from processing.methods.road.wires.wire_points import wire_points
+from processing.recording.drive import Drive
+
+_STEP_M = 0.5
+"""Between vertices: chords of usual wires lie 0.3 mm below the curve."""
+
+_ROAD_M = 3.0
+"""What lies so near to the vehicle's path in plan is carriageway: half a lane and the next one's
+edge (道路構造令 第5条: lanes of 2.75 to 3.5 m)."""
+
+_PATH_STEP_M = 0.5
+
+
+@dataclass(frozen=True)
+class WireSettings:
+    """What is looked for.
+
+    Attributes
+    ----------
+    lowest_m : float
+        Lines are higher above the ground.
+    shortest_m : float
+        Length in plan.
+    """
+
+    lowest_m: float
+    shortest_m: float
+
+
+@dataclass(frozen=True)
+class StreetWire:
+    """One wire, as far as it was seen.
+
+    Attributes
+    ----------
+    line : (n, 3) float64
+        Every half metre along it, m, project CRS.
+    sag_m : float
+        How far it hangs below the straight line between its ends.
+    clearance_m : float
+        Lowest height over the ground below; NaN over no known ground.
+    road_clearance_m : float
+        The same over the vehicle's way; NaN where it doesn't hang over it.
+    noise_m : float
+        How far its points lie off it.
+    confidence : float
+        The share of its like that are wires.
+    points, drives : (n,) int64
+        Of each vertex the measured point nearest along the wire by its number in its drive, −1
+        where none is near; and which drive it is of.
+    """
+
+    line: Floats
+    sag_m: float
+    clearance_m: float
+    road_clearance_m: float
+    noise_m: float
+    confidence: float
+    points: Integers
+    drives: Integers
+
+
+def street_wires(
+    drives: Sequence[Drive], settings: WireSettings, monitor: Monitor
+) -> tuple[StreetWire, ...]:
+    """All thin free lines high above the ground; a confidence tells wires from the others.
+
+    Notes
+    -----
+    1. A scan line crosses a wire in a short run of points; those that lie on a line with nothing
+       close beside it are kept.
+    2. Points on each other's lines are of one piece; pieces are fitted as wires hang, split where
+       they are held and joined over gaps.
+    """
+    plan = plan_of([(drive.info.lowest, drive.info.highest) for drive in drives])
+    ground = ground_heights(drives, plan, PartMonitor(monitor, 0.0, 0.4))
+    found = wire_points(drives, plan, ground, settings.lowest_m, PartMonitor(monitor, 0.4, 0.9))
+    spans = [one for one in spans_of(found.local, found.group) if one.long_m >= settings.shortest_m]
+    is_over = _path_tree(drives, plan)
+    wires: list[StreetWire] = []
+    for span in spans:
+        monitor.check()
+        at = np.linspace(span.start_m, span.end_m, math.ceil(span.long_m / _STEP_M) + 1)
+        line, rests = span.at(at), _rests(span, found.local, at)
+        over = line[:, 2] - _ground_below(ground, plan, line)
+        wires.append(
+            StreetWire(
+                line=line + plan.origin,
+                sag_m=span.sag_m,
+                clearance_m=_least(over),
+                road_clearance_m=_least(over[is_over(line)]),
+                noise_m=span.noise_m,
+                confidence=chance_of(facts_of(span)),
+                points=np.where(rests >= 0, found.points[rests], -1),
+                drives=np.where(rests >= 0, found.drives[rests], 0),
+            )
+        )
+    monitor.report(1.0)
+    return tuple(sorted(wires, key=lambda one: -one.confidence))
+
+
+def _rests(span: Span, local: Floats, at: Floats) -> Integers:
+    """Of places along a span the line of the nearest point among all; −1: none within a step."""
+    along = span.along(local[span.lines])
+    after = np.clip(np.searchsorted(along, at), 1, len(along) - 1)
+    nearest = np.where(at - along[after - 1] < along[after] - at, after - 1, after)
+    is_near = np.abs(along[nearest] - at) <= _STEP_M
+    return np.where(is_near, span.lines[nearest], -1)
+
+
+def _ground_below(ground: NDArray[np.float32], plan: SparsePlan, line: Floats) -> Floats:
+    return np.array([height_of(ground, plan, *place) for place in line[:, :2].tolist()])
+
+
+def _least(heights: Floats) -> float:
+    known = heights[np.isfinite(heights)]
+    return float(known.min()) if known.size else float("nan")
+
+
+class _PathTree:
+    """Tells which places lie over the vehicle's way."""
+
+    def __init__(self, paths: Sequence[Floats]) -> None:
+        from scipy.spatial import cKDTree
+
+        places = np.concatenate([np.empty((0, 2)), *paths])
+        self._tree = cKDTree(places) if len(places) else None
+
+    def __call__(self, line: Floats) -> NDArray[np.bool_]:
+        """(n,) which of (n, 3) places."""
+        if self._tree is None:
+            return np.zeros(len(line), np.bool_)
+        away, _ = self._tree.query(line[:, :2], distance_upper_bound=_ROAD_M)
+        return np.asarray(np.isfinite(away))
+
+
+def _path_tree(drives: Sequence[Drive], plan: SparsePlan) -> _PathTree:
+    paths: list[Floats] = []
+    for drive in drives:
+        if drive.trajectory is None or len(drive.trajectory.xyz) < 2:
+            continue
+        path = drive.trajectory.xyz[:, :2] - plan.origin[:2]
+        along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
+        at = np.arange(0.0, along[-1], _PATH_STEP_M)
+        paths.append(np.column_stack([np.interp(at, along, axis) for axis in path.T]))
+    return _PathTree(paths)
