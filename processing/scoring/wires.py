@@ -27,6 +27,9 @@ TOLERANCE_M = 0.05
 STEP_M = 0.1
 """Between judged places; counts are in decimetres."""
 
+_FINE_M = 0.01
+"""Between places that others are measured to: half of it adds a millimetre at 1 cm."""
+
 _SAME_SHARE = 0.8
 """Of a true wire that must be found by one line to compare their sags: shorter ones sag less."""
 
@@ -92,37 +95,38 @@ def score_wires(result: MappedFile, truth: MappedFile) -> ScoredWires:
 
     found = result.of_kinds(WIRES, "line", _NAME)
     true = truth.of_kinds(WIRES, "line", _NAME)
-    places, owner = _places([one.xyz for one in found])
-    true_places, true_owner = _places([one.xyz for one in true])
+    places, owner = _places([one.xyz for one in found], STEP_M)
+    true_places, true_owner = _places([one.xyz for one in true], STEP_M)
     asked = _asked(true, true_places, true_owner)
     off = np.full(len(true_places), np.inf)
     line = np.full(len(true_places), -1, np.int64)
     if len(places) and len(true_places):
-        off, nearest = cKDTree(places).query(true_places)
-        line = owner[nearest]
+        fine, of = _places([one.xyz for one in found], _FINE_M)
+        off, nearest = cKDTree(fine).query(true_places)
+        line = of[nearest]
     is_near = off <= TOLERANCE_M
     right = np.zeros(len(places), np.bool_)
-    free = np.zeros(len(places), np.bool_)
     if len(places) and len(true_places):
-        away, at = cKDTree(true_places).query(places)
+        fine, of = _places([one.xyz for one in true], _FINE_M)
+        away, nearest = cKDTree(fine).query(places)
         # The line nearest to a true place accounts for it; beside it others are false.
+        _, at = cKDTree(true_places).query(fine[nearest])
         right = (away <= TOLERANCE_M) & (line[at] == owner)
-        free = right & ~asked[at]
     hits, wanted = int((is_near & asked).sum()), int(asked.sum())
     made_up = int((~right).sum())
     counts = BinaryConfusionMatrix(hits, made_up, wanted - hits, 0)
     sags = _sags((result, found), (truth, true), np.where(is_near, line, -1), true_owner)
     ends = np.cumsum(np.bincount(owner, minlength=len(found)))[:-1] if len(found) else []
-    parts = tuple(np.split(right | free, ends)) if len(found) else ()
+    parts = tuple(np.split(right, ends)) if len(found) else ()
     return ScoredWires(counts, int((~asked).sum()), off[is_near & asked], parts, tuple(sags))
 
 
-def _places(lines: Sequence[Floats]) -> tuple[Floats, Integers]:
-    """Middles of equal pieces of lines, about a decimetre long, and the line of each."""
+def _places(lines: Sequence[Floats], step_m: float) -> tuple[Floats, Integers]:
+    """Middles of equal pieces of lines, about so long, and the line of each."""
     parts: list[Floats] = []
     for line in lines:
         ends = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(line, axis=0), axis=1))])
-        count = max(1, round(float(ends[-1]) / STEP_M))
+        count = max(1, round(float(ends[-1]) / step_m))
         at = (np.arange(count) + 0.5) * ends[-1] / count
         parts.append(np.column_stack([np.interp(at, ends, axis) for axis in line.T]))
     owner = np.repeat(np.arange(len(parts)), [len(part) for part in parts]).astype(np.int64)

@@ -42,7 +42,11 @@ from processing.methods.road.objects.sparse_plan import plan_of
 from processing.methods.road.poles.pole_confidence import PoleFacts, facts_of, is_low
 from processing.methods.road.poles.shaft_kernels import FREE
 from processing.methods.road.poles.shafts import Shaft, find_shafts
-from processing.methods.road.poles.street_poles import REACH_M, usual_noise_m
+from processing.methods.road.poles.street_poles import (
+    REACH_M,
+    carried_if_likely,
+    usual_noise_m,
+)
 from processing.methods.road.poles.surroundings import surroundings_of
 from processing.scoring.object_matches import positions_of
 from processing.scoring.poles import POLES
@@ -50,13 +54,13 @@ from processing.scoring.poles import POLES
 EXPECTED_LOW = WeightPrior(
     (
         0.0,
-        *PoleFacts(-3, 3, -5, 4, 3, 1.5, 1, -2, -8, -8, -4, -1, -0.5, 1, -2, -8),
+        *PoleFacts(-3, 3, -5, 4, 3, 1.5, 1, -2, -8, -8, -4, -1, -0.5, 1, 0.1, 0.1, 0.1, -2, -8),
     ),
-    (4.0, *PoleFacts(3, 3, 5, 4, 4, 1.5, 3, 2, 6, 6, 3, 2, 1, 1, 2, 8)),
+    (4.0, *PoleFacts(3, 3, 5, 4, 4, 1.5, 3, 2, 6, 6, 3, 2, 1, 1, 0.1, 0.1, 0.1, 2, 8)),
 )
 EXPECTED_HIGH = WeightPrior(
-    (0.0, *PoleFacts(-3, 2, -4, 3, 3, 1, 1, -2, -1, -4, -2, -3, -1, 1, -2, -5)),
-    (4.0, *PoleFacts(3, 2, 4, 3, 4, 1.5, 3, 2, 2, 5, 2, 4, 2, 2, 2, 5)),
+    (0.0, *PoleFacts(-3, 2, -4, 3, 3, 1, 1, -2, -1, -4, -2, -3, -1, 1, 2, 2, 3, -1, -5)),
+    (4.0, *PoleFacts(3, 2, 4, 3, 4, 1.5, 3, 2, 2, 5, 2, 4, 2, 2, 2, 2, 3, 2, 5)),
 )
 """Tens of streets have few poles of each kind, so much is left to what reasoning expects."""
 
@@ -133,7 +137,8 @@ def _judge_shafts(scene: RoadScene) -> Iterator[tuple[bool, PoleFacts, bool]]:
         if label is not None and not (label is False and _is_noise(shaft, codes)):
             local = around.local[around.of(number)] - shaft.foot
             beside = surroundings_of(local, shaft, usual_m)
-            yield is_low(shaft), facts_of(shaft, beside, usual_m), label
+            carried = carried_if_likely(local, shaft, usual_m)
+            yield is_low(shaft), facts_of(shaft, beside, carried, usual_m), label
 
 
 def _codes(scene: RoadScene) -> list[NDArray[np.uint8]]:

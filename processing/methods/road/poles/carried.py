@@ -126,6 +126,8 @@ class Carried:
         The wider of the plate's extents.
     curved : float
         Share of its patches that bulge as mirrors do.
+    smooth : float
+        Share of the patches beside it that are smooth surfaces: plates, and no twigs.
     """
 
     wires: int = 0
@@ -137,6 +139,7 @@ class Carried:
     plate_points: int = 0
     plate_m: float = 0.0
     curved: float = 0.0
+    smooth: float = 0.0
 
 
 def carried_of(points: Floats, shaft: Shaft) -> Carried:
@@ -273,10 +276,10 @@ def _tallest(along: Floats, heights: Floats) -> float:
     return float(np.median(np.sort(spans)[-3:])) if spans else 0.0
 
 
-def _plate(points: Floats) -> tuple[int, float, float]:
-    """Points, width and share of curved patches of what hangs on a shaft below its arms."""
+def _plate(points: Floats) -> tuple[int, float, float, float]:
+    """Points, width, shares of curved and of smooth patches of what hangs on a shaft."""
     if len(points) < _PLATE_FEWEST:
-        return len(points), 0.0, 0.0
+        return len(points), 0.0, 0.0, 0.0
     high = points[:, 2]
     width = max(
         float(np.quantile(high, 0.95) - np.quantile(high, 0.05)),
@@ -291,7 +294,8 @@ def _plate(points: Floats) -> tuple[int, float, float]:
         if len(near := tree.query_ball_point(points[number], _PATCH_M)) >= _PLATE_FEWEST
     ]
     told = [one for one in shapes if one is not None]
-    return len(points), width, sum(told) / len(told) if told else 0.0
+    curved = sum(told) / len(told) if told else 0.0
+    return len(points), width, curved, len(told) / _PATCHES
 
 
 def _main_axis(plan: Floats) -> Floats:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from processing.methods.road.poles.carried import Carried
 from processing.methods.road.poles.shaft_kernels import ARC, FREE, INSIDE, POINTS, SLABS
 from processing.methods.road.poles.shafts import Shaft
 from processing.methods.road.poles.surroundings import Surroundings
@@ -27,6 +28,12 @@ diameter), and no pole widens upwards."""
 
 _USUAL_M = 0.2
 """Radius up to which poles are common."""
+
+_WIRED = 4.0
+"""Half metres of wires on each side that make sure."""
+
+_PIPE_M = 0.07
+"""Radius of the thickest posts of signs and mirrors, 101.6 mm and a wrap (JIS G 3444)."""
 
 _MOST_LOGIT = 30.0
 """Guard of the exponential."""
@@ -66,6 +73,13 @@ class PoleFacts(NamedTuple):
         Decimal logarithm of the cells that twigs fill, and one, up to 2.
     flat : float
         Share of the cells about the axis that are planes or lines.
+    plate : float
+        Share of the patches beside it that are smooth surfaces.
+    wired : float
+        Wires on both of its sides, 0 to 1.
+    pipe : float
+        How much it is a thin smooth pipe seen on all of its height, 0 to 1: a post, whatever
+        hangs about it.
     tapered : float
         How far its taper is off what poles have, over 0.012, up to 2.
     thick_m : float
@@ -86,61 +100,72 @@ class PoleFacts(NamedTuple):
     crown: float
     leafy: float
     flat: float
+    plate: float
+    wired: float
+    pipe: float
     tapered: float
     thick_m: float
 
 
-# Learnt by `processing.laboratory.road_training.pole_training` from 1,971 shafts, 153 of them
-# poles, of 18 simulated streets of five scanners, none of the scenes that results are judged by.
-# Left out one street at a time, 93 % of the high ones given 0.9 and more were poles, 80 % of those
-# from 0.7, 59 % of those from 0.5, 27 % of those from 0.3. Of low poles there were 16, and they
+# Learnt by `processing.laboratory.road_training.pole_training` from 1,531 shafts, 121 of them
+# poles, of the 15 smaller of its simulated streets, none of the scenes that results are judged by.
+# Left out one street at a time, 92 % of the high ones given 0.9 and more were poles, 73 % of those
+# from 0.7, 78 % of those from 0.5, 33 % of those from 0.3. Of low poles there were 16, and they
 # count threefold: streets with rows of bollards have more of them than those did.
 _LOW_M = 1.5
 """Top below which shafts are judged as bollards and delineators are, among posts of fences and
 people; higher ones as posts, among trunks and edges of buildings."""
 
-_LOW_CONSTANT = -6.89
+_LOW_CONSTANT = -7.2
 _LOW_WEIGHTS = PoleFacts(
-    rough=-1.93,
-    slabs=0.61,
-    inside=-7.87,
-    free=8.59,
-    arc=0.0,
+    rough=-3.5,
+    slabs=0.26,
+    inside=-8.16,
+    free=9.05,
+    arc=1.0,
     points=0.0,
     tall=0.0,
-    hidden_m=-2.26,
-    rails=-5.53,
-    cover=-17.79,
-    over=-4.83,
+    hidden_m=-2.28,
+    rails=-5.42,
+    cover=-16.22,
+    over=-4.14,
     crown=-1.0,
     leafy=-0.5,
-    flat=0.57,
-    tapered=-2.14,
-    thick_m=-8.45,
+    flat=0.55,
+    plate=0.1,
+    wired=0.1,
+    pipe=0.1,
+    tapered=-3.29,
+    thick_m=-8.5,
 )
 
-_HIGH_CONSTANT = -8.68
+_HIGH_CONSTANT = -9.52
 _HIGH_WEIGHTS = PoleFacts(
-    rough=-4.19,
-    slabs=3.16,
-    inside=-3.88,
-    free=3.67,
-    arc=1.99,
-    points=0.57,
-    tall=4.27,
-    hidden_m=-2.02,
-    rails=-1.44,
-    cover=-3.72,
-    over=-2.68,
-    crown=-1.7,
+    rough=-2.88,
+    slabs=2.19,
+    inside=-1.44,
+    free=3.18,
+    arc=2.24,
+    points=0.33,
+    tall=5.91,
+    hidden_m=-2.24,
+    rails=-2.08,
+    cover=-3.3,
+    over=-2.98,
+    crown=-1.0,
     leafy=0.0,
     flat=0.0,
-    tapered=-1.23,
-    thick_m=-5.99,
+    plate=0.46,
+    wired=1.38,
+    pipe=2.65,
+    tapered=-3.31,
+    thick_m=-5.02,
 )
 
 
-def facts_of(shaft: Shaft, beside: Surroundings, usual_noise_m: float) -> PoleFacts:
+def facts_of(
+    shaft: Shaft, beside: Surroundings, carried: Carried, usual_noise_m: float
+) -> PoleFacts:
     """The facts of a shaft.
 
     Parameters
@@ -166,9 +191,25 @@ def facts_of(shaft: Shaft, beside: Surroundings, usual_noise_m: float) -> PoleFa
         crown=crown.sectors / 12 * (1 - min(crown.aside, 1.0)) if crown else 0.0,
         leafy=min(math.log10(1 + crown.cells), 2.0) if crown else 0.0,
         flat=crown.flat_share if crown else 1.0,
+        plate=carried.smooth,
+        wired=min(carried.wires / _WIRED, 1.0),
+        pipe=_pipe(shaft, rough),
         tapered=min(taper / _USUAL_TAPER, 2.0),
         thick_m=max(0.0, shaft.radius_m - _USUAL_M),
     )
+
+
+def _pipe(shaft: Shaft, rough: float) -> float:
+    """How much a shaft is a thin smooth pipe; each measure counts as far as it leaves doubt."""
+    slabs, inside = float(shaft.told[SLABS]), float(shaft.told[INSIDE])
+    doubts = (
+        1 - 2 * math.log2(rough),
+        (slabs - 0.8) / 0.2,
+        1 - inside / 0.05,
+        (_PIPE_M - shaft.radius_m) / 0.03,
+        shaft.top_m - _LOW_M,
+    )
+    return math.prod(min(max(one, 0.0), 1.0) for one in doubts)
 
 
 def is_low(shaft: Shaft) -> bool:

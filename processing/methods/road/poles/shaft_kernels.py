@@ -92,6 +92,10 @@ _SECTORS = 24
 _FEWEST_CLEAR = 4
 """Slabs that tell a shaft by themselves."""
 
+_USUAL_TAPER, _TAPER_OFF = 0.003, 0.004
+"""Metres of radius lost in a metre, of poles of concrete (JIS A 5373: 1/150) and straight pipes;
+and how far others are off. Wraps and plates about the lower part don't widen a pole upwards."""
+
 _LEAST_NOISE_M = 5e-4
 """No scanner of streets is more exact."""
 
@@ -205,7 +209,7 @@ def _drawn(points: Floats, is_left: Flags, limits: ShaftLimits) -> Integers:
 def _surface_line(points: Floats, drawn: Integers, limits: ShaftLimits, line: Floats) -> int:
     """The steep line that the most slabs have points on: place at height 0 and lean; how many."""
     best, state = 0.0, 1
-    trial = np.zeros(4)
+    guess = np.zeros(4)
     on = np.zeros(_SLABS)
     starts = np.zeros(_SLABS + 1, np.int64)
     ordered = _by_slab(points, drawn, starts)
@@ -226,18 +230,18 @@ def _surface_line(points: Floats, drawn: Integers, limits: ShaftLimits, line: Fl
         rise = points[b, 2] - points[a, 2]
         if abs(rise) < least:
             continue
-        trial[2] = (points[b, 0] - points[a, 0]) / rise
-        trial[3] = (points[b, 1] - points[a, 1]) / rise
-        lean = math.hypot(trial[2], trial[3]) / limits.steepest
+        guess[2] = (points[b, 0] - points[a, 0]) / rise
+        guess[3] = (points[b, 1] - points[a, 1]) / rise
+        lean = math.hypot(guess[2], guess[3]) / limits.steepest
         if lean > 1.0:
             continue
-        trial[0] = points[a, 0] - trial[2] * points[a, 2]
-        trial[1] = points[a, 1] - trial[3] * points[a, 2]
+        guess[0] = points[a, 0] - guess[2] * points[a, 2]
+        guess[1] = points[a, 1] - guess[3] * points[a, 2]
         # Most poles are upright; along a thick one many lines are as good.
-        score = _on_line(points, drawn, trial, on) * (1.0 - lean)
+        score = _on_line(points, drawn, guess, on) * (1.0 - lean)
         if score > best:
             best = score
-            line[:] = trial
+            line[:] = guess
     if best == 0.0:
         return 0
     for _ in range(2):
@@ -383,7 +387,7 @@ def _fit(points: Floats, is_clear: Flags, limits: ShaftLimits, shaft: Floats) ->
     normal, right, row = np.zeros((_PARTS, _PARTS)), np.zeros(_PARTS), np.zeros(_PARTS)
     tolerance = 2 * limits.noise_m
     # Held to what shafts are by as much as their points leave it open: lean, radius lost a metre.
-    held = np.array([math.inf, math.inf, 0.1, 0.1, math.inf, 0.01])
+    held = np.array([math.inf, math.inf, 0.1, 0.1, math.inf, _TAPER_OFF])
     for _ in range(_TURNS):
         normal[:], right[:] = 0.0, 0.0
         squares, count = 0.0, 0
@@ -414,8 +418,9 @@ def _fit(points: Floats, is_clear: Flags, limits: ShaftLimits, shaft: Floats) ->
         for i in range(_PARTS):
             weight = (noise / held[i]) ** 2
             normal[i, i] += weight + 1e-9
-            right[i] -= weight * shaft[i]
+            right[i] -= weight * (shaft[i] - (_USUAL_TAPER if i == TAPER else 0.0))
         shaft[:_PARTS] += np.linalg.solve(normal, right)
+        shaft[TAPER] = min(max(shaft[TAPER], -_TAPER_OFF), 4 * _TAPER_OFF)
         tolerance = min(max(3 * noise, 0.006), limits.noise_m)
         if not limits.least_m / 2 <= shaft[RADIUS] <= limits.most_m:
             return False

@@ -12,6 +12,7 @@ from processing.core.arrays import Floats, Integers
 from processing.core.monitor import Monitor, PartMonitor
 from processing.methods.road.objects.column_points import ColumnPoints, points_about
 from processing.methods.road.objects.columns import FoundColumns, find_columns
+from processing.methods.road.objects.drive_passes import passes_of
 from processing.methods.road.objects.foot import foot_height
 from processing.methods.road.objects.ground_heights import ground_heights
 from processing.methods.road.objects.sparse_plan import SparsePlan
@@ -112,31 +113,10 @@ def find_shafts(drives: Sequence[Drive], plan: SparsePlan, monitor: Monitor) -> 
     columns = find_columns(drives, plan, ground, PartMonitor(monitor, 0.3, 0.6))
     gathered = points_about(drives, plan, columns.middles, _ABOUT_M, PartMonitor(monitor, 0.6, 0.9))
     found: list[Shaft] = []
-    for members in _passes(drives):
+    for members in passes_of(drives):
         monitor.check()
         found += _of_pass(columns, _only(gathered, members))
     return _one_of_each(found)
-
-
-def _passes(drives: Sequence[Drive]) -> list[list[int]]:
-    """Drives recorded at the same time; those of other passes lie centimetres apart."""
-    passes: list[tuple[float, float, list[int]]] = []
-    for number, drive in enumerate(drives):
-        first, last = _span(drive)
-        met = [one for one in passes if one[0] <= last and first <= one[1]]
-        passes = [one for one in passes if one not in met]
-        members = [number, *(member for one in met for member in one[2])]
-        first, last = min([first, *(m[0] for m in met)]), max([last, *(m[1] for m in met)])
-        passes.append((first, last, sorted(members)))
-    return [one[2] for one in passes]
-
-
-def _span(drive: Drive) -> tuple[float, float]:
-    """First and last time, s; any time for a recording without times."""
-    if not drive.count or not drive.info.has_measured_times:
-        return -np.inf, np.inf
-    first, last = drive.columns["time"][[0, drive.count - 1]].tolist()
-    return min(first, last), max(first, last)
 
 
 def _only(gathered: ColumnPoints, members: Sequence[int]) -> ColumnPoints:

@@ -31,6 +31,9 @@ _APART_M = 0.4
 _LEAST_CHANCE = 0.05
 """What is less likely a pole is measured no further."""
 
+_ROUGH = 2.5
+"""Noise over the usual one beyond which nobody asks what a shaft carries."""
+
 _MANY_POINTS, _SMOOTH_SHARE, _LEAST_NOISE_M = 60, 0.2, 5e-4
 """Points of a shaft whose noise counts; the share of shafts that are smoother than the recording's
 usual ones; and the least noise of any scanner."""
@@ -98,22 +101,37 @@ def street_poles(drives: Sequence[Drive], monitor: Monitor) -> tuple[StreetPole,
     feet = np.array([one.foot[:2] for one in shafts])
     around = points_about(drives, plan, feet, REACH_M, PartMonitor(monitor, 0.7, 0.9))
     usual_m = usual_noise_m(shafts)
-    sure: list[tuple[float, int]] = []
+    sure: list[tuple[float, int, Carried]] = []
     for number, shaft in enumerate(shafts):
         monitor.check()
         local = around.local[around.of(number)] - shaft.foot
-        facts = facts_of(shaft, surroundings_of(local, shaft, usual_m), usual_m)
+        carried = carried_if_likely(local, shaft, usual_m)
+        facts = facts_of(shaft, surroundings_of(local, shaft, usual_m), carried, usual_m)
         chance = chance_of(facts, is_low=is_low(shaft))
         if chance >= _LEAST_CHANCE:
-            sure.append((chance, number))
+            sure.append((chance, number, carried))
     poles: list[StreetPole] = []
-    for chance, number in sorted(sure, reverse=True):
+    for chance, number, carried in sorted(sure, key=lambda one: (-one[0], one[1])):
         shaft = shafts[number]
         if all(np.hypot(*(shaft.foot - one.shaft.foot)[:2]) >= _APART_M for one in poles):
-            local = around.local[around.of(number)] - shaft.foot
-            poles.append(_pole(shaft, carried_of(local, shaft), chance, plan.origin))
+            poles.append(_pole(shaft, carried, chance, plan.origin))
     monitor.report(1.0)
     return tuple(poles)
+
+
+def carried_if_likely(local: Floats, shaft: Shaft, usual_m: float) -> Carried:
+    """What a shaft carries; nothing, of low ones and of those too rough for a pole.
+
+    Parameters
+    ----------
+    local : (n, 3) float64
+        Points about it, m about its foot.
+    usual_m : float
+        Noise of the recording's smooth shafts.
+    """
+    if is_low(shaft) or shaft.noise_m > _ROUGH * usual_m:
+        return Carried()
+    return carried_of(local, shaft)
 
 
 def usual_noise_m(shafts: Sequence[Shaft]) -> float:

@@ -43,7 +43,7 @@ _SIDE_M = 0.05
 
 
 @dataclass(frozen=True)
-class Span:
+class WireSpan:
     """A wire between two places.
 
     Attributes
@@ -96,7 +96,7 @@ class Span:
         return np.asarray((places[:, :2] - self.middle) @ self.way)
 
 
-def spans_of(local: Floats, group: Integers) -> list[Span]:
+def spans_of(local: Floats, group: Integers) -> list[WireSpan]:
     """The wires that groups of points are.
 
     Parameters
@@ -107,14 +107,14 @@ def spans_of(local: Floats, group: Integers) -> list[Span]:
     """
     order = np.argsort(group, kind="stable")
     _, first = np.unique(group[order], return_index=True)
-    pieces: list[Span] = []
+    pieces: list[WireSpan] = []
     for lines in np.split(order, first[1:]):
         if lines.size >= _FEWEST:
             pieces += _pieces(local, lines)
     return _joined(local, pieces)
 
 
-def _fit(local: Floats, lines: Integers) -> Span | None:
+def _fit(local: Floats, lines: Integers) -> WireSpan | None:
     """A wire through points; None where they are too few or too short."""
     points = local[lines]
     middle = points[:, :2].mean(axis=0)
@@ -145,7 +145,7 @@ def _fit(local: Floats, lines: Integers) -> Span | None:
         kept = off < max(_TRIM * usual, _LEAST_TRIM_M)
     inside = np.flatnonzero(kept)
     inside = inside[np.argsort(along[inside], kind="stable")]
-    return Span(
+    return WireSpan(
         middle,
         way,
         aside,
@@ -157,7 +157,7 @@ def _fit(local: Floats, lines: Integers) -> Span | None:
     )
 
 
-def _pieces(local: Floats, lines: Integers) -> list[Span]:
+def _pieces(local: Floats, lines: Integers) -> list[WireSpan]:
     """A group as one wire, or split where it is held by a pole or another one begins."""
     span = _fit(local, lines)
     if span is None:
@@ -166,7 +166,7 @@ def _pieces(local: Floats, lines: Integers) -> list[Span]:
     if is_whole or lines.size < 2 * _FEWEST:
         return [span] if span.noise_m < _MOST_OFF_M else []
     order = lines[np.argsort(span.along(local[lines]), kind="stable")]
-    best: tuple[float, list[Span]] | None = None
+    best: tuple[float, list[WireSpan]] | None = None
     for share in np.linspace(0.1, 0.9, 17):
         cut = int(share * lines.size)
         parts = [_fit(local, part) for part in (order[:cut], order[cut:])]
@@ -184,7 +184,7 @@ def _pieces(local: Floats, lines: Integers) -> list[Span]:
     return [one for part in best[1] for one in _pieces(local, np.sort(part.lines))]
 
 
-def _joined(local: Floats, pieces: Sequence[Span]) -> list[Span]:
+def _joined(local: Floats, pieces: Sequence[WireSpan]) -> list[WireSpan]:
     """Pieces of one wire as one, the nearest joined first."""
     spans = list(pieces)
     of_piece = list(range(len(pieces)))
@@ -199,7 +199,7 @@ def _joined(local: Floats, pieces: Sequence[Span]) -> list[Span]:
     return [spans[number] for number in sorted(set(of_piece))]
 
 
-def _neighbours(pieces: Sequence[Span]) -> list[tuple[int, int]]:
+def _neighbours(pieces: Sequence[WireSpan]) -> list[tuple[int, int]]:
     """Pairs of pieces whose ends are near each other, the nearest first."""
     from scipy.spatial import cKDTree
 
@@ -216,7 +216,7 @@ def _neighbours(pieces: Sequence[Span]) -> list[tuple[int, int]]:
     return sorted(found, key=lambda key: found[key])
 
 
-def _both(local: Floats, one: Span, other: Span) -> Span | None:
+def _both(local: Floats, one: WireSpan, other: WireSpan) -> WireSpan | None:
     """Two pieces as one wire; None where they aren't."""
     if abs(one.way[0] * other.way[1] - one.way[1] * other.way[0]) > _TURN + 0.1 / min(
         one.long_m, other.long_m
@@ -239,16 +239,16 @@ def _both(local: Floats, one: Span, other: Span) -> Span | None:
     return both if is_kept else None
 
 
-def _lines(one: Span, other: Span) -> Integers:
+def _lines(one: WireSpan, other: WireSpan) -> Integers:
     return np.unique(np.concatenate([one.lines, other.lines]))
 
 
-def _same(one: Span, other: Span) -> bool:
+def _same(one: WireSpan, other: WireSpan) -> bool:
     """Whether two pieces beside each other are of one wire: two passes, two heads."""
     return _near_ends(one, other) < _SIDE_M
 
 
-def _near_ends(span: Span, part: Span) -> float:
+def _near_ends(span: WireSpan, part: WireSpan) -> float:
     """How far the ends and the middle of a piece lie off a wire at most."""
     places = part.at(np.array([part.start_m, (part.start_m + part.end_m) / 2, part.end_m]))
     off = places - span.at(span.along(places))

@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from processing.core.arrays import Floats, Integers
 from processing.core.monitor import Monitor, PartMonitor
+from processing.methods.road.objects.drive_passes import passes_of
 from processing.methods.road.objects.ground_heights import ground_heights, height_of
 from processing.methods.road.objects.sparse_plan import SparsePlan, plan_of
-from processing.methods.road.wires.spans import Span, spans_of
+from processing.methods.road.wires.spans import WireSpan, spans_of
 from processing.methods.road.wires.wire_confidence import chance_of, facts_of
-from processing.methods.road.wires.wire_points import wire_points
+from processing.methods.road.wires.wire_points import WirePoints, wire_points
 from processing.recording.drive import Drive
 
 _STEP_M = 0.5
@@ -26,6 +27,10 @@ _ROAD_M = 3.0
 edge (道路構造令 第5条: lanes of 2.75 to 3.5 m)."""
 
 _PATH_STEP_M = 0.5
+
+_SAME_M, _SAME_SHARE, _COMPARED = 0.12, 0.6, 15
+"""Wires of two passes so near to each other along so much of the one are one wire: positions of
+passes differ by up to a decimetre 10 m above the vehicle. Places that are compared."""
 
 
 @dataclass(frozen=True)
@@ -91,11 +96,10 @@ def street_wires(
     """
     plan = plan_of([(drive.info.lowest, drive.info.highest) for drive in drives])
     ground = ground_heights(drives, plan, PartMonitor(monitor, 0.0, 0.4))
-    found = wire_points(drives, plan, ground, settings.lowest_m, PartMonitor(monitor, 0.4, 0.9))
-    spans = [one for one in spans_of(found.local, found.group) if one.long_m >= settings.shortest_m]
+    seen = _seen_wires(drives, plan, ground, settings, PartMonitor(monitor, 0.4, 0.9))
     is_over = _path_tree(drives, plan)
     wires: list[StreetWire] = []
-    for span in spans:
+    for span, found in seen:
         monitor.check()
         at = np.linspace(span.start_m, span.end_m, math.ceil(span.long_m / _STEP_M) + 1)
         line, rests = span.at(at), _rests(span, found.local, at)
@@ -116,7 +120,43 @@ def street_wires(
     return tuple(sorted(wires, key=lambda one: -one.confidence))
 
 
-def _rests(span: Span, local: Floats, at: Floats) -> Integers:
+def _seen_wires(
+    drives: Sequence[Drive],
+    plan: SparsePlan,
+    ground: NDArray[np.float32],
+    settings: WireSettings,
+    monitor: Monitor,
+) -> list[tuple[WireSpan, WirePoints]]:
+    """Spans of all passes; of one wire that several passes saw, the one with the most points."""
+    seen: list[tuple[WireSpan, WirePoints, int]] = []
+    passes = passes_of(drives)
+    for number, members in enumerate(passes):
+        part = PartMonitor(monitor, number / len(passes), (number + 1) / len(passes))
+        chosen = [drives[one] for one in members]
+        found = wire_points(chosen, plan, ground, settings.lowest_m, part)
+        found = replace(found, drives=np.array(members, np.int64)[found.drives])
+        spans = spans_of(found.local, found.group)
+        seen += [(one, found, number) for one in spans if one.long_m >= settings.shortest_m]
+    seen.sort(key=lambda one: -one[0].lines.size)
+    kept: list[tuple[WireSpan, WirePoints, int]] = []
+    for span, found, number in seen:
+        if not any(other != number and _is_same(span, one) for one, _, other in kept):
+            kept.append((span, found, number))
+    return [(span, found) for span, found, _ in kept]
+
+
+def _is_same(span: WireSpan, other: WireSpan) -> bool:
+    """Whether another pass saw a wire already."""
+    places = span.at(np.linspace(span.start_m, span.end_m, _COMPARED))
+    at = other.along(places)
+    beside = (at >= other.start_m) & (at <= other.end_m)
+    if beside.mean() < _SAME_SHARE:
+        return False
+    off = np.linalg.norm(places[beside] - other.at(at[beside]), axis=1)
+    return bool(np.median(off) < _SAME_M)
+
+
+def _rests(span: WireSpan, local: Floats, at: Floats) -> Integers:
     """Of places along a span the line of the nearest point among all; −1: none within a step."""
     along = span.along(local[span.lines])
     after = np.clip(np.searchsorted(along, at), 1, len(along) - 1)

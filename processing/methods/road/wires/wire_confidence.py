@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from processing.methods.road.wires.spans import Span
+from processing.methods.road.wires.spans import WireSpan
 
 _LONGEST_M = 16.0
 """A longer one is no surer: railings, gutters and edges of roofs are seldom so long."""
@@ -57,7 +57,7 @@ _CONSTANT = -6.89
 _WEIGHTS = WireFacts(long=1.3, hangs=1.68, bulges=-0.36, rough=-1.84, dense=2.76, sharp=-2.57)
 
 
-def facts_of(span: Span) -> WireFacts:
+def facts_of(span: WireSpan) -> WireFacts:
     """The facts of a span."""
     sag = span.sag_m / (_STIFF_M + span.noise_m)
     dense = span.lines.size / max(span.long_m, 1.0)

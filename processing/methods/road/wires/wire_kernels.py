@@ -38,7 +38,7 @@ class LineLimits(NamedTuple):
     beside: float
 
 
-class CellGrid(NamedTuple):
+class WireGrid(NamedTuple):
     """Cells of space; points are sorted by them.
 
     ``low``: corner, m; ``shape``: (3,) cells along each axis; ``size_m``: of a cell.
@@ -103,7 +103,7 @@ def _cell_of(place: Floats, shape: Integers, low: Floats, size_m: float) -> int:
 
 @kernel
 def _near(
-    points: Floats, point: int, cells: Integers, starts: Integers, grid: CellGrid, found: Integers
+    points: Floats, point: int, cells: Integers, starts: Integers, grid: WireGrid, found: Integers
 ) -> int:
     """Points within the reach of a point, by their number, thinned; how many."""
     centre = points[point]
@@ -136,7 +136,7 @@ def _near(
 
 @kernel
 def crowded_kernel(
-    points: Floats, starts: Integers, grid: CellGrid, most: int, crowded: Flags
+    points: Floats, starts: Integers, grid: WireGrid, most: int, crowded: Flags
 ) -> None:
     """Mark the points of cells of which more than so many of 64 parts are filled: crowns."""
     part_m = grid.size_m / 4
@@ -159,7 +159,7 @@ def lines_kernel(
     points: Floats,
     cells: Integers,
     starts: Integers,
-    grid: CellGrid,
+    grid: WireGrid,
     limits: LineLimits,
     directions: Floats,
 ) -> None:
@@ -229,7 +229,7 @@ def groups_kernel(
     directions: Floats,
     cells: Integers,
     starts: Integers,
-    grid: CellGrid,
+    grid: WireGrid,
     core_m: float,
     group: NDArray[np.int64],
 ) -> None:

@@ -19,8 +19,8 @@ from processing.methods.road.objects.drive_chunks import chunks_of
 from processing.methods.road.objects.ground_heights import GROUND_CELLS
 from processing.methods.road.objects.sparse_plan import SparsePlan, cell_of
 from processing.methods.road.wires.wire_kernels import (
-    CellGrid,
     LineLimits,
+    WireGrid,
     crowded_kernel,
     groups_kernel,
     lines_kernel,
@@ -153,11 +153,11 @@ def _on_lines(local: Floats, which: Integers, numbers: Integers) -> WirePoints:
     return WirePoints(local, direction, group, which[order], numbers[order])
 
 
-def _sorted(local: Floats) -> tuple[Integers, Integers, Integers, CellGrid]:
+def _sorted(local: Floats) -> tuple[Integers, Integers, Integers, WireGrid]:
     """The order of points by cells, the filled cells, where each begins, and the grid."""
     if not len(local):
         none = np.empty(0, np.int64)
-        return none, none, np.zeros(1, np.int64), CellGrid(np.zeros(3), np.ones(3, np.int64), 1.0)
+        return none, none, np.zeros(1, np.int64), WireGrid(np.zeros(3), np.ones(3, np.int64), 1.0)
     # A cell more on each side, so that the neighbours of each are others.
     low = local.min(axis=0) - 1.5 * _CELL_M
     shape = ((local.max(axis=0) - low) / _CELL_M).astype(np.int64) + 3
@@ -166,7 +166,7 @@ def _sorted(local: Floats) -> tuple[Integers, Integers, Integers, CellGrid]:
     order = np.argsort(keys, kind="stable")
     cells, first = np.unique(keys[order], return_index=True)
     starts = np.concatenate([first, [len(local)]]).astype(np.int64)
-    return order, cells, starts, CellGrid(low, shape, _CELL_M)
+    return order, cells, starts, WireGrid(low, shape, _CELL_M)
 
 
 @kernel
