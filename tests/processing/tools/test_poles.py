@@ -50,7 +50,7 @@ FEET = {
     for number, kind in enumerate(HEIGHTS_M)
 }
 LEAN = 0.05
-TREE = np.array([55.0, 5.5, GROUND_M])
+TREE = np.array([44.0, 5.5, GROUND_M])
 FENCE = np.array([14.0, 6.5, GROUND_M])
 
 
@@ -140,7 +140,7 @@ def fence() -> list[TriangleShape]:
 
 
 def street() -> tuple[TriangleShape, ...]:
-    trunk = TREE + np.array([[0, 0, -0.3], [0.02, 0.01, 1.0], [0.0, 0.05, 2.0], [0.05, 0, 3.4]])
+    trunk = TREE + np.array([[0, 0, -0.3], [0.01, 0, 1.0], [0.02, 0, 2.0], [0.04, 0, 3.4]])
     return (
         road_along(LENGTH_M),
         *(shaft(kind) for kind in HEIGHTS_M),

@@ -202,14 +202,14 @@ def facts_of(
 def _pipe(shaft: Shaft, rough: float) -> float:
     """How much a shaft is a thin smooth pipe; each measure counts as far as it leaves doubt."""
     slabs, inside = float(shaft.told[SLABS]), float(shaft.told[INSIDE])
-    doubts = (
+    measures = (
         1 - 2 * math.log2(rough),
         (slabs - 0.8) / 0.2,
         1 - inside / 0.05,
         (_PIPE_M - shaft.radius_m) / 0.03,
         shaft.top_m - _LOW_M,
     )
-    return math.prod(min(max(one, 0.0), 1.0) for one in doubts)
+    return math.prod(min(max(one, 0.0), 1.0) for one in measures)
 
 
 def is_low(shaft: Shaft) -> bool:
