@@ -102,7 +102,8 @@ def score_wires(result: MappedFile, truth: MappedFile) -> ScoredWires:
     line = np.full(len(true_places), -1, np.int64)
     if len(places) and len(true_places):
         fine, of = _places([one.xyz for one in found], _FINE_M)
-        off, nearest = cKDTree(fine).query(true_places)
+        distances, nearest = cKDTree(fine).query(true_places)
+        off = np.asarray(distances)
         line = of[nearest]
     is_near = off <= TOLERANCE_M
     right = np.zeros(len(places), np.bool_)
@@ -116,8 +117,8 @@ def score_wires(result: MappedFile, truth: MappedFile) -> ScoredWires:
     made_up = int((~right).sum())
     counts = BinaryConfusionMatrix(hits, made_up, wanted - hits, 0)
     sags = _sags((result, found), (truth, true), np.where(is_near, line, -1), true_owner)
-    ends = np.cumsum(np.bincount(owner, minlength=len(found)))[:-1] if len(found) else []
-    parts = tuple(np.split(right, ends)) if len(found) else ()
+    ends = np.cumsum(np.bincount(owner, minlength=len(found)))[:-1]
+    parts = tuple(np.split(right, ends)) if found else ()
     return ScoredWires(counts, int((~asked).sum()), off[is_near & asked], parts, tuple(sags))
 
 

@@ -39,7 +39,7 @@ class PoleParameters:
         ),
     )
     least_confidence: float = least_confidence(
-        0.4,
+        0.5,
         Text(
             "What is less likely to be a pole is left out.",
             "柱状物である見込みがこの値より低いものは出力しません。",

@@ -72,7 +72,7 @@ def _judge_lines(scene: RoadScene) -> Iterator[tuple[WireFacts, bool, float]]:
             at = span.at(np.arange(span.start_m, span.end_m, _STEP_M))
             off = tree.query(at)[0] if tree is not None else np.full(len(at), np.inf)
             worth = math.sqrt(min(span.long_m, _LONGEST_M))
-            yield facts_of(span), bool((off < _NEAR_M).mean() > 0.5), worth
+            yield facts_of(span), bool(np.mean(off < _NEAR_M) > 0.5), worth
 
 
 def _every(line: Floats) -> Floats:

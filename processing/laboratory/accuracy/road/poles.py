@@ -79,10 +79,11 @@ def section_of(rows: Sequence[PoleRow]) -> str:
     for row in rows:
         kinds = row.poles.shares[0].share
         counts = row.poles.counts[0].counts
-        total.update(
-            hits=counts.hits, false=counts.false_alarms, missed=counts.misses,
-            right=kinds.hits, typed=kinds.of,
-        )  # fmt: skip
+        total["hits"] += counts.hits
+        total["false"] += counts.false_alarms
+        total["missed"] += counts.misses
+        total["right"] += int(kinds.hits)
+        total["typed"] += int(kinds.of)
         cells.append(
             [
                 row.street,
@@ -144,7 +145,7 @@ def _given(folder: Path) -> PoleRow:
 
 def _imported(folder: Path, into: Path) -> list[Drive]:
     """All drives of a delivery; of several passes each file goes with its pass' trajectory."""
-    passes = sorted(folder.glob("pass[0-9].csv"))
+    passes: list[Path | None] = [*sorted(folder.glob("pass[0-9].csv"))]
     found: list[Drive] = []
     for one in passes or [None]:
         clouds = sorted(folder.glob(f"{one.stem}_*.laz" if one else "*.laz"))

@@ -95,7 +95,11 @@ def _add_cable(built: SectionBuilder, path: Floats, shape: tuple[float, float, f
     # The first half of the triangles has one of each pair, the second the other.
     piece = np.tile(np.repeat(np.arange(_STEPS), _SIDES), 2)
     built.mesh.add((vertices, triangles), Material.CABLE, WIRE, instance, piece=piece)
-    facts = {"kind": "wire", "sag_m": sag, "diameter_m": 2 * radius}
+    facts: dict[str, str | int | float | bool | list[float] | None] = {
+        "kind": "wire",
+        "sag_m": sag,
+        "diameter_m": 2 * radius,
+    }
     built.truth.append(TrueFeature("wires", "LineString", path, facts, instance, at))
 
 

@@ -358,7 +358,7 @@ def _off(points: Floats, point: int, shaft: Floats) -> float:
     up = points[point, 2] - LEVEL_M
     east = points[point, 0] - shaft[EAST] - shaft[LEAN_EAST] * up
     north = points[point, 1] - shaft[NORTH] - shaft[LEAN_NORTH] * up
-    return math.hypot(east, north) - shaft[RADIUS] + shaft[TAPER] * up
+    return float(math.hypot(east, north) - shaft[RADIUS] + shaft[TAPER] * up)
 
 
 @kernel
@@ -459,7 +459,7 @@ def _followed(points: Floats, limits: ShaftLimits, shaft: Floats) -> float:
         if seen[slab] > 0:
             low = slab
     shaft[LOW], shaft[TOP] = low * SLAB_M, (top + 1) * SLAB_M
-    return shaft[TOP]
+    return float(shaft[TOP])
 
 
 @kernel

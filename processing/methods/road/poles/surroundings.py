@@ -13,10 +13,9 @@ import numpy as np
 
 from processing.core.arrays import Floats
 from processing.core.kernels import kernel
+from processing.methods.road.poles.leaves import LeavesAbout, leaves_about
 from processing.methods.road.poles.shaft_kernels import FREE
 from processing.methods.road.poles.shafts import Shaft
-from processing.methods.road.trees.crowns import Crown, crown_of
-from processing.methods.road.trees.stems import FittedStem
 
 _RAIL_FROM_M, _RAIL_TO_M = 0.06, 0.6
 """How far from a shaft's surface rails, meshes and walls are looked for."""
@@ -61,14 +60,14 @@ class Surroundings:
         Share of the plan within 1.25 m about its top that something fills.
     over : float
         Share of the metre above its top that something fills near its axis.
-    crown : Crown or None
+    crown : LeavesAbout or None
         What could be a crown; None of low shafts, and of those too rough or hemmed in for a pole.
     """
 
     rails: float
     cover: float
     over: float
-    crown: Crown | None
+    crown: LeavesAbout | None
 
 
 def surroundings_of(points: Floats, shaft: Shaft, usual_noise_m: float) -> Surroundings:
@@ -87,23 +86,8 @@ def surroundings_of(points: Floats, shaft: Shaft, usual_noise_m: float) -> Surro
     crown = None
     is_rough = shaft.noise_m > _ROUGH * usual_noise_m or shaft.told[FREE] < _LEAST_FREE
     if shaft.top_m > _LEAST_CROWN_M and len(points) and not is_rough:
-        crown = crown_of(points, (_as_stem(shaft),))
+        crown = leaves_about(points, shaft)
     return Surroundings(float(told[RAILS]), float(told[COVER]), float(told[OVER]), crown)
-
-
-def _as_stem(shaft: Shaft) -> FittedStem:
-    return FittedStem(
-        base=np.zeros(2),
-        lean=shaft.lean,
-        radius_m=shaft.radius_m,
-        taper=shaft.taper,
-        deviation_m=shaft.deviation_m,
-        noise_m=shaft.noise_m,
-        low_m=shaft.low_m,
-        high_m=shaft.top_m,
-        arc=0.5,
-        lines=np.empty(0, np.int64),
-    )
 
 
 @kernel

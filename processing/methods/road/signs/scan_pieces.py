@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from processing.core.arrays import Floats, Integers
 from processing.core.monitor import Monitor
-from processing.methods.road.gutters.head_position import head_position
+from processing.methods.road.gutters.notches.head_position import head_position
 from processing.methods.road.objects.drive_chunks import DriveChunk, chunks_of
 from processing.methods.road.objects.sparse_plan import SparsePlan
 from processing.methods.road.signs.brightness import CLASSES, bright_bounds
