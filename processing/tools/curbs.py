@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from processing.core.monitor import Monitor, PartMonitor, parts_of
 from processing.core.parameters import angle, least_confidence, length
@@ -20,11 +20,14 @@ from processing.methods.road.curbs.edges.curb_edges import (
 from processing.methods.road.curbs.edges.curb_evidence import (
     UsualMeasures,
     facts_of,
+    is_front,
     noise_of,
+    raised_by_others,
     usual_step_m,
 )
 from processing.methods.road.curbs.edges.curb_extension import extend_lines
 from processing.methods.road.curbs.edges.curb_features import CurbFeature, EdgeLine, features_of
+from processing.methods.road.curbs.edges.curb_fronts import PathSides, raised_shares
 from processing.methods.road.curbs.edges.curb_joins import JointEdges, join_edges
 from processing.methods.road.curbs.edges.curb_lines import CurbLine, lines_of
 from processing.methods.road.curbs.steps.curb_confidence import CurbFacts, chance_of
@@ -255,11 +258,16 @@ def measure_curbs(
         found += [(number, line, edges) for line in lines_of(approximate_line, edges, bridge_m)]
     step_m = usual_step_m([line for _, line, _ in found])
     usual = UsualMeasures(parameters.inlier_m, noise_m, step_m)
+    curbs: list[MeasuredCurb] = []
     for number, line, edges in found:
         monitor.check()
         ours = tuple(one[number] for one in measured)
         facts = facts_of((approximate_lines[number], line), runs, edges, ours, usual)
-        yield MeasuredCurb(approximate_lines[number], line, ours, facts)
+        curbs.append(MeasuredCurb(approximate_lines[number], line, ours, facts))
+    fronts = [is_front(one.approximate_line, one.facts) for one in curbs]
+    shares = raised_shares([one.line for one in curbs], fronts, PathSides(drives))
+    for one, share in zip(curbs, shares, strict=True):
+        yield replace(one, facts=raised_by_others(one.facts, share))
 
 
 def _candidates(features: Sequence[CurbFeature]) -> tuple[Candidate, ...]:

@@ -34,8 +34,13 @@ from processing.scoring.mapped_features import MappedFile
 from processing.tools.curbs import CurbParameters, measure_curbs, step_settings
 
 EXPECTED = WeightPrior(
-    (2.5, *CurbFacts(1.0, -25.0, -8.0, -1.0, -20.0, -8.0, -1.0, -1.0, 1.0, -4.0, -3.0)),
-    (2.0, *CurbFacts(0.3, 10.0, 5.0, 0.7, 8.0, 4.0, 1.0, 0.7, 0.5, 2.0, 1.5)),
+    (
+        2.5,
+        *CurbFacts(
+            1.0, -25.0, -8.0, -1.0, -20.0, -8.0, -1.0, -1.0, 1.0, -6.0, -3.0, -4.0, -6.0, -4.0
+        ),
+    ),
+    (2.0, *CurbFacts(0.3, 10.0, 5.0, 0.7, 8.0, 4.0, 1.0, 0.7, 0.5, 2.0, 1.5, 2.0, 2.0, 2.0)),
 )
 """Tens of streets have few false lines of each kind, so much is left to what reasoning expects."""
 

@@ -29,6 +29,7 @@ from processing.scoring.line_positions import PolylineIndex, length_m, middle_po
 CURB_TYPES: Mapping[FailureKind, tuple[str, ...]] = {
     "missed": (
         "vehicles",
+        "blind zone of a turn",
         "hidden, few points",
         "low dropped step",
         "dropped curb",
@@ -59,6 +60,9 @@ FAR_M = 10.0
 """A curb farther off lies behind another lane."""
 
 _FEW_PER_M = 30.0
+_TURNED_DEG = 20.0
+"""Over the blind zone's length a path that turns by so much turns off; a bend of a street, of 60 m
+radius, turns by 14°."""
 _BESIDE_M, _ALONG_M, _END_M = 0.3, 0.1, 2.0
 _BEND_RADIUS_M = 6.0
 _MOSTLY = 0.5
@@ -94,6 +98,10 @@ def _missed_curb(
     is_low = section.kind == "dropped"
     facts: dict[str, Callable[[], bool]] = {
         "vehicles": lambda: around.has_vehicle(section.xyz),
+        "blind zone of a turn": lambda: (
+            points.size < _FEW_PER_M * length_m(section.xyz)
+            and around.turned_deg(section.xyz) > _TURNED_DEG
+        ),
         "hidden, few points": lambda: on_curb < _FEW_PER_M * length_m(section.xyz),
         "low dropped step": lambda: is_low and section.step_m < LOW_STEP_M,
         "dropped curb": lambda: is_low,

@@ -33,6 +33,9 @@ COVERS = frozenset(("lid", "grating", "gutter", "box_lid", "manhole", "basin", "
 _MOVING = 64
 _VEHICLE_M, _VEHICLE_POINTS = 1.5, 10
 _FARTHEST_M = 100.0
+_BLIND_M, _MOVED_M = 15.0, 0.01
+"""How long the zone behind a vehicle is about that nothing looks at, over both sides of the nearest
+place; and how far apart places of a path must be to tell a direction."""
 
 
 @dataclass(frozen=True)
@@ -74,7 +77,8 @@ class StreetSurroundings:
         things = json.loads((scene.delivery / "truth/instance_kinds.json").read_text("utf-8"))
         self._kinds = {int(number): str(one["kind"]) for number, one in things.items()}
         paths = [drive.trajectory.xyz for drive in scene.drives if drive.trajectory is not None]
-        self.paths = PolylineIndex([path[::20] for path in paths])
+        self.ways = [path[::20] for path in paths]
+        self.paths = PolylineIndex(self.ways)
         self.drives = scene.drives
 
     @cached_property
@@ -93,6 +97,27 @@ class StreetSurroundings:
         """How far the middle of a line is from the vehicle's path; NaN where that isn't known."""
         off = float(self.paths.nearest(xyz[[len(xyz) // 2]], _FARTHEST_M).off_m[0])
         return off if np.isfinite(off) else np.nan
+
+    def turned_deg(self, xyz: Floats) -> float:
+        """By how much the vehicle turned while it passed a line, degrees; 0 where that isn't known.
+
+        Behind the vehicle lies a zone that no head looks at; who drives straight on measures it
+        from farther ahead, who turns off doesn't (Takahashi 2022, section 6.5.6, figure 6-15).
+        """
+        middle, turned = xyz[len(xyz) // 2, :2], 0.0
+        for way in self.ways:
+            steps = np.diff(way[:, :2], axis=0)
+            long_m = np.hypot(*steps.T)
+            way_m = np.append(0.0, np.cumsum(long_m))
+            away_m = np.hypot(*(way[:, :2] - middle).T)
+            moves = long_m > _MOVED_M
+            if away_m.min() > _FARTHEST_M or not moves.any():
+                continue
+            at_m = way_m[int(np.argmin(away_m))] + np.array([-_BLIND_M, _BLIND_M]) / 2
+            headings = np.unwrap(np.arctan2(steps[moves, 1], steps[moves, 0]))
+            ends = np.interp(at_m, way_m[:-1][moves], headings)
+            turned = max(turned, float(np.degrees(abs(ends[1] - ends[0]))))
+        return turned
 
     def share(self, points: NDArray[np.int64], labels: Sequence[int]) -> float:
         """Share of points with one of these labels."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections import Counter
+from dataclasses import fields
 from pathlib import Path
 from xml.etree import ElementTree as ET
 
@@ -112,6 +113,28 @@ def test_failures_are_sorted_by_what_stands_around_them(tmp_path: Path) -> None:
     second = with_more(CURBS, *moved(map_of(curb_pair(0, 20, 9)), north=0.03).features)
     again = types_of(list(curb_failures("street", score_edges(second, CURBS), at_wall)))
     assert again == {("false", "second line along a curb"): 20}
+
+
+def test_what_a_turning_vehicle_never_looked_at_is_a_type_of_its_own(tmp_path: Path) -> None:
+    cloud = cloud_of()
+    unseen = cloud.xyz[:, 0] > ORIGIN[0] + 20  # behind a vehicle that turned off to the right
+    left = StreetCloud(*(getattr(cloud, field.name)[~unseen] for field in fields(cloud)))
+    street = around(tmp_path, left)
+    edges = score_edges(map_of([]), CURBS)
+    straight = ORIGIN + np.array([[x, 0.0, 0.0] for x in range(-5, 56)])
+    turned = np.linspace(0.0, np.pi / 2, 12)
+    corner = np.column_stack([20 + 5 * np.sin(turned), 5 * np.cos(turned) - 5, 0 * turned])
+    off = np.vstack(
+        [straight[:25], ORIGIN + corner, ORIGIN + [[25.0, -y, 0.0] for y in range(6, 30)]]
+    )
+    street.ways = [straight]
+    missed = types_of(list(curb_failures("street", edges, street)))
+    assert ("missed", "blind zone of a turn") not in missed
+    street.ways = [off]
+    missed = types_of(list(curb_failures("street", edges, street)))
+    assert missed["missed", "blind zone of a turn"] > 0
+    # Where there are points, as before the turn, nothing was blind.
+    assert missed["missed", "hidden, few points"] > 0
 
 
 def test_what_was_asked_for_is_counted_by_how_far_from_the_way_it_lies(tmp_path: Path) -> None:

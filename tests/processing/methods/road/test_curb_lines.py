@@ -60,6 +60,7 @@ def run_of(from_m: float, to_m: float, *, drive: int = 0, is_back: bool = False)
         foot_cover_m=one * 0.003,
         above_path_m=one * -0.05,
         risen_m=one * 0,
+        verge_m=one * 0,
     )
     if not is_back:
         return run

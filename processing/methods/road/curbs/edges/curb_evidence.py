@@ -1,7 +1,7 @@
 """What is known of a curb's line once its edges are measured: the facts that tell curbs apart.
 
 A curb is concrete and stands at the road: nothing rises between the vehicle and its foot, paved
-ground lies before it and level ground behind it; its edges are straight and even and its face
+ground lies up to it and level ground behind it; its edges are straight and even and its face
 steep. Walls and plinths stand on the pavement or are taller than kerb stones; verges, ridges of
 fields and hedges are rough and uneven.
 """
@@ -13,6 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from processing.methods.road.curbs.edges.approximate_lines import ApproximateLine
 from processing.methods.road.curbs.edges.curb_edges import MeasuredEdges
@@ -26,7 +27,7 @@ from processing.methods.road.curbs.edges.edge_measures import (
     LOW_POINTS,
     STEP_M,
 )
-from processing.methods.road.curbs.steps.curb_confidence import CurbFacts, confidence_of
+from processing.methods.road.curbs.steps.curb_confidence import CurbFacts, chance_of, confidence_of
 from processing.methods.road.curbs.steps.curb_runs import StepRun
 
 _Floats = NDArray[np.float64]
@@ -58,6 +59,15 @@ _LONG_M = 20.0
 """What is longer may well stand behind another curb: a median, the far carriageway. By trial."""
 
 _MOST_UNEVEN, _MOST_ROUGH = 1.5, 4.0
+_MOST_VERGE_M = 1.0
+"""Bound of a fact: of verges as wide grass is mown beside roads, and wider ones say no more."""
+
+_BESIDE_M = 0.5
+"""A place of a run so near to a line tells what lies before it; runs lie up to 15 cm off."""
+
+_FRONT = 0.5
+"""A line that is rather a curb than none raises what lies behind it."""
+
 _MOST_RISEN_M, _MOST_ABOVE_M, _MOST_TALL_M, _MOST_FLAT = 0.2, 0.1, 0.2, 0.7
 """Bounds of facts, so that none outweighs all others; see `CurbFacts` for their units. They were
 set before the weights were fitted."""
@@ -139,7 +149,7 @@ def facts_of(
     usual : UsualMeasures
     """
     approximate_line, curb = line
-    stations = slice(int(curb.frame[0, 0]), int(curb.frame[-1, 0]) + 1)
+    stations = _stations(curb)
     shares = _shares(approximate_line, stations)
     # What repeats along a street may cross the vehicle's path and stand where others have risen.
     lone = 1.0 - _weighed(shares, lambda number: float(runs[number].chance_beside > 0))
@@ -173,7 +183,42 @@ def facts_of(
         long_m=min(max(float(curb.is_seen.sum()) * STEP_M, _LEAST_LONG_M), _LONG_M),
         faceless=_faceless(line, edges, part, stations),
         walled=_walled(curb, measured),
+        bridged=float((~curb.is_seen).mean()),
+        verge_m=_verge_m(curb, [runs[number] for number in shares]),
+        unraised=float(not crossing and _is_far_side(approximate_line, stations)),
     )
+
+
+def raised_by_others(facts: CurbFacts, share: float) -> CurbFacts:
+    """The facts of a line of which a share lies behind another curb, on what that one raised."""
+    return facts._replace(
+        verge_m=(1 - share) * facts.verge_m, unraised=(1 - share) * facts.unraised
+    )
+
+
+def is_front(line: ApproximateLine, facts: CurbFacts) -> bool:
+    """Whether a line is a curb by itself, which may raise what lies behind it."""
+    return float(line.is_hidden.mean()) < _HIDDEN and chance_of(facts) >= _FRONT
+
+
+def _is_far_side(line: ApproximateLine, stations: slice) -> bool:
+    """Whether the ground falls here, seen from the vehicle; edging stones have their own rule."""
+    is_hidden = float(line.is_hidden[stations].mean()) >= _HIDDEN
+    return is_hidden and not bool(line.is_edging[stations].any())
+
+
+def _verge_m(curb: CurbLine, runs: Sequence[StepRun]) -> float:
+    """Rough ground before the line, by what runs know where they are beside it."""
+    tree = cKDTree(curb.lower[:, :2])
+    wide = [np.empty(0)]
+    for run in runs:
+        away = tree.query(run.lower[:, :2], distance_upper_bound=_BESIDE_M)[0]
+        wide.append(run.verge_m[np.isfinite(away) & run.is_seen])
+    return min(_median(np.concatenate(wide)), _MOST_VERGE_M)
+
+
+def _stations(curb: CurbLine) -> slice:
+    return slice(int(curb.frame[0, 0]), int(curb.frame[-1, 0]) + 1)
 
 
 def _faceless(

@@ -93,6 +93,16 @@ class CurbFacts(NamedTuple):
     walled : float
         Share of all its places above whose upper edge the face goes on, 0 to 1: of walls with a
         recess, and of what stands on the line.
+    bridged : float
+        Share of its length that nobody saw, 0 to 1: a row of posts or of steps of houses may be
+        bridged to one line, of a curb more is seen than hidden.
+    verge_m : float
+        How much rough ground, grass or soil, lies between the vehicle's path and it, m, 0 to 1; the
+        less the more of it lies behind another curb. The road is paved up to its curbs; ridges and
+        levees of fields and edges of lots lie behind a verge.
+    unraised : float
+        1 where the ground falls, seen from the vehicle, and no other curb has raised it; the less
+        the more of the line lies behind one. Islands have two curbs, ridges of fields none.
     """
 
     before: float
@@ -106,42 +116,46 @@ class CurbFacts(NamedTuple):
     long_m: float
     faceless: float
     walled: float
+    bridged: float
+    verge_m: float
+    unraised: float
 
 
 WEIGHTS = CurbFacts(
-    before=0.56,
-    risen_m=-13.27,
-    above_path_m=-5.56,
-    crossing=-1.27,
-    too_tall_m=-21.46,
-    too_flat=-7.90,
-    uneven=-0.29,
-    rough=-2.39,
-    long_m=0.26,
-    faceless=-2.02,
-    walled=-2.10,
+    before=0.51,
+    risen_m=-15.62,
+    above_path_m=-6.40,
+    crossing=-1.93,
+    too_tall_m=-20.57,
+    too_flat=-8.23,
+    uneven=-0.50,
+    rough=-1.46,
+    long_m=0.32,
+    faceless=-4.31,
+    walled=-2.53,
+    bridged=-2.74,
+    verge_m=-6.67,
+    unraised=-4.31,
 )
-"""What each fact is worth, of `before` its log-odds, of `uneven` its square, of `long_m` its
-logarithm; none of the scenes that results are judged by was learnt from. Learnt by
-`processing.laboratory.road_training.curb_training` as it comes: 30 streets of 60 m, 18 of them with
-worn stones and a drifting trajectory, 126 lines, of which 93 are curbs. Of streets left out one by
-one, 59 of 61 lines given 0.9 and more were curbs, 16 of 20 of those from 0.7, 8 of 14 of those from
-0.5 and 10 of 31 of those below. Few of the false lines are walls or edges that a line crosses, so
-what those facts are worth rests much on what `EXPECTED` says there."""
+"""What each fact is worth, of `before` its log-odds, of `uneven` and `faceless` the square, of
+`long_m` its logarithm; none of the scenes that results are judged by was learnt from. Learnt by
+`processing.laboratory.road_training.curb_training` as it comes."""
 
-CONSTANT = 4.05
+CONSTANT = 3.71
 """Log-odds of a line of which nothing is known; fitted with `WEIGHTS`."""
 
 
 def terms_of(facts: CurbFacts) -> CurbFacts:
     """The facts as the weights take them: log-odds of the first chance, logarithm of the length.
 
-    Unevenness is squared: worn stones differ by what noise does, soil and grass by far more.
+    Unevenness is squared: worn stones differ by what noise does, soil and grass by far more; the
+    share without a face is, too: pulses miss half of some curbs' faces, but never all of one.
     """
     before = min(max(facts.before, _LEAST_BEFORE), _MOST_BEFORE)
     return facts._replace(
         before=math.log(before / (1 - before)),
         uneven=facts.uneven**2,
+        faceless=facts.faceless**2,
         long_m=math.log(facts.long_m / _USUAL_LONG_M),
     )
 

@@ -29,6 +29,7 @@ from processing.methods.road.curbs.steps.curb_profile import (
 )
 from processing.methods.road.curbs.steps.curb_ridges import PassRidges, ridge_runs, ridges_of
 from processing.methods.road.curbs.steps.curb_runs import StepRun, is_raised, median_of, run_of
+from processing.methods.road.curbs.steps.curb_verges import PassVerges, join_verges, verges_of
 from processing.recording.drive import Drive
 
 Floats = NDArray[np.float64]
@@ -107,26 +108,31 @@ def runs_of(
         Which of the drives given they are of.
     """
     for _, stretches in groupby(scanlines, key=lambda one: one.number):
-        parts: list[PassSteps] = []
-        ridges: list[PassRidges] = []
-        noted = _note_steps(stretches, settings, parts, ridges)
-        yield from crossing_runs(noted, number, settings)
-        steps = join_steps(parts)
-        yield from ridge_runs(ridges, steps, number, settings)
+        noted = _NotedStretches([], [], [])
+        crossing = list(crossing_runs(_note_steps(stretches, settings, noted), number, settings))
+        steps, verges = join_steps(noted.steps), join_verges(noted.verges)
+        for run in (*crossing, *ridge_runs(noted.ridges, steps, number, settings)):
+            yield verges.of(run)
         for chain in chains_of(steps, settings):
-            yield run_of(steps, chain, number)
+            yield verges.of(run_of(steps, chain, number))
+
+
+class _NotedStretches(NamedTuple):
+    """What was seen on the stretches of one pass, in order."""
+
+    steps: list[PassSteps]
+    ridges: list[PassRidges]
+    verges: list[PassVerges]
 
 
 def _note_steps(
-    stretches: Iterable[Scanlines],
-    settings: StepSettings,
-    parts: list[PassSteps],
-    ridges: list[PassRidges],
+    stretches: Iterable[Scanlines], settings: StepSettings, noted: _NotedStretches
 ) -> Iterator[Scanlines]:
     """The stretches, each one's steps being noted as it passes: none is held."""
     for stretch in stretches:
-        parts.append(steps_of(stretch, settings))
-        ridges.append(ridges_of(stretch, settings))
+        noted.steps.append(steps_of(stretch, settings))
+        noted.ridges.append(ridges_of(stretch, settings))
+        noted.verges.append(verges_of(stretch))
         yield stretch
 
 
@@ -204,13 +210,12 @@ def _falls_off(run: StepRun, high_m: float) -> bool:
 
 
 def _climbs_out(run: StepRun, high_m: float) -> bool:
-    """Whether ground that lies below the road, narrow or fallen before, comes up to its level."""
+    """Whether narrow ground that lies below the road comes up to its level again."""
     seen = run.is_seen
     below_m = -median_of(run.above_path_m[seen])
-    if below_m < _DEEP_M or high_m - below_m >= _LEVEL_M:
+    if below_m < _DEEP_M or high_m - below_m >= max(_LEVEL_M, _LEVEL_SHARE * high_m):
         return False
-    is_fallen = median_of(run.risen_m[seen]) <= -_RISEN_SHARE * high_m
-    return is_fallen or median_of(run.foot_m[seen]) < _CHANNEL_M
+    return median_of(run.foot_m[seen]) < _CHANNEL_M
 
 
 def _is_rear(run: StepRun, fronts: Floats) -> bool:

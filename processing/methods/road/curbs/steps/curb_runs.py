@@ -85,6 +85,8 @@ class StepRun:
     risen_m : (k,) float64
         What other steps between the vehicle's path and this one add up to, up less down, m: 0 for
         the first from the road, about the curb's height for what stands on the pavement behind it.
+    verge_m : (k,) float64
+        How much ground between the vehicle's path and the lower edge is rough, grass or soil, m.
     is_edging : bool
         The far edge of a narrow edging stone.
     chance_beside : float
@@ -108,6 +110,7 @@ class StepRun:
     foot_cover_m: Floats
     above_path_m: Floats
     risen_m: Floats
+    verge_m: Floats
     is_edging: bool = False
     chance_beside: float = 0.0
 
@@ -176,6 +179,7 @@ def run_of(steps: PassSteps, chain: Chain, number: int, among: PassSteps | None 
         foot_cover_m=rows[nearest, FOOT_COVER_M] + unseen,
         above_path_m=low + unseen,
         risen_m=_risen(among or steps, (every, middle), side),
+        verge_m=np.zeros(stations.size),
     )
 
 
