@@ -209,22 +209,28 @@ def find_curbs(
     """Curbs of a survey: one result for all heads and passes."""
     settings = step_settings(parameters)
     monitor.report(0.0, _LOOKING)
-    runs: list[StepRun] = []
-    parts = parts_of(PartMonitor(monitor, 0.0, _FINDING), [drive.count for drive in drives])
-    for number, (drive, part) in enumerate(zip(drives, parts, strict=True)):
-        runs.extend(step_runs(drive, number, settings, part))
-    # What hides the front of a stone from one scanner doesn't hide it from all.
-    runs = list(
-        remove_inner_faces(
-            remove_lone_edging(remove_rear_edges(runs, settings), settings), settings
-        )
-    )
+    runs = survey_runs(drives, settings, PartMonitor(monitor, 0.0, _FINDING))
     features: list[CurbFeature] = []
     for one in measure_curbs(drives, runs, parameters, PartMonitor(monitor, _FINDING, 1.0)):
         chance = chance_of(one.facts)
         if chance >= parameters.least_confidence:
             features.extend(features_of(one.approximate_line, one.line, one.measured, chance))
-    return CandidateResult(_candidates(features), note_on(drives, runs, settings, len(features)))
+    return CandidateResult(
+        curb_candidates(features), note_on(drives, runs, settings, len(features))
+    )
+
+
+def survey_runs(
+    drives: Sequence[Drive], settings: StepSettings, monitor: Monitor
+) -> tuple[StepRun, ...]:
+    """Runs of all drives that are taken for curbs."""
+    runs: list[StepRun] = []
+    parts = parts_of(monitor, [drive.count for drive in drives])
+    for number, (drive, part) in enumerate(zip(drives, parts, strict=True)):
+        runs.extend(step_runs(drive, number, settings, part))
+    # What hides the front of a stone from one scanner doesn't hide it from all.
+    fronts = remove_lone_edging(remove_rear_edges(runs, settings), settings)
+    return remove_inner_faces(fronts, settings)
 
 
 def measure_curbs(
@@ -270,7 +276,8 @@ def measure_curbs(
         yield replace(one, facts=raised_by_others(one.facts, share))
 
 
-def _candidates(features: Sequence[CurbFeature]) -> tuple[Candidate, ...]:
+def curb_candidates(features: Sequence[CurbFeature]) -> tuple[Candidate, ...]:
+    """Both edges of each stretch, as candidates."""
     return tuple(
         candidate
         for run, feature in enumerate(features, start=1)

@@ -2,29 +2,33 @@
 
 ``python -m processing.laboratory.road_training.curb_training``.
 
-Simulates streets of ``--seeds`` and ``--worn``, finds lines on them without leaving any out, and
-fits `processing.methods.road.curbs.steps.curb_confidence.WEIGHTS` to which of them are curbs;
-streets of ``--check`` are not learnt from. ``--deliveries`` are further streets to learn from,
-recorded before. Prints the weights and how many lines of each confidence are right: of streets
-learnt from by weights that were fitted without the street itself.
+Simulates streets of ``--seeds``, ``--worn`` and ``--country``, finds lines on them without leaving
+any out, and fits `processing.methods.road.curbs.steps.curb_confidence.WEIGHTS` to which of them are
+curbs; streets of ``--check`` are not learnt from. ``--deliveries`` are further streets to learn
+from, recorded before. Prints the weights and how many lines of each confidence are right: of
+streets learnt from by weights that were fitted without the street itself.
 """
 
 from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from processing.core.monitor import SilentMonitor
 from processing.core.output_streams import write_every_character
 from processing.formats.vectors.mapped_shapes import read_mapped
-from processing.laboratory.accuracy.road.road_scenes import RoadScene
+from processing.laboratory.accuracy.road.road_scenes import (
+    RoadScene,
+    country_options_of,
+    worn_options_of,
+)
 from processing.laboratory.road_training.learned_confidence import (
     LabelledThings,
     WeightPrior,
     learn_weights,
 )
-from processing.laboratory.road_training.training_streets import training_streets
+from processing.laboratory.road_training.training_streets import RequestOf, training_streets
 from processing.methods.road.curbs.steps.curb_confidence import CurbFacts, terms_of
 from processing.methods.road.curbs.steps.curb_filters import step_runs
 from processing.scoring.curb_lines import FOUND_SHARE, TOLERANCE_M
@@ -44,9 +48,13 @@ EXPECTED = WeightPrior(
 )
 """Tens of streets have few false lines of each kind, so much is left to what reasoning expects."""
 
-_SEEDS, _WORN = "500-511", "540-557"
-_CHECK = "530-539"
-"""Streets that the curbs' `WEIGHTS` were learnt from: as laid, and worn and less exactly driven."""
+_SEEDS, _CHECK = "500-511", "530-539"
+_OTHERS: Mapping[str, tuple[str, RequestOf]] = {
+    "worn": ("540-557", worn_options_of),
+    "country": ("600-629", country_options_of),
+}
+"""Streets that the curbs' `WEIGHTS` were learnt from: as laid, worn and less exactly driven, and
+country roads and highways."""
 
 _SHORTEST_M, _LONGEST_M, _POSITIONS_M = 0.75, 10.0, 0.1
 
@@ -89,7 +97,7 @@ def _judge_runs(scene: RoadScene, truth: MappedFile) -> Iterator[tuple[CurbFacts
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """The command."""
-    asked = training_streets("curb_training", arguments, seeds=(_SEEDS, _CHECK), worn=_WORN)
+    asked = training_streets("curb_training", arguments, seeds=(_SEEDS, _CHECK), others=_OTHERS)
     known, check = known_lines(asked.learnt), known_lines(asked.check)
     sys.stdout.write(learn_weights(CurbFacts._fields, EXPECTED, known, check))
     return 0

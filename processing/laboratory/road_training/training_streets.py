@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import itertools
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,8 +12,11 @@ from processing.laboratory.accuracy.road.road_scenes import (
     RoadScene,
     given_scenes,
     simulated_scenes,
-    worn_options_of,
 )
+from processing.laboratory.simulate.requests import StreetRequest
+
+RequestOf = Callable[[int, int, float], StreetRequest]
+"""Makes the request of a street from its number, its seed and its length, m."""
 
 
 @dataclass(frozen=True)
@@ -29,7 +32,7 @@ def training_streets(
     arguments: Sequence[str] | None,
     scenes: Callable[[Sequence[int], float], Iterator[RoadScene]] = simulated_scenes,
     seeds: tuple[str, str] = ("500-529", "530-539"),
-    worn: str = "",
+    others: Mapping[str, tuple[str, RequestOf]] | None = None,
 ) -> TrainingStreets:
     """What the command of a module of `processing.laboratory.road_training` was told.
 
@@ -39,20 +42,25 @@ def training_streets(
         Makes streets of seeds and a length, m.
     seeds : (str, str)
         Of streets to learn from and to check with, if nothing else is asked.
-    worn : str
-        Of streets with worn stones to learn from, too.
+    others : mapping, optional
+        By the name of an option, seeds of other streets to learn from, and what makes requests of
+        them.
     """
     parser = argparse.ArgumentParser(prog=f"python -m processing.laboratory.road_training.{module}")
     parser.add_argument("--seeds", default=seeds[0], help="streets to learn from")
     parser.add_argument("--check", default=seeds[1], help="streets to check with")
     parser.add_argument("--length", type=float, default=60.0, help="m of each")
-    parser.add_argument("--worn", default=worn, help="streets of worn stones to learn from")
+    for name, (default, _) in (others or {}).items():
+        parser.add_argument(f"--{name}", default=default, help=f"{name} streets to learn from")
     parser.add_argument("--deliveries", type=Path, nargs="*", default=[])
     asked = parser.parse_args(arguments)
     laid = scenes(_seeds(asked.seeds), asked.length)
-    settled = simulated_scenes(_seeds(asked.worn), asked.length, worn_options_of)
+    more = (
+        simulated_scenes(_seeds(getattr(asked, name)), asked.length, request_of)
+        for name, (_, request_of) in (others or {}).items()
+    )
     return TrainingStreets(
-        itertools.chain(laid, settled, given_scenes(asked.deliveries)),
+        itertools.chain(laid, *more, given_scenes(asked.deliveries)),
         scenes(_seeds(asked.check), asked.length),
     )
 

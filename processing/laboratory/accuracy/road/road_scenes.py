@@ -29,6 +29,7 @@ LENGTH_M = 120.0
 BOTH = "both"
 _CRS = "EPSG:6677"
 _STYLES = ("urban", "rural", "urban", "rural", "urban", "highway")
+_COUNTRY_STYLES = ("rural", "rural", "highway")
 _SENSORS = ("vq250", "vq450", "zf9012", "vmx2ha", "lynx")
 _AVENUE_STYLES = ("urban", "urban", "highway", "urban", "rural", "urban")
 _AVENUE_SENSORS = ("vq250", "vq450", "lynx", "vmx2ha")
@@ -150,6 +151,13 @@ def avenue_options_of(number: int, seed: int, length_m: float = LENGTH_M) -> Str
         avenue=True,
         images=False,
     )
+
+
+def country_options_of(number: int, seed: int, length_m: float = LENGTH_M) -> StreetRequest:
+    """Country roads and a highway in turns, every other one worn: much rises there, few curbs."""
+    options = (worn_options_of if number % 2 else options_of)(number, seed, length_m)
+    style = _COUNTRY_STYLES[number % len(_COUNTRY_STYLES)]
+    return replace(options, style=style, passes=1, stops=False)
 
 
 def simulated_scenes(

@@ -50,7 +50,7 @@ def test_streets_left_out_are_told_right() -> None:
 
 
 def test_chances_of_the_command_are_those_of_the_tool() -> None:
-    facts = CurbFacts(0.5, 0.03, -0.02, 0.0, 0.0, 0.0, 0.4, 1.2, 8.0, 0.1, 0.0)
+    facts = CurbFacts(0.5, 0.03, -0.02, 0.0, 0.0, 0.0, 0.4, 1.2, 8.0, 0.1, 0.0, 0.2, 0.25, 0.0)
     lines = LabelledThings(
         np.array([terms_of(facts)]), np.array([True]), np.ones(1), np.zeros(1, np.int64)
     )

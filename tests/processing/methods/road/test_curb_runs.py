@@ -18,11 +18,11 @@ from processing.methods.road.curbs.steps.curb_filters import (
 from processing.methods.road.curbs.steps.curb_profile import StepSettings, steps_of
 from processing.methods.road.curbs.steps.curb_runs import StepRun, run_of, spread_of
 
-_Floats = NDArray[np.float64]
+Floats = NDArray[np.float64]
 SETTINGS = StepSettings()
 SPACING_M = 0.1
 
-SurfaceFunction = Callable[[float, _Floats], _Floats]
+SurfaceFunction = Callable[[float, Floats], Floats]
 
 
 def scanlines(
@@ -79,7 +79,7 @@ def test_a_curb_is_one_run_from_end_to_end_with_both_edges_where_they_are() -> N
 
 
 def test_a_curb_on_the_left_and_the_far_edge_of_an_island_are_told_by_their_sides() -> None:
-    def island(_station: float, across: _Floats) -> _Floats:
+    def island(_station: float, across: Floats) -> Floats:
         return np.where((across > -4.0) & (across < -3.0), 0.15, 0.0)
 
     near, far = sorted(found(island), key=lambda run: -run.lower[0, 0])
@@ -92,7 +92,7 @@ def test_a_curb_on_the_left_and_the_far_edge_of_an_island_are_told_by_their_side
 def test_a_run_goes_on_behind_a_parked_car_and_says_where_it_was_not_seen() -> None:
     whole = curb(3.0, 0.15)
 
-    def hidden(station: float, across: _Floats) -> _Floats:
+    def hidden(station: float, across: Floats) -> Floats:
         behind = (across > 2.0) & (4.0 < station < 8.0)
         return np.where(behind, np.nan, whole(station, across))
 
@@ -104,7 +104,7 @@ def test_a_run_goes_on_behind_a_parked_car_and_says_where_it_was_not_seen() -> N
 
 
 def test_a_dropped_curb_belongs_to_the_run_beside_it_and_keeps_its_height() -> None:
-    def dropped(station: float, across: _Floats) -> _Floats:
+    def dropped(station: float, across: Floats) -> Floats:
         high = float(np.interp(station, [4.3, 5.0, 8.0, 8.7], [0.15, 0.02, 0.02, 0.15]))
         return curb(3.0, high)(station, across)
 
@@ -114,7 +114,7 @@ def test_a_dropped_curb_belongs_to_the_run_beside_it_and_keeps_its_height() -> N
 
 
 def test_a_curb_across_the_way_is_a_run_from_left_to_right() -> None:
-    def end(station: float, across: _Floats) -> _Floats:
+    def end(station: float, across: Floats) -> Floats:
         return np.where((across > 2.0) & (station > 6.0), 0.15, 0.0)
 
     runs = found(end)
@@ -126,7 +126,7 @@ def test_a_curb_across_the_way_is_a_run_from_left_to_right() -> None:
 
 
 def test_blades_that_hang_over_the_foot_do_not_hide_a_curb() -> None:
-    def verge(_station: float, across: _Floats) -> _Floats:
+    def verge(_station: float, across: Floats) -> Floats:
         heights = np.where(across > 3.0, 0.15, 0.0)
         heights[np.searchsorted(across, [2.86, 2.95])] = 0.2
         return heights
@@ -138,7 +138,7 @@ def test_blades_that_hang_over_the_foot_do_not_hide_a_curb() -> None:
 
 
 def test_a_curb_behind_an_open_gutter_is_found() -> None:
-    def gutter(_station: float, across: _Floats) -> _Floats:
+    def gutter(_station: float, across: Floats) -> Floats:
         wall = np.interp(across, [2.87, 2.90], [-0.3, 0.0])
         is_hidden = (across > 2.60) & (across < 2.87)
         heights = np.where(across > 3.0, 0.15, np.where(across > 2.6, wall, 0.0))
@@ -152,7 +152,7 @@ def test_a_curb_behind_an_open_gutter_is_found() -> None:
 def test_grass_beside_the_road_is_no_curb() -> None:
     random = np.random.default_rng(5)
 
-    def grass(_station: float, across: _Floats) -> _Floats:
+    def grass(_station: float, across: Floats) -> Floats:
         return np.where(across > 3.0, random.uniform(0.0, 0.12, across.size), 0.0)
 
     assert found(grass) == ()
@@ -168,7 +168,7 @@ def test_the_foot_of_a_wall_is_no_curb() -> None:
 
 @pytest.mark.parametrize("fall", [0.0, 0.02])
 def test_where_the_ground_falls_off_beside_the_road_is_no_curb(fall: float) -> None:
-    def ditch(_station: float, across: _Floats) -> _Floats:
+    def ditch(_station: float, across: Floats) -> Floats:
         return np.where((across > 3.0) & (across < 3.6), -0.4, 0.0) - fall * np.abs(across)
 
     assert all(run.rises > 0 for run in found(ditch))
@@ -176,7 +176,7 @@ def test_where_the_ground_falls_off_beside_the_road_is_no_curb(fall: float) -> N
 
 
 def test_a_shoulder_that_falls_off_into_a_ditch_is_no_curb() -> None:
-    def shoulder(_station: float, across: _Floats) -> _Floats:
+    def shoulder(_station: float, across: Floats) -> Floats:
         rise = 0.027 * np.clip((across - 1.5) / 1.0, 0.0, 1.0)
         return np.where(across > 3.0, -0.30, rise)
 
@@ -187,7 +187,7 @@ def test_a_shoulder_that_falls_off_into_a_ditch_is_no_curb() -> None:
 def test_where_the_ground_comes_up_to_the_road_from_a_channel_is_no_curb(
     is_fall_seen: bool,
 ) -> None:
-    def channel(_station: float, across: _Floats) -> _Floats:
+    def channel(_station: float, across: Floats) -> Floats:
         heights = np.where((across > 2.7) & (across < 3.0), -0.3, 0.0)
         is_hidden = (across > 2.7) & (across < 2.72 if is_fall_seen else across < 2.8)
         return np.where(is_hidden, np.nan, heights)

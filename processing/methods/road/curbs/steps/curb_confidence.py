@@ -139,7 +139,10 @@ WEIGHTS = CurbFacts(
 )
 """What each fact is worth, of `before` its log-odds, of `uneven` and `faceless` the square, of
 `long_m` its logarithm; none of the scenes that results are judged by was learnt from. Learnt by
-`processing.laboratory.road_training.curb_training` as it comes."""
+`processing.laboratory.road_training.curb_training` as it comes: 60 streets of 60 m, of them 18
+with worn stones and a drifting trajectory and 30 country roads and highways; 139 lines, of which 93
+are curbs. Of streets left out one by one, 68 of 69 lines given 0.9 and more were curbs, 12 of 17 of
+those from 0.7, 6 of 9 of those from 0.5 and 7 of 44 of those below."""
 
 CONSTANT = 3.71
 """Log-odds of a line of which nothing is known; fitted with `WEIGHTS`."""

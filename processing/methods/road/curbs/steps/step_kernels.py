@@ -50,6 +50,11 @@ _FOOT_POINTS, _TOP_POINTS, _NARROW_TOP_POINTS, _FEWEST = 5, 4, 3, 2
 """Filled cells that a foot, a top and a narrow top must have. Far from the vehicle, where fewer are
 filled, pieces are made longer, twice, and at last have to do with the fewest: the slope is held."""
 
+_LEDGE_CELLS, _LEDGE_POINTS, _BROKEN_M = 3, 3, 0.03
+"""An open gutter may lie so near before a curb that its wall, 8 cm wide (JIS A 5372: 4.5 to 9 cm),
+is all that the curb stands on: where a foot is broken by so much, m RMS (half of a step as low as 6
+cm), what is next to the face counts alone if it is even."""
+
 _LENGTHENED, _LOOKS_LENGTHENED = 3, 4
 """How many lengths of a piece are tried, each twice the one before: a foot of up to 96 cm, a quick
 look of up to 80 cm. More would reach over an edging or a gutter. By trial."""
@@ -347,9 +352,15 @@ def _enough(sums: _Floats, edge: int, sign: int, width: int, wanted: int) -> int
 def _foot(sums: _Floats, cell: int, sign: int, noise: float) -> _Piece:
     """The ground before a step, which ends at the cell."""
     edge = cell if sign > 0 else cell + 1
-    reach = _enough(sums, edge, -sign, _FOOT_CELLS, _FOOT_POINTS)
-    far = edge - sign * reach
-    return _piece(sums, min(edge, far), max(edge, far), (0.0, _SLOPE_SD, noise))
+    known = (0.0, _SLOPE_SD, noise)
+    far = edge - sign * _enough(sums, edge, -sign, _FOOT_CELLS, _FOOT_POINTS)
+    foot = _piece(sums, min(edge, far), max(edge, far), known)
+    if foot.own_square <= _BROKEN_M**2 or min(edge, edge - sign * _LEDGE_CELLS) < 0:
+        return foot
+    far = max(min(edge - sign * _LEDGE_CELLS, sums.shape[0] - 1), 0)
+    ledge = _piece(sums, min(edge, far), max(edge, far), known)
+    is_ledge = ledge.filled >= _LEDGE_POINTS and ledge.own_square < noise + _MODEL_M**2
+    return ledge if is_ledge else foot
 
 
 @kernel
