@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from processing.image.scan_lines.scanlines import Scanlines, ScanlineSettings
 from processing.methods.road.curbs.steps.curb_runs import StepRun
-from processing.methods.road.curbs.steps.verge_kernels import BIN_M, verges_kernel
+from processing.methods.road.curbs.steps.verge_kernels import BIN_M, EVERY, verges_kernel
 from processing.methods.road.rising import nearest_rising
 
 Floats = NDArray[np.float64]
@@ -30,12 +30,12 @@ and the guard of a division, m."""
 
 @dataclass(frozen=True)
 class PassVerges:
-    """Rough ground beside the vehicle's path, scanline by scanline.
+    """Rough ground beside the vehicle's path, some decimetres apart along it.
 
     Attributes
     ----------
     stations_m, positions, rights
-        Of the scanlines, as in `Scanlines`.
+        Of the scanlines that were looked at, as in `Scanlines`.
     wide_m : (s, 2, b) float32
         How much of it lies left and right of the path up to the far end of each bin, m.
     """
@@ -68,9 +68,11 @@ class PassVerges:
 
 def verges_of(scanlines: Scanlines) -> PassVerges:
     """The verges of the scanlines of one stretch."""
-    wide = np.empty((scanlines.stations_m.size, 2, _BINS), np.float32)
+    every = slice(None, None, EVERY)
+    stations = scanlines.stations_m[every]
+    wide = np.empty((stations.size, 2, _BINS), np.float32)
     verges_kernel(scanlines.across_m, scanlines.height_m, scanlines.starts, wide)
-    return PassVerges(scanlines.stations_m, scanlines.positions, scanlines.rights, wide)
+    return PassVerges(stations, scanlines.positions[every], scanlines.rights[every], wide)
 
 
 def join_verges(parts: Sequence[PassVerges]) -> PassVerges:

@@ -16,6 +16,9 @@ from processing.core.kernels import kernel
 _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
 
+EVERY = 4
+"""Scanlines of which one is looked at, 0.4 m: tells the same as all in a quarter of the time."""
+
 BIN_M = 0.25
 """Of ground that is called rough or not as one: a blade of grass or a stone on the road is none."""
 
@@ -50,22 +53,23 @@ def verges_kernel(across: _Floats, height: _Floats, starts: _Integers, verges: _
         Vertices, left to right, m.
     starts : (s + 1,)
         Where the scanlines begin.
-    verges : (s, 2, b)
-        Is filled: left and right of the path, up to the far end of each bin, m.
+    verges : (⌈s / EVERY⌉, 2, b)
+        Is filled: left and right of the path, up to the far end of each bin, m; of every so many
+        scanlines, as verges go on.
     """
     room = 1
     for section in range(starts.size - 1):
         room = max(room, starts[section + 1] - starts[section])
     off, driven = np.empty(room), np.empty(room)
     sums = np.empty((4, verges.shape[2]))
-    for section in range(starts.size - 1):
+    for section in range(0, starts.size - 1, EVERY):
         part = slice(starts[section], starts[section + 1])
         x, h = across[part], height[part]
         _off_straight(x, h, off)
         limit = _limit(x, off, driven)
         for side in range(2):
             _fill_bins(x * (2 * side - 1), h, (off, limit), sums)
-            _add_up(sums, verges[section, side])
+            _add_up(sums, verges[section // EVERY, side])
 
 
 @kernel
