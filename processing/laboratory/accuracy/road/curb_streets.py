@@ -71,15 +71,18 @@ def fresh_streets() -> dict[str, StreetRequest]:
     worn = {
         seed: replace(worn_options_of(number, seed, long_m), style=style, sensor=sensor, passes=1)
         for number, seed, long_m, style, sensor in (
-            (1, 7301, 60.0, "urban", "vq450"),
-            (2, 7306, 60.0, "urban", "vq250"),
-            (1, 7303, 70.0, "highway", "vq250"),
+            (1, 7311, 60.0, "urban", "vq450"),
+            (2, 7316, 60.0, "urban", "vq250"),
+            (1, 7313, 70.0, "highway", "vq250"),
+            (2, 7318, 60.0, "highway", "vq450"),
         )
     }
-    worn[7304] = replace(worn_options_of(2, 7304, 60.0), style="urban", sensor="lynx", passes=2)
+    worn[7314] = replace(worn_options_of(2, 7314, 60.0), style="urban", sensor="lynx", passes=2)
     plain = {
-        7302: replace(options_of(0, 7302, 60.0), style="urban", sensor="vq250"),
-        7305: replace(options_of(1, 7305, 60.0), style="rural", sensor="vq250", passes=1),
+        7312: replace(options_of(0, 7312, 60.0), style="urban", sensor="vq250"),
+        7315: replace(options_of(1, 7315, 60.0), style="rural", sensor="vq250", passes=1),
+        7317: replace(options_of(1, 7317, 60.0), style="rural", sensor="lynx", passes=1),
+        7319: replace(options_of(1, 7319, 60.0), style="rural", sensor="vq450", passes=1),
     }
     return {
         f"{one.style} {one.sensor} {seed}"

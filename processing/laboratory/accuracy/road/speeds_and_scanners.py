@@ -38,8 +38,8 @@ SPEEDS_KM_H = (20.0, 50.0)
 SCANNERS = {"vq250": "pulses, 100 turns/s", "zf9012": "phase, 200 turns/s"}
 """Of the two kinds with which the thesis recorded: MX-8 and Pegasus:Two."""
 
-STREETS = {7401: "urban", 7402: "rural", 7403: "urban", 7404: "rural"}
-LENGTH_M = 80.0
+STREETS = {7401: "urban", 7402: "rural"}
+LENGTH_M = 50.0
 SIDES = ("left", "right")
 
 _HEADING = "## Curbs and gutters at two speeds and by two kinds of scanner"

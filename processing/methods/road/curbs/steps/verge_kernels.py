@@ -44,7 +44,9 @@ nothing of the ground."""
 
 
 @kernel
-def verges_kernel(across: _Floats, height: _Floats, starts: _Integers, verges: _Floats) -> None:
+def verges_kernel(
+    across: _Floats, height: _Floats, starts: _Integers, verges: NDArray[np.float32]
+) -> None:
     """How much rough ground lies between the vehicle's path and places beside it.
 
     Parameters
@@ -98,7 +100,7 @@ def _fill_bins(away: _Floats, h: _Floats, rough: tuple[_Floats, float], sums: _F
 
 
 @kernel
-def _add_up(sums: _Floats, wide: _Floats) -> None:
+def _add_up(sums: _Floats, wide: NDArray[np.float32]) -> None:
     """How much is rough up to the far end of each bin, m."""
     _, walls, counts, roughs = sums
     total = 0.0
@@ -139,4 +141,4 @@ def _limit(x: _Floats, off: _Floats, driven: _Floats) -> float:
 def warm_up() -> None:
     """Compile the kernel."""
     across = np.linspace(-1.0, 1.0, 9)
-    verges_kernel(across, np.zeros(9), np.array([0, 9]), np.empty((1, 2, 4)))
+    verges_kernel(across, np.zeros(9), np.array([0, 9]), np.empty((1, 2, 4), np.float32))

@@ -23,7 +23,7 @@ from processing.methods.road.curbs.steps.step_columns import (
     UPPER_ACROSS,
     UPPER_HEIGHT,
 )
-from tests.processing.methods.road.test_curb_runs import SETTINGS, SurfaceFunction, scanlines
+from tests.processing.methods.road.curbs.test_curb_runs import SETTINGS, SurfaceFunction, scanlines
 
 _Floats = NDArray[np.float64]
 

@@ -32,7 +32,7 @@ from processing.methods.road.curbs.edges.edge_measures import (
 from processing.methods.road.curbs.steps.curb_confidence import CurbFacts, chance_of
 from processing.methods.road.curbs.steps.curb_runs import StepRun
 from processing.tools.curbs import CurbParameters
-from tests.processing.methods.road.test_curb_lines import measures_of, run_of
+from tests.processing.methods.road.curbs.test_curb_lines import measures_of, run_of
 
 INLIER_M, NOISE_M = 0.005, 0.002
 LEAST = CurbParameters().least_confidence

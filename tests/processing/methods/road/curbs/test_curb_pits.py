@@ -12,7 +12,7 @@ from processing.methods.road.curbs.steps.curb_confidence import confidence_of
 from processing.methods.road.curbs.steps.curb_pits import CHANCE, tree_pits
 from processing.methods.road.curbs.steps.curb_profile import StepSettings
 from processing.methods.road.curbs.steps.curb_runs import StepRun
-from tests.processing.methods.road.test_curb_lines import run_of
+from tests.processing.methods.road.curbs.test_curb_lines import run_of
 
 SETTINGS = StepSettings()
 FRONT_M = 1.25

@@ -16,7 +16,7 @@ from processing.methods.road.curbs.edges.edge_measures import (
     LOWER_ABOVE,
     UPPER_ABOVE,
 )
-from tests.processing.methods.road.test_curb_lines import approximate_line_of, measures_of
+from tests.processing.methods.road.curbs.test_curb_lines import approximate_line_of, measures_of
 
 COUNT, END = 120, 80
 NOISE_M, SOIL_M = 0.002, 0.005

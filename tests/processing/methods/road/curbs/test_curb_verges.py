@@ -13,7 +13,13 @@ from processing.methods.road.curbs.steps.curb_confidence import CurbFacts, chanc
 from processing.methods.road.curbs.steps.curb_filters import runs_of
 from processing.methods.road.curbs.steps.curb_runs import StepRun
 from processing.tools.curbs import CurbParameters
-from tests.processing.methods.road.test_curb_runs import SETTINGS, Floats, curb, found, scanlines
+from tests.processing.methods.road.curbs.test_curb_runs import (
+    SETTINGS,
+    Floats,
+    curb,
+    found,
+    scanlines,
+)
 
 STONE = CurbFacts(0.95, 0.0, 0.0, 0.0, 0.0, 0.0, 0.3, 1.1, 15.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 LEAST = CurbParameters().least_confidence
