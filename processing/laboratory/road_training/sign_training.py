@@ -19,7 +19,7 @@ import numpy as np
 from processing.core.monitor import SilentMonitor
 from processing.core.output_streams import write_every_character
 from processing.formats.vectors.mapped_shapes import read_mapped
-from processing.laboratory.accuracy.road.road_scenes import RoadScene
+from processing.laboratory.accuracy.road.road_scenes import RoadScene, worn_options_of
 from processing.laboratory.road_training.learned_confidence import (
     LabelledThings,
     WeightPrior,
@@ -95,7 +95,8 @@ def _judged(scene: RoadScene) -> Iterator[tuple[SignFacts, bool, float]]:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """The command."""
-    asked = training_streets("sign_training", arguments, seeds=(_SEEDS, _CHECK), worn=_WORN)
+    others = {"worn": (_WORN, worn_options_of)}
+    asked = training_streets("sign_training", arguments, seeds=(_SEEDS, _CHECK), others=others)
     known, check = known_plates(asked.learnt), known_plates(asked.check)
     sys.stdout.write(learn_weights(SignFacts._fields, EXPECTED, known, check))
     return 0

@@ -23,7 +23,12 @@ from processing.core.arrays import Floats
 from processing.core.monitor import SilentMonitor
 from processing.core.output_streams import write_every_character
 from processing.formats.vectors.mapped_shapes import read_mapped
-from processing.laboratory.accuracy.road.road_scenes import RoadScene, avenue_scenes, cloud_of
+from processing.laboratory.accuracy.road.road_scenes import (
+    RoadScene,
+    avenue_scenes,
+    cloud_of,
+    worn_options_of,
+)
 from processing.laboratory.road_training.learned_confidence import (
     LabelledThings,
     WeightPrior,
@@ -109,7 +114,11 @@ def _bark_of(delivery: Path) -> cKDTree:
 def main(arguments: Sequence[str] | None = None) -> int:
     """The command."""
     asked = training_streets(
-        "tree_training", arguments, avenue_scenes, (_SEEDS, _CHECK), worn=_USUAL
+        "tree_training",
+        arguments,
+        avenue_scenes,
+        (_SEEDS, _CHECK),
+        others={"worn": (_USUAL, worn_options_of)},
     )
     known, check = known_trees(asked.learnt), known_trees(asked.check)
     sys.stdout.write(learn_weights(TreeFacts._fields, EXPECTED, known, check))
