@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +32,22 @@ _LEAF, _BRANCH = b"LEAF", b"BRANCH_LEQ"
 _ALL_BITS = (1 << 64) - 1
 
 
+_YES_OR_NO = np.array([0, 1], np.uint8)
+
+
+class Forest(NamedTuple):
+    """Trees that add to the sums of several classes.
+
+    ``trees``; ``class_of`` (t,) int32: the class that each adds to; ``bases``: what each class has
+    before any tree, one number where there are two; ``codes`` (k,) uint8: what the classes are.
+    """
+
+    trees: Trees
+    class_of: NDArray[np.int32]
+    bases: NDArray[np.float64]
+    codes: NDArray[np.uint8]
+
+
 def read_trees(path: Path) -> Trees:
     """Read the trees of an ONNX file.
 
@@ -38,6 +55,17 @@ def read_trees(path: Path) -> Trees:
     ------
     ValueError
         The file holds no such model: a defect of the program, not of its input.
+    """
+    return read_forest(path).trees
+
+
+def read_forest(path: Path) -> Forest:
+    """Read the trees of an ONNX file with the classes that they add to.
+
+    Raises
+    ------
+    ValueError
+        As :func:`read_trees`.
     """
     (graph,) = _fields(path.read_bytes(), _GRAPH)
     (node,) = _fields(graph, _NODE)
@@ -49,14 +77,19 @@ def read_trees(path: Path) -> Trees:
     thresholds = _floats_of(kept["nodes_values"])
     leaves = roots[_ints_of(kept["class_treeids"])] + _ints_of(kept["class_nodeids"])
     thresholds[leaves] = _floats_of(kept["class_weights"])
-    return Trees(
+    bases = _floats_of(kept["base_values"])
+    class_of = np.zeros(roots.size, np.int32)
+    class_of[_ints_of(kept["class_treeids"])] = _ints_of(kept["class_ids"])
+    trees = Trees(
         np.where(is_leaf, -1, _ints_of(kept["nodes_featureids"])).astype(np.int32),
         thresholds,
         (start + _ints_of(kept["nodes_truenodeids"])).astype(np.int32),
         (start + _ints_of(kept["nodes_falsenodeids"])).astype(np.int32),
         roots.astype(np.int32),
-        float(_floats_of(kept["base_values"])[0]),
+        float(bases[0]),
     )
+    codes = _ints_of(kept["classlabels_int64s"]).astype(np.uint8)
+    return Forest(trees, class_of, bases, codes)
 
 
 def write_trees(trees: Trees, path: Path, columns: int) -> None:
@@ -65,34 +98,45 @@ def write_trees(trees: Trees, path: Path, columns: int) -> None:
     Its input ``features`` is (n, columns) float32; its outputs are ``label`` (n,) int64, 1 where
     the claim is likelier than not, and ``shares`` (n, 2) float32.
     """
+    none = np.zeros(trees.roots.size, np.int32)
+    write_forest(Forest(trees, none, np.array([trees.base]), _YES_OR_NO), path, columns)
+
+
+def write_forest(forest: Forest, path: Path, columns: int) -> None:
+    """Write trees with the classes that they add to as an ONNX model.
+
+    Its input is as of :func:`write_trees`; its outputs are ``label`` (n,) int64, the code of the
+    likeliest class, and ``shares`` (n, k) float32.
+    """
     path.write_bytes(
         _number(1, _IR_VERSION)
         + _block(2, b"zuka")
-        + _block(_GRAPH, _graph(trees, columns))
+        + _block(_GRAPH, _graph(forest, columns))
         + _block(8, _block(1, b"") + _number(2, _OPSET))
         + _block(8, _block(1, b"ai.onnx.ml") + _number(2, _ML_OPSET))
     )
 
 
-def _graph(trees: Trees, columns: int) -> bytes:
+def _graph(forest: Forest, columns: int) -> bytes:
     node = (
         _block(1, b"features")
         + _block(2, b"label")
         + _block(2, b"shares")
         + _block(4, b"TreeEnsembleClassifier")
-        + b"".join(_block(_ATTRIBUTE, one) for one in _attributes(trees))
+        + b"".join(_block(_ATTRIBUTE, one) for one in _attributes(forest))
         + _block(7, b"ai.onnx.ml")
     )
     return (
         _block(_NODE, node)
-        + _block(2, b"noise")
+        + _block(2, b"zuka")
         + _block(11, _tensor(b"features", _FLOAT_TENSOR, (columns,)))
         + _block(12, _tensor(b"label", _INT64_TENSOR, ()))
-        + _block(12, _tensor(b"shares", _FLOAT_TENSOR, (2,)))
+        + _block(12, _tensor(b"shares", _FLOAT_TENSOR, (forest.codes.size,)))
     )
 
 
-def _attributes(trees: Trees) -> Iterator[bytes]:
+def _attributes(forest: Forest) -> Iterator[bytes]:
+    trees = forest.trees
     nodes = np.arange(trees.features.size)
     tree_of = np.searchsorted(trees.roots, nodes, "right") - 1
     starts = trees.roots[tree_of]
@@ -108,18 +152,19 @@ def _attributes(trees: Trees) -> Iterator[bytes]:
         "nodes_missing_value_tracks_true": nothing,
         "class_treeids": tree_of[leaves],
         "class_nodeids": (nodes - starts)[leaves],
-        "class_ids": nothing[leaves],
-        "classlabels_int64s": np.array([0, 1]),
+        "class_ids": forest.class_of[tree_of[leaves]],
+        "classlabels_int64s": forest.codes,
     }
     for name, values in branches.items():
         yield _ints(name, values)
     yield _floats("nodes_values", np.where(is_leaf, 0.0, trees.thresholds))
     yield _floats("class_weights", trees.thresholds[leaves])
-    yield _floats("base_values", np.array([trees.base]))
+    yield _floats("base_values", forest.bases)
     modes = b"".join(_block(_STRINGS, _LEAF if one else _BRANCH) for one in is_leaf)
     yield _block(_NAME, b"nodes_modes") + modes + _number(_TYPE, _STRINGS_TYPE)
-    logistic = _block(_STRING, b"LOGISTIC") + _number(_TYPE, _STRING_TYPE)
-    yield _block(_NAME, b"post_transform") + logistic
+    link = b"LOGISTIC" if forest.bases.size == 1 else b"SOFTMAX"
+    transform = _block(_STRING, link) + _number(_TYPE, _STRING_TYPE)
+    yield _block(_NAME, b"post_transform") + transform
 
 
 def _ints(name: str, values: NDArray[np.integer]) -> bytes:

@@ -117,17 +117,17 @@ def around_kernel(level: CellLevel, codes: _Integers, around: _Floats) -> None:
     covariance = np.empty((3, 3))
     for i in range(codes.size):
         total[:] = 0
-        _add_around(level, codes[i], total)
+        add_around(level, codes[i], total)
         count = max(total[COUNT], 1.0)
         around[i, _POINTS] = total[COUNT]
         around[i, _SURE] = total[SURE]
         mx, my, mz = total[SUM_X] / count, total[SUM_Y] / count, total[SUM_Z] / count
-        _covariance(total, covariance)
-        large, middle, small = _eigenvalues(covariance)
+        covariance_of(total, covariance)
+        large, middle, small = eigenvalues(covariance)
         around[i, _LINE] = (large - middle) / max(large, _NO_VARIANCE)
         around[i, _PLANE] = (middle - small) / max(large, _NO_VARIANCE)
         around[i, _THICKNESS] = math.sqrt(max(small, 0.0)) / level.side
-        nx, ny, nz = _eigenvector(covariance, small)
+        nx, ny, nz = eigenvector(covariance, small)
         around[i, _NORMAL_X], around[i, _NORMAL_Y], around[i, _NORMAL_Z] = nx, ny, nz
         around[i, _DISTANCE] = nx * mx + ny * my + nz * mz
 
@@ -143,7 +143,7 @@ def mean_around_kernel(
     for i in range(codes.size):
         total, count = 0.0, 0.0
         for side in range(_SIDES):
-            cell = _beside(level, codes[i], side)
+            cell = beside(level, codes[i], side)
             if cell >= 0:
                 total += totals[cell]
                 count += level.sums[cell, COUNT]
@@ -216,7 +216,7 @@ def join_kernel(level: CellLevel, joins: NDArray[np.bool_], parents: _Integers) 
         if not joins[cell]:
             continue
         for side in range(_SIDES_BEFORE):
-            other = _beside(level, level.codes[cell], side)
+            other = beside(level, level.codes[cell], side)
             if other >= 0 and joins[other]:
                 a, b = _root(parents, cell), _root(parents, other)
                 if a < b:
@@ -237,7 +237,7 @@ def largest_kernel(
         if joins[cell]:
             continue
         for side in range(_SIDES):
-            other = _beside(level, level.codes[cell], side)
+            other = beside(level, level.codes[cell], side)
             if other >= 0 and joins[other]:
                 found[cell] = max(found[cell], totals[other])
 
@@ -247,8 +247,8 @@ def spread_kernel(sums: _Floats, found: _Floats) -> None:
     """Standard deviations (m) along the three main axes of points, falling, from their sums."""
     covariance = np.empty((3, 3))
     for i in range(sums.shape[0]):
-        _covariance(sums[i], covariance)
-        values = _eigenvalues(covariance)
+        covariance_of(sums[i], covariance)
+        values = eigenvalues(covariance)
         for axis in range(3):
             found[i, axis] = math.sqrt(max(values[axis], 0.0))
 
@@ -262,7 +262,7 @@ def _root(parents: _Integers, cell: int) -> int:
 
 
 @kernel
-def _beside(level: CellLevel, code: int, side: int) -> int:
+def beside(level: CellLevel, code: int, side: int) -> int:
     """The cell on one of 27 sides, of which 13 is the cell itself, or −1."""
     ys, zs = _X << 1, _X << 2
     x = _stepped(code & _X, side % 3 - 1, _X, 1)
@@ -292,7 +292,8 @@ def _cell_of(level: CellLevel, code: int) -> int:
 
 
 @kernel
-def _add_around(level: CellLevel, code: int, total: _Floats) -> None:
+def add_around(level: CellLevel, code: int, total: _Floats) -> None:
+    """Add the sums of the 27 cubes around a cube to a total."""
     ys, zs = _X << 1, _X << 2
     x0, y0, z0 = code & _X, code & ys, code & zs
     for i in range(-1, 2):
@@ -320,7 +321,7 @@ def _stepped(value: int, step: int, mask: int, one: int) -> int:
 
 
 @kernel
-def _covariance(sums: _Floats, covariance: _Floats) -> None:
+def covariance_of(sums: _Floats, covariance: _Floats) -> None:
     """The spread of points from their sums; the upper triangle only."""
     count = max(sums[COUNT], 1.0)
     mx, my, mz = sums[SUM_X] / count, sums[SUM_Y] / count, sums[SUM_Z] / count
@@ -333,7 +334,7 @@ def _covariance(sums: _Floats, covariance: _Floats) -> None:
 
 
 @kernel
-def _eigenvalues(a: _Floats) -> tuple[float, float, float]:
+def eigenvalues(a: _Floats) -> tuple[float, float, float]:
     """Those of a symmetric matrix, falling, by Cardano's formula in its trigonometric form."""
     p1 = a[0, 1] ** 2 + a[0, 2] ** 2 + a[1, 2] ** 2
     q = (a[0, 0] + a[1, 1] + a[2, 2]) / 3
@@ -352,7 +353,7 @@ def _eigenvalues(a: _Floats) -> tuple[float, float, float]:
 
 
 @kernel
-def _eigenvector(a: _Floats, value: float) -> tuple[float, float, float]:
+def eigenvector(a: _Floats, value: float) -> tuple[float, float, float]:
     """Unit vector across the rows of a − value · 1: the longest cross product of two of them."""
     x0, y0, z0 = a[0, 0] - value, a[0, 1], a[0, 2]
     x1, y1, z1 = a[0, 1], a[1, 1] - value, a[1, 2]

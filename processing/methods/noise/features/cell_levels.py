@@ -52,7 +52,20 @@ def cell_levels(
     sums, kept = np.zeros((used, SUMS)), np.empty(used, np.int64)
     point_sums_kernel(cells.local_xyz, is_sure, positions, sums)
     kept[positions] = codes
-    levels, numbers = [_level_of(kept, sums, cells.cell_m)], [positions]
+    levels, parents = levels_above(level_of(kept, sums, cells.cell_m), count)
+    return levels, [positions, *parents]
+
+
+def levels_above(finest: CellLevel, count: int) -> tuple[list[CellLevel], list[NDArray[np.int32]]]:
+    """Levels 0 … count − 1 over finest cells.
+
+    Returns
+    -------
+    levels : list of CellLevel
+    numbers : list of (…,) int32
+        For each cell of a level but the last, the one of the next that holds it.
+    """
+    levels, numbers = [finest], []
     for _ in range(1, count):
         below = levels[-1]
         parents, positions = below.codes >> _CHILD_BITS, np.empty(below.codes.size, np.int32)
@@ -60,12 +73,13 @@ def cell_levels(
         sums, kept = np.zeros((used, SUMS)), np.empty(used, np.int64)
         cell_sums_kernel(below.sums, positions, sums)
         kept[positions] = parents
-        levels.append(_level_of(kept, sums, below.side * 2))
+        levels.append(level_of(kept, sums, below.side * 2))
         numbers.append(positions)
     return levels, numbers
 
 
-def _level_of(codes: _Integers, sums: _Floats, side: float) -> CellLevel:
+def level_of(codes: _Integers, sums: _Floats, side: float) -> CellLevel:
+    """A level of cells, rising, that can be found by their codes."""
     size = 1 << max(_LEAST_BITS, int(_SLOTS_PER_CELL * max(codes.size, 1)).bit_length())
     slots = np.full(size, -1, np.int32)
     slots_kernel(codes, slots)

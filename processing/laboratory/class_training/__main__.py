@@ -1,0 +1,168 @@
+"""Makes the models of ``classify`` anew and says what they reach.
+
+``python -m processing.laboratory.class_training``
+
+Needs the extra ``train``. Streets of ``--seeds`` and, recorded by heads of any height, tilt and
+rate, of ``--mounted`` are learnt from, each head thinned, shaken and brightened in ``--variants``
+ways; those of ``--check`` are not. ``--deliveries`` are folders with truths that are only scored.
+``--score-only`` leaves the models as they are. The same seeds give the same models.
+"""
+
+from __future__ import annotations
+
+import argparse
+import itertools
+import sys
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.core.monitor import SilentMonitor
+from processing.core.output_streams import write_every_character
+from processing.laboratory.accuracy.road.road_scenes import (
+    RoadScene,
+    given_scenes,
+    mounted_scenes,
+    simulated_scenes,
+    worn_options_of,
+)
+from processing.laboratory.class_training.examples import (
+    LabelledCells,
+    labelled_cells,
+    labels_of_drive,
+)
+from processing.laboratory.class_training.fitting import ForestSize, fit_forest
+from processing.methods.classes.class_trees import class_shares
+from processing.methods.classes.drive_classes import AGAIN, ALONE, MODELS, classify_drive
+from processing.methods.noise.tree_files import Forest, write_forest
+from processing.scoring.class_scores import class_score
+from processing.scoring.confusion_matrix import ConfusionMatrix
+from resources import path_of
+
+_ALONE_SIZE = ForestSize(rounds=24, leaves=20, rate=0.25)
+_AGAIN_SIZE = ForestSize(rounds=24, leaves=16, rate=0.25)
+_CELLS = 500
+"""Of each class and variant that are learnt from."""
+
+_FOLDS = 2
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Make the models, or only score those that are there."""
+    options = _parser().parse_args(arguments)
+    if not options.score_only:
+        _make(options)
+    checked = simulated_scenes(_seeds(options.check), options.length)
+    for scene in itertools.chain(checked, given_scenes(options.deliveries)):
+        _say(_score_line(scene))
+    return 0
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="python -m processing.laboratory.class_training")
+    parser.add_argument("--seeds", default="3000-3017", help="streets that are learnt from")
+    parser.add_argument("--worn", default="3030-3035", help="worn ones, by drifting trajectories")
+    parser.add_argument("--mounted", default="3040-3051", help="those by heads of any mounting")
+    parser.add_argument("--check", default="3100-3105", help="streets that are only scored")
+    parser.add_argument("--length", type=float, default=60.0, help="m of each")
+    parser.add_argument("--variants", type=int, default=2, help="of each head")
+    parser.add_argument("--deliveries", type=Path, nargs="*", default=[])
+    parser.add_argument("--score-only", action="store_true")
+    return parser
+
+
+def _make(options: argparse.Namespace) -> None:
+    rng = np.random.default_rng(0)
+    folds: list[list[LabelledCells]] = [[] for _ in range(_FOLDS)]
+    for number, scene in enumerate(_learnt(options)):
+        for one in labelled_cells(scene, options.variants, number):
+            folds[number % _FOLDS].append(one)
+        _say(f"learnt from {scene.name}: {sum(map(len, folds))} variants")
+    samples = [[one.sample(_CELLS, rng)[0:2] for one in fold] for fold in folds]
+    everything = [
+        (one.cells.rows[chosen], one.codes[chosen], stands)
+        for fold, some in zip(folds, samples, strict=True)
+        for one, (chosen, stands) in zip(fold, some, strict=True)
+    ]
+    own = _fit(everything, _ALONE_SIZE)
+    _write(own, ALONE, everything[0][0].shape[1])
+    again = []
+    for fold in range(_FOLDS):
+        others = [
+            (one.cells.rows[chosen], one.codes[chosen], stands)
+            for other in range(_FOLDS)
+            if other != fold
+            for one, (chosen, stands) in zip(folds[other], samples[other], strict=True)
+        ]
+        judge = _fit(others, _ALONE_SIZE)
+        for one, (chosen, stands) in zip(folds[fold], samples[fold], strict=True):
+            shares = class_shares(judge, one.cells.rows, SilentMonitor())
+            rows = one.cells.with_neighbours(_in_order(shares, judge, own))[chosen]
+            again.append((rows, one.codes[chosen], stands))
+    _write(_fit(again, _AGAIN_SIZE), AGAIN, again[0][0].shape[1])
+
+
+def _learnt(options: argparse.Namespace) -> Iterator[RoadScene]:
+    return itertools.chain(
+        simulated_scenes(_seeds(options.seeds), options.length),
+        simulated_scenes(_seeds(options.worn), options.length, worn_options_of),
+        mounted_scenes(_seeds(options.mounted), options.length),
+    )
+
+
+_Part = tuple[NDArray[np.float32], NDArray[np.uint8], NDArray[np.float64]]
+
+
+def _fit(parts: Sequence[_Part], size: ForestSize) -> Forest:
+    rows, codes, stands = (np.concatenate(column) for column in zip(*parts, strict=True))
+    _say(f"fitting {len(rows):,} rows of {rows.shape[1]}")
+    return fit_forest(rows, codes, stands, size)
+
+
+def _in_order(shares: NDArray[np.float32], judge: Forest, wanted: Forest) -> NDArray[np.float32]:
+    """Shares in the order of another forest's classes; none of a class that it didn't meet."""
+    ordered = np.zeros((shares.shape[0], wanted.codes.size), np.float32)
+    known = {code: column for column, code in enumerate(judge.codes.tolist())}
+    for column, code in enumerate(wanted.codes.tolist()):
+        if code in known:
+            ordered[:, column] = shares[:, known[code]]
+    return ordered
+
+
+def _write(forest: Forest, name: str, columns: int) -> None:
+    path = path_of("models") / Path(MODELS).name / name
+    path.parent.mkdir(exist_ok=True)
+    write_forest(forest, path, columns)
+    _say(f"{path.name}: {path.stat().st_size / 1e3:,.0f} kB")
+
+
+def _score_line(scene: RoadScene) -> str:
+    said, true = [], []
+    for drive in scene.drives:
+        codes, confidence = np.zeros(drive.count, np.uint8), np.zeros(drive.count, np.float32)
+        scratch = drive.folder / "classes"
+        scratch.mkdir()
+        classify_drive(drive, codes, confidence, scratch, SilentMonitor())
+        said.append(codes)
+        true.append(labels_of_drive(drive, scene.delivery / "truth"))
+    score = class_score(ConfusionMatrix.of(np.concatenate(true), np.concatenate(said)))
+    figures = " ".join(f"{one.id} {one.value:.3f}" for one in score.figures)
+    classes = " ".join(f"{one.id} {one.counts.f_measure:.2f}" for one in score.classes)
+    return f"{scene.name}: {figures}; F {classes}"
+
+
+def _seeds(text: str) -> range:
+    first, _, last = text.partition("-")
+    return range(int(first), int(last or first) + 1) if first else range(0)
+
+
+def _say(line: str) -> None:
+    sys.stdout.write(f"{line}\n")
+    sys.stdout.flush()
+
+
+if __name__ == "__main__":
+    write_every_character()
+    raise SystemExit(main())

@@ -1,0 +1,125 @@
+"""Examples for the trees of classes: cells of simulated streets, thinned, shaken, brightened."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.random import Generator
+from numpy.typing import NDArray
+
+from processing.core.arrays import Integers
+from processing.core.monitor import SilentMonitor
+from processing.image.images_of_drives import image_of
+from processing.laboratory.accuracy.road.road_scenes import RoadScene
+from processing.methods.classes.drive_classes import DriveSurroundings
+from processing.methods.classes.features import ClassCells
+from processing.recording.columns.source_order import sources_of
+from processing.recording.drive import Drive
+
+_NOISE = (7, 18)
+_CODES = 256
+_MOST_POINTS = 1_500_000
+"""Of a variant: what the features of one take is then some 2 GB."""
+
+_THINNINGS = ((1, 1), (1, 2), (2, 1), (2, 2), (3, 2), (4, 2), (3, 3), (5, 3))
+"""Every so many rows and points of a row that are kept: from the scanners' own densities down to a
+fifteenth, as slower scanners and faster cars give."""
+
+_NOISES_M = (0.0, 0.003, 0.008, 0.015)
+"""Standard deviations of what is added along easting, northing and height: phase scanners to
+handheld ones."""
+
+_LEAST_GAIN, _MOST_GAIN, _OFFSET = 0.5, 1.6, 0.5
+"""Contrast, and doublings by which all intensities are brighter: scanners count light as they
+please."""
+
+
+@dataclass(frozen=True)
+class LabelledCells:
+    """Cells whose class is known.
+
+    Attributes
+    ----------
+    cells : ClassCells
+    codes : (c,) uint8
+        The class of most points of each; 0 where most are noise.
+    """
+
+    cells: ClassCells
+    codes: NDArray[np.uint8]
+
+    def sample(self, most: int, rng: Generator) -> tuple[Integers, NDArray[np.float64]]:
+        """Some cells of each class, and for how many each stands."""
+        chosen, weights = [], []
+        for code in np.unique(self.codes[self.codes > 0]):
+            of_class = np.flatnonzero(self.codes == code)
+            some = of_class
+            if of_class.size > most:
+                some = np.sort(rng.choice(of_class, most, replace=False))
+            chosen.append(some)
+            weights.append(np.full(some.size, of_class.size / some.size))
+        if not chosen:
+            return np.zeros(0, np.int64), np.zeros(0)
+        return np.concatenate(chosen), np.concatenate(weights)
+
+
+def labelled_cells(scene: RoadScene, variants: int, seed: int) -> Iterator[LabelledCells]:
+    """Cells of each head of a street, as it was recorded or thinned and shaken."""
+    truth = scene.delivery / "truth"
+    for number, drive in enumerate(scene.drives):
+        labels = labels_of_drive(drive, truth)
+        around = DriveSurroundings.of(drive, SilentMonitor())
+        for variant in range(variants):
+            rng = np.random.default_rng((seed, number, variant))
+            yield _variant(around, labels, rng)
+
+
+def labels_of_drive(drive: Drive, truth: Path) -> NDArray[np.uint8]:
+    """(n,) the true classes of a drive's points, from ``FILE.labels.npy`` of its files."""
+    files, indices = sources_of(
+        drive.columns, drive.info.source_runs, 0, drive.count, sources=len(drive.info.sources)
+    )
+    labels = np.zeros(drive.count, np.uint8)
+    for number, source in enumerate(drive.info.sources):
+        own = files == number
+        labels[own] = np.load(truth / f"{Path(source.path).stem}.labels.npy")[indices[own]]
+    return labels
+
+
+def codes_of_cells(cells: ClassCells, labels: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    """(c,) the class of most of each cell's points; 0 where most are noise or unknown."""
+    count = cells.rows.shape[0]
+    votes = np.bincount(cells.cell_of.astype(np.int64) * _CODES + labels, minlength=count * _CODES)
+    codes: NDArray[np.uint8] = votes.reshape(count, _CODES).argmax(axis=1).astype(np.uint8)
+    codes[np.isin(codes, _NOISE)] = 0
+    return codes
+
+
+def _variant(around: DriveSurroundings, labels: NDArray[np.uint8], rng: Generator) -> LabelledCells:
+    drive = around.drive
+    points = _thinned(drive, rng.choice(np.array(_THINNINGS)))
+    if points.size > _MOST_POINTS:
+        first = int(rng.integers(points.size - _MOST_POINTS))
+        points = points[first : first + _MOST_POINTS]
+    local = drive.xyz(points) - around.plan.origin
+    noise_m = float(rng.choice(np.array(_NOISES_M)))
+    local += rng.normal(0.0, 1.0, local.shape) * noise_m
+    intensity = np.asarray(drive.columns["intensity"][points], np.float64)
+    gain, offset = rng.uniform(_LEAST_GAIN, _MOST_GAIN), rng.normal(0.0, _OFFSET)
+    relative = (intensity + 1) / (around.ground_intensity + 1)
+    changed = (around.ground_intensity + 1) * relative**gain * 2**offset - 1
+    bright = np.clip(np.rint(changed), 0, np.iinfo(np.uint16).max).astype(np.uint16)
+    cells = around.cells_of(local, bright, SilentMonitor())
+    return LabelledCells(cells, codes_of_cells(cells, labels[points]))
+
+
+def _thinned(drive: Drive, steps: Sequence[int] | NDArray[np.int64]) -> Integers:
+    """Every so many rows, and of these every so many points."""
+    starts = np.asarray(image_of(drive, drive.pixel_kind).row_starts)
+    rows = np.repeat(np.arange(starts.size - 1), np.diff(starts))
+    places = np.arange(drive.count) - starts[rows]
+    every_row, every_point = int(steps[0]), int(steps[1])
+    return np.flatnonzero((rows % every_row == 0) & (places % every_point == 0))

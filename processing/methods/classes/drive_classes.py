@@ -1,0 +1,194 @@
+"""The classes of a whole drive, a part of space at a time.
+
+1. Points are taken together in cells of 10 cm and described by what lies around them at several
+   sizes (:mod:`processing.methods.classes.features`).
+2. Trees say how likely each class is for a cell.
+3. Trees that see this of the cells around as well say it again: what hangs together is one thing.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.core.arrays import Floats, Integers
+from processing.core.kernels import kernel
+from processing.core.monitor import Monitor, PartMonitor
+from processing.methods.classes.class_trees import class_shares
+from processing.methods.classes.features import REACH_M, ClassCells, class_cells
+from processing.methods.noise.tiles_of_space import TiledCloud
+from processing.methods.noise.tree_files import Forest, read_forest
+from processing.methods.road.objects.ground_heights import GROUND_CELLS, ground_heights
+from processing.methods.road.objects.sparse_plan import SparsePlan, cell_of, plan_of
+from processing.recording.columns.counted_classes import class_columns
+from processing.recording.drive import Drive
+from resources import path_of
+
+MODELS = "models/classes"
+ALONE, AGAIN = "alone.onnx", "again.onnx"
+
+_TILE_M = 4.0
+"""Side of a tile: about as wide as what is looked at around a point."""
+
+_POINTS_PER_PART = 1_000_000
+"""Points in memory at a time, with those around: some 700 MB."""
+
+_GROUND, _SORTED = 0.05, 0.15
+"""Of the progress: when the ground is known, and when points lie in tiles."""
+
+_ON_GROUND_M = 0.3
+"""Height up to which points tell how bright the ground is: curbs and grass count."""
+
+_SAMPLE = 100_000
+"""Points that the ground's brightness is taken from."""
+
+_MOST_STEPS = 6.0
+"""Doublings of the intensity that are told apart: a retro-reflector is some 2⁵ times as bright."""
+
+
+@dataclass(frozen=True)
+class DriveSurroundings:
+    """What is known of a drive as a whole before its points are looked at.
+
+    Attributes
+    ----------
+    drive : Drive
+    plan : SparsePlan
+    ground : (…,) float32
+        m about the plan's origin, by the plan's cells.
+    ground_intensity : float
+        Median of the points on the ground.
+    """
+
+    drive: Drive
+    plan: SparsePlan
+    ground: NDArray[np.float32]
+    ground_intensity: float
+
+    @classmethod
+    def of(cls, drive: Drive, monitor: Monitor) -> DriveSurroundings:
+        """Find the ground of a drive and how bright it is."""
+        plan = plan_of([(drive.info.lowest, drive.info.highest)])
+        ground = ground_heights([drive], plan, monitor).reshape(-1)
+        bare = cls(drive, plan, ground, 0.0)
+        points = np.arange(0, drive.count, max(1, drive.count // _SAMPLE))
+        heights = bare.heights_of(drive.xyz(points) - plan.origin)
+        intensity = np.asarray(drive.columns["intensity"][points], np.float64)
+        on_ground = np.abs(heights) < _ON_GROUND_M
+        known = intensity[on_ground] if on_ground.any() else intensity
+        return cls(drive, plan, ground, float(np.median(known)) if known.size else 0.0)
+
+    def heights_of(self, local: Floats) -> Floats:
+        """(n,) m above the ground; 0 where none is known near by."""
+        heights = np.empty(len(local))
+        heights_kernel(np.ascontiguousarray(local), self.plan.table, self.ground, heights)
+        return heights
+
+    def cells_of(
+        self, local: Floats, intensity: NDArray[np.uint16], monitor: Monitor
+    ) -> ClassCells:
+        """Cells of some points with their features; ``local`` m about the plan's origin."""
+        bright = (intensity.astype(np.float32) + 1) / np.float32(self.ground_intensity + 1)
+        steps = np.clip(np.log2(bright), -_MOST_STEPS, _MOST_STEPS)
+        return class_cells(local, self.heights_of(local), steps, monitor)
+
+
+@dataclass(frozen=True)
+class FoundClasses:
+    """What each point is likely to be.
+
+    Attributes
+    ----------
+    codes : (n,) uint8
+        0 where nothing was asked.
+    confidence : (n,) float32
+        The share of its like that are of this class, 0 to 1.
+    """
+
+    codes: NDArray[np.uint8]
+    confidence: NDArray[np.float32]
+
+
+def classify_drive(
+    drive: Drive,
+    codes: NDArray[np.uint8],
+    confidence: NDArray[np.float32],
+    scratch: Path,
+    monitor: Monitor,
+) -> None:
+    """Find the class of every point that isn't known to be noise.
+
+    Parameters
+    ----------
+    codes : (n,) uint8
+        Zero; gets the classes.
+    confidence : (n,) float32
+        Zero; gets how sure they are.
+    scratch : Path
+        A folder for files meanwhile; the caller deletes it.
+
+    Raises
+    ------
+    NoSpace, Cancelled
+    """
+    around = DriveSurroundings.of(drive, PartMonitor(monitor, 0.0, _GROUND))
+    classes = class_columns(drive.columns)
+
+    def read(points: Integers | slice) -> Floats:
+        drive.columns.give_back()
+        return drive.xyz(points)
+
+    sorting = PartMonitor(monitor, _GROUND, _SORTED)
+    cloud = TiledCloud(read, drive.count, scratch / "order", _TILE_M, monitor=sorting)
+    rest, done = PartMonitor(monitor, _SORTED, 1.0), 0
+    for part in cloud.parts(REACH_M, _POINTS_PER_PART):
+        rest.check()
+        rest.report(done / cloud.count)
+        points = np.concatenate([part.own, part.around])
+        xyz = drive.xyz(points)
+        is_asked = ~classes.are_noise(points) & np.isfinite(xyz).all(axis=1)
+        if is_asked.any():
+            intensity = np.asarray(drive.columns["intensity"][points[is_asked]])
+            local = xyz[is_asked] - around.plan.origin
+            found = classes_of_cells(around.cells_of(local, intensity, rest), rest)
+            own = is_asked[: part.own.size]
+            asked = part.own[own]
+            codes[asked] = found.codes[: asked.size]
+            confidence[asked] = found.confidence[: asked.size]
+        done += part.own.size
+
+
+def classes_of_cells(cells: ClassCells, monitor: Monitor) -> FoundClasses:
+    """The classes of the points of cells, by the models that come with the program."""
+    alone, again = _forest(ALONE), _forest(AGAIN)
+    shares = class_shares(alone, cells.rows, monitor)
+    shares = class_shares(again, cells.with_neighbours(shares), monitor)
+    best = shares.argmax(axis=1)
+    sure = np.take_along_axis(shares, best[:, None], axis=1)[:, 0]
+    return FoundClasses(again.codes[best][cells.cell_of], sure[cells.cell_of])
+
+
+@kernel
+def heights_kernel(
+    local: Floats, table: NDArray[np.int32], ground: NDArray[np.float32], heights: Floats
+) -> None:
+    """Heights of points above the ground of their cells."""
+    for point in range(len(local)):
+        cell = cell_of(local[point, 0], local[point, 1], table, GROUND_CELLS)
+        height = local[point, 2] - ground[cell] if cell >= 0 else np.nan
+        heights[point] = height if np.isfinite(height) else 0.0
+
+
+@cache
+def _forest(name: str) -> Forest:
+    return read_forest(path_of(f"{MODELS}/{name}"))
+
+
+def warm_up() -> None:
+    """Compile the kernel."""
+    table, ground = np.zeros((1, 1), np.int32), np.zeros(GROUND_CELLS**2, np.float32)
+    heights_kernel(np.zeros((1, 3)), table, ground, np.empty(1))

@@ -1,0 +1,122 @@
+"""The tool CLASSIFY: what every point belongs to, from ground and grass to signs and wires."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.core.errors import report_as_user_error
+from processing.core.monitor import Monitor, PartMonitor
+from processing.core.owned_files import remove_folder
+from processing.core.parameters import ratio
+from processing.core.scratch_arrays import scratch_array
+from processing.core.text import Text
+from processing.methods.classes.drive_classes import classify_drive
+from processing.recording.columns.columns import ColumnWriter
+from processing.recording.columns.ordering import chunk_ranges, read_chunk
+from processing.recording.drive import Drive
+from processing.scoring.scorers import CLASS_SCORER
+from processing.tools.tool import FinishedColumns, Needs, OutputColumn, PerDrive, Tool
+
+_CLASS, _CONFIDENCE = "classification", "confidence"
+_FINDING = 0.95
+_OTHER = 1
+
+CLASSES = (2, 3, 4, 5, 6, 11, 14, 64, 65, 66, 67)
+"""Ground, grass, low plants, crowns, buildings, roads, wires, what moves, signs, poles, curbs."""
+
+
+@dataclass(frozen=True)
+class ClassifyParameters:
+    """How sure a class must be."""
+
+    least_confidence: float = ratio(
+        0.0,
+        low=0.0,
+        high=1.0,
+        name=Text("Least confidence", "信頼度の下限"),
+        explanation=Text(
+            "Points whose class is less likely than this become “other” (1).",
+            "クラスの信頼度がこの値より低い点は「その他」（1）とします。",
+        ),
+    )
+
+
+def mark_classes(
+    drive: Drive, parameters: ClassifyParameters, into: Path, points_at_once: int, monitor: Monitor
+) -> FinishedColumns:
+    """The class of every point and how sure it is; noise keeps its class.
+
+    Parameters
+    ----------
+    into : Path
+        Where the columns come to lie.
+    points_at_once : int
+        Not asked: what is in memory at a time is part of the method.
+
+    Raises
+    ------
+    NoSpace
+        The disk can't hold the columns and some 20 bytes a point meanwhile.
+    """
+    del points_at_once
+    scratch = into / "scratch"
+    with report_as_user_error(into):
+        scratch.mkdir()
+        codes = scratch_array(scratch / "codes", np.uint8, drive.count)
+        sure = scratch_array(scratch / "confidence", np.float32, drive.count)
+        if drive.count:
+            classify_drive(drive, codes, sure, scratch, PartMonitor(monitor, 0.0, _FINDING))
+        _write(drive, codes, sure, parameters.least_confidence, into, monitor)
+        remove_folder(scratch)
+    return FinishedColumns(into, (_CLASS, _CONFIDENCE), drive.count)
+
+
+def _write(
+    drive: Drive,
+    codes: NDArray[np.uint8],
+    sure: NDArray[np.float32],
+    least: float,
+    into: Path,
+    monitor: Monitor,
+) -> None:
+    with ColumnWriter(into) as writer:
+        writer.append({_CLASS: np.empty(0, np.uint8), _CONFIDENCE: np.empty(0, np.float32)})
+        for start, stop in chunk_ranges(drive.count):
+            monitor.check()
+            found, confidence = np.array(codes[start:stop]), np.array(sure[start:stop])
+            found[(found > 0) & (confidence < least)] = _OTHER
+            if drive.columns.has(_CLASS):
+                delivered = read_chunk(drive.folder, _CLASS, start, stop)
+                found = np.where(found > 0, found, delivered)
+            writer.append({_CLASS: found, _CONFIDENCE: confidence})
+
+
+CLASSIFY = Tool(
+    id="classify",
+    name=Text("Classes", "点群の分類"),
+    explanation=Text(
+        "Gives every point a class with a confidence: ground (2), grass (3), low plants (4), "
+        "crowns (5), buildings (6), roads (11), wires (14), vehicles and people (64), signs (65), "
+        "poles and trunks (66), curbs (67), other (1). Noise keeps its class. It asks for neither "
+        "trajectory nor rows.",
+        "各点にクラスと信頼度を付けます。地面（2）、草地（3）、低木（4）、樹冠（5）、建物（6）、"
+        "路面（11）、電線（14）、移動体（64）、標識（65）、柱状物・幹（66）、縁石（67）、その他（1）。"
+        "ノイズのクラスはそのままです。走行軌跡もスキャンの並びも必要ありません。",
+    ),
+    group=Text("Points", "点群"),
+    needs=Needs.POINTS,
+    parameters=ClassifyParameters,
+    method=PerDrive(
+        mark_classes,
+        outputs=(
+            OutputColumn(_CLASS, "uint8", 1, Text("Class", "クラス")),
+            OutputColumn(_CONFIDENCE, "float32", 1, Text("Confidence", "信頼度")),
+        ),
+    ),
+    gives_classes=(_OTHER, *CLASSES),
+    scorer=CLASS_SCORER,
+)
