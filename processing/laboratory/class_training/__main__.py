@@ -62,10 +62,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(prog="python -m processing.laboratory.class_training")
-    parser.add_argument("--seeds", default="3000-3017", help="streets that are learnt from")
-    parser.add_argument("--worn", default="3030-3035", help="worn ones, by drifting trajectories")
-    parser.add_argument("--mounted", default="3040-3051", help="those by heads of any mounting")
-    parser.add_argument("--check", default="3100-3105", help="streets that are only scored")
+    parser.add_argument("--seeds", default="3000-3011", help="streets that are learnt from")
+    parser.add_argument("--worn", default="3030-3033", help="worn ones, by drifting trajectories")
+    parser.add_argument("--mounted", default="3040-3049", help="those by heads of any mounting")
+    parser.add_argument("--check", default="3100-3103", help="streets that are only scored")
     parser.add_argument("--length", type=float, default=60.0, help="m of each")
     parser.add_argument("--variants", type=int, default=2, help="of each head")
     parser.add_argument("--deliveries", type=Path, nargs="*", default=[])
