@@ -17,6 +17,9 @@ from processing.scoring.point_scores import (
 )
 from processing.scoring.reliability import share_of
 
+_OTHER = 1
+"""What belongs to no class: the thesis leaves it out of its evaluation (section 4.2)."""
+
 NOT_KNOWN = 0
 """Points whose true class nobody gave; what a tool calls them is neither right nor wrong."""
 
@@ -24,7 +27,8 @@ NOT_KNOWN = 0
 def class_score(counts: ConfusionMatrix) -> PointScore:
     """Precision, recall and F of each class, their mean, and the share of right points.
 
-    The mean is over the classes that the truth has, without noise, which another tool finds.
+    The mean is over the classes that the truth has, without noise, which another tool finds, and
+    without “other”.
     Ground and road surface are also counted as one class, as the thesis has them.
 
     References
@@ -36,7 +40,7 @@ def class_score(counts: ConfusionMatrix) -> PointScore:
     judged = [
         code
         for code, points in zip(known.codes, known.true_counts.tolist(), strict=True)
-        if points and code not in NOISE_CODES
+        if points and code not in NOISE_CODES and code != _OTHER
     ]
     ground = known.against_rest(GROUND_CODES)
     f_of = dict(zip(known.codes, known.f_measure.tolist(), strict=True))

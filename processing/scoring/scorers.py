@@ -63,6 +63,3 @@ TREE_SCORER = FeatureScorer("trees", Text("Street trees", "街路樹"), tree_sco
 POLE_SCORER = FeatureScorer("poles", Text("Poles", "柱状物"), pole_score)
 WIRE_SCORER = FeatureScorer("wires", Text("Wires", "架線"), wire_score)
 VOLUME_SCORER = VolumeScorer("volume", Text("Volumes", "土量"), volume_score)
-
-SCORERS_WITHOUT_TOOL: tuple[Scorer, ...] = (CLASS_SCORER,)
-"""Of results that other programs and persons make; a tool of that id brings its scorer itself."""

@@ -11,7 +11,8 @@ from collections.abc import Mapping
 from processing.core.errors import name_with_type
 from processing.core.text import Text
 from processing.scoring.asked_classes import AskedClass
-from processing.scoring.scorers import SCORERS_WITHOUT_TOOL, Scorer
+from processing.scoring.scorers import Scorer
+from processing.tools.classify import CLASSIFY
 from processing.tools.colour import COLOUR
 from processing.tools.curbs import CURBS
 from processing.tools.ground import GROUND_TOOL
@@ -36,6 +37,7 @@ _DECLARED = (
     WIRES,
     NOISE,
     GROUND_TOOL,
+    CLASSIFY,
     NORMALS,
     SEGMENTS,
     COLOUR,
@@ -75,8 +77,7 @@ def asked_classes() -> Mapping[str, AskedClass]:
 
 def scorers() -> Mapping[str, Scorer]:
     """How each kind of result is scored, by the tool's id; also for results of other programs."""
-    own = {tool.id: tool.scorer for tool in every_tool().values() if tool.scorer is not None}
-    return {**own, **{one.tool: one for one in SCORERS_WITHOUT_TOOL if one.tool not in own}}
+    return {tool.id: tool.scorer for tool in every_tool().values() if tool.scorer is not None}
 
 
 def scorer_of(tool: str) -> Scorer:

@@ -26,6 +26,7 @@ from processing.recording.camera_images.image_store import write_images
 from processing.recording.drive import Drive
 from processing.recording.kinds import ImageKind
 from processing.tools.blocks import JoinedResults, blocks_of
+from processing.tools.classify import CLASSIFY, ClassifyParameters
 from processing.tools.colour import COLOUR, ColourParameters
 from processing.tools.curbs import CURBS
 from processing.tools.ground import GROUND_TOOL, GroundParameters
@@ -68,6 +69,7 @@ IN_SPACE = (
     (NOISE.id, NoiseParameters(method="statistical", neighbours=30)),
     (NOISE.id, NoiseParameters()),
     (GROUND_TOOL.id, GroundParameters()),
+    (CLASSIFY.id, ClassifyParameters()),
     (GROUND_TOOL.id, GroundParameters(method="published", grid_m=2.0)),
     (GROUND_TOOL.id, GroundParameters(method="lowest", tolerance_m=0.1)),
 )

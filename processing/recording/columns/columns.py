@@ -44,6 +44,7 @@ COLUMN_TYPES: Mapping[str, tuple[str, int]] = {
     "truth": ("u1", 1),
     "judged": ("u1", 1),
     "height_above_ground": ("<f4", 1),
+    "confidence": ("<f4", 1),
 }
 """Column name to dtype and values per point."""
 

@@ -1,0 +1,67 @@
+"""Trees of several classes give the shares that other programs read from their file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from processing.core.monitor import SilentMonitor
+from processing.methods.classes.class_trees import class_shares
+from processing.methods.classes.drive_classes import AGAIN, ALONE, MODELS
+from processing.methods.noise.tree_files import Forest, read_forest, write_forest
+from processing.methods.noise.trees import Trees
+from processing.tools.classify import CLASSES
+from resources import path_of
+
+
+@pytest.fixture
+def forest() -> Forest:
+    """Three classes with a tree each: one asks column 0, one column 1, one is a leaf."""
+    trees = Trees(
+        np.array([0, -1, -1, 1, -1, -1, -1], np.int32),
+        np.array([0.5, 2.0, -2.0, 0.25, 1.0, -1.0, 0.5]),
+        np.array([1, 1, 2, 4, 4, 5, 6], np.int32),
+        np.array([2, 1, 2, 5, 4, 5, 6], np.int32),
+        np.array([0, 3, 6], np.int32),
+        0.0,
+    )
+    bases = np.array([-0.5, 0.25, 0.0])
+    return Forest(trees, np.array([0, 1, 2], np.int32), bases, np.array([2, 6, 67], np.uint8))
+
+
+def test_a_share_is_the_softmax_of_the_sums(forest: Forest) -> None:
+    shares = class_shares(forest, np.array([[0.0, 1.0], [1.0, 0.0]], np.float32), SilentMonitor())
+    sums = np.array([[-0.5 + 2.0, 0.25 - 1.0, 0.5], [-0.5 - 2.0, 0.25 + 1.0, 0.5]])
+    wanted = np.exp(sums) / np.exp(sums).sum(axis=1, keepdims=True)
+    np.testing.assert_allclose(shares, wanted, rtol=1e-6)
+
+
+def test_a_file_gives_the_forest_back(forest: Forest, tmp_path: Path) -> None:
+    write_forest(forest, tmp_path / "forest.onnx", 2)
+    again = read_forest(tmp_path / "forest.onnx")
+    assert again.codes.tolist() == [2, 6, 67]
+    assert again.class_of.tolist() == [0, 1, 2]
+    np.testing.assert_array_equal(again.bases, forest.bases)
+    rows = np.random.default_rng(1).random((50, 2)).astype(np.float32)
+    monitor = SilentMonitor()
+    np.testing.assert_array_equal(
+        class_shares(again, rows, monitor), class_shares(forest, rows, monitor)
+    )
+
+
+@pytest.mark.parametrize("name", [ALONE, AGAIN])
+def test_other_programs_read_the_shipped_models_alike(name: str) -> None:
+    import onnxruntime
+
+    path = path_of(f"{MODELS}/{name}")
+    forest = read_forest(path)
+    assert set(forest.codes.tolist()) == {1, *CLASSES}
+    session = onnxruntime.InferenceSession(path)
+    columns = session.get_inputs()[0].shape[1]
+    rows = np.random.default_rng(2).normal(0, 2, (200, columns)).astype(np.float32)
+    labels, shares = session.run(None, {"features": rows})
+    ours = class_shares(forest, rows, SilentMonitor())
+    np.testing.assert_allclose(ours, shares, atol=1e-4)
+    assert (forest.codes[ours.argmax(axis=1)] == labels).mean() > 0.98
