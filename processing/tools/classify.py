@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from processing.core.errors import report_as_user_error
 from processing.core.monitor import Monitor, PartMonitor
@@ -14,7 +13,7 @@ from processing.core.owned_files import remove_folder
 from processing.core.parameters import ratio
 from processing.core.scratch_arrays import scratch_array
 from processing.core.text import Text
-from processing.methods.classes.drive_classes import classify_drive
+from processing.methods.classes.drive_classes import FoundClasses, classify_drive
 from processing.recording.columns.columns import ColumnWriter
 from processing.recording.columns.ordering import chunk_ranges, read_chunk
 from processing.recording.drive import Drive
@@ -70,24 +69,19 @@ def mark_classes(
         sure = scratch_array(scratch / "confidence", np.float32, drive.count)
         if drive.count:
             classify_drive(drive, codes, sure, scratch, PartMonitor(monitor, 0.0, _FINDING))
-        _write(drive, codes, sure, parameters.least_confidence, into, monitor)
+        found = FoundClasses(codes, sure)
+        _write(drive, found, parameters.least_confidence, into, monitor)
         remove_folder(scratch)
     return FinishedColumns(into, (_CLASS, _CONFIDENCE), drive.count)
 
 
-def _write(
-    drive: Drive,
-    codes: NDArray[np.uint8],
-    sure: NDArray[np.float32],
-    least: float,
-    into: Path,
-    monitor: Monitor,
-) -> None:
+def _write(drive: Drive, classes: FoundClasses, least: float, into: Path, monitor: Monitor) -> None:
     with ColumnWriter(into) as writer:
         writer.append({_CLASS: np.empty(0, np.uint8), _CONFIDENCE: np.empty(0, np.float32)})
         for start, stop in chunk_ranges(drive.count):
             monitor.check()
-            found, confidence = np.array(codes[start:stop]), np.array(sure[start:stop])
+            found = np.array(classes.codes[start:stop])
+            confidence = np.array(classes.confidence[start:stop])
             found[(found > 0) & (confidence < least)] = _OTHER
             if drive.columns.has(_CLASS):
                 delivered = read_chunk(drive.folder, _CLASS, start, stop)
