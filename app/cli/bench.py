@@ -11,6 +11,7 @@ from app.settings.language import system_language
 from processing.core.errors import OutOfRange, use_one_of
 from processing.core.text import Text
 from processing.laboratory.bench.case import BenchmarkCase, BenchmarkOptions, Measurement
+from processing.laboratory.bench.cases.extraction_case import measure_extraction
 from processing.laboratory.bench.cases.ground_cases import measure_ground
 from processing.laboratory.bench.cases.image_cases import measure_image, measure_switch
 from processing.laboratory.bench.cases.import_cases import measure_import, measure_import_memory
@@ -22,7 +23,6 @@ from processing.laboratory.bench.cases.review_case import measure_review
 from processing.laboratory.bench.cases.road_case import measure_road
 from processing.laboratory.bench.cases.simulate_case import measure_simulate
 from processing.laboratory.bench.cases.start_case import measure_start
-from processing.laboratory.bench.cases.tree_case import measure_trees
 from processing.laboratory.bench.cases.volume_cases import (
     measure_volume,
     measure_volume_tin,
@@ -50,7 +50,7 @@ CASES: Mapping[str, BenchmarkCase] = {
     "ground": measure_ground,
     "simulate": measure_simulate,
     "road": measure_road,
-    "trees": measure_trees,
+    "extraction": measure_extraction,
     "volume": measure_volume,
     "volume-tin": measure_volume_tin,
     "volume-view": measure_volume_view,

@@ -18,11 +18,6 @@ from processing.laboratory.bench.case import Measurement
 KEPT = "## What the figures mean"
 """From this heading on, the page is written by people, and stays."""
 
-_LATER = (
-    ("Radius outlier removal (0.5 m, 113), against Open3D and PCL", "≥ 20 ×"),
-    ("Statistical outlier removal (k = 113), against Open3D", "≥ 4 ×"),
-    ("All extraction on 3 M points", "≤ 5 s"),
-)
 _HEAD = "| name | what | measured | target | met | behind it |\n|---|---|---|---|---|---|\n"
 _QUIET = 1.0
 """More processes than that before the first benchmark are others."""
@@ -129,7 +124,7 @@ _Json = Mapping[str, Any]  # as JSON gives it
 
 
 def _page_of(runs: Sequence[_Json]) -> str:
-    parts = ["# Benchmarks\n", *map(_section, runs), "## To come\n", _later()]
+    parts = ["# Benchmarks\n", *map(_section, runs)]
     return "\n".join(parts) + "\n"
 
 
@@ -157,11 +152,6 @@ def _line(row: _Json) -> str:
         row["detail"],
     ]
     return "| " + " | ".join(cells) + " |\n"
-
-
-def _later() -> str:
-    lines = "".join(f"| {what} | {target} | comes with the tool |\n" for what, target in _LATER)
-    return f"| what | target | measured |\n|---|---|---|\n{lines}"
 
 
 def _machine() -> str:

@@ -9,6 +9,7 @@ import pytest
 
 from processing.core.text import Text
 from processing.laboratory.bench.case import BenchmarkOptions, Measurement
+from processing.laboratory.bench.cases.extraction_case import measure_extraction
 from processing.laboratory.bench.cases.ground_cases import measure_ground
 from processing.laboratory.bench.cases.image_cases import measure_image, measure_switch
 from processing.laboratory.bench.cases.import_cases import measure_import, measure_import_memory
@@ -18,7 +19,6 @@ from processing.laboratory.bench.cases.peer_cases import measure_normals, measur
 from processing.laboratory.bench.cases.road_case import measure_road
 from processing.laboratory.bench.cases.road_run import StageWatch
 from processing.laboratory.bench.cases.simulate_case import measure_simulate
-from processing.laboratory.bench.cases.tree_case import measure_trees
 from processing.laboratory.bench.cases.volume_cases import (
     measure_volume,
     measure_volume_tin,
@@ -82,11 +82,14 @@ def test_noise_is_compared_with_a_peer_and_the_combined_has_a_time() -> None:
         assert row.target is not None
 
 
-def test_trees_are_measured_on_an_avenue() -> None:
-    (row,) = measure_trees(LITTLE)
-    assert row.name == "trees"
-    assert row.value is not None
-    assert row.value > 0
+def test_each_extractor_and_all_of_them_are_timed_on_an_avenue() -> None:
+    rows = measure_extraction(LITTLE)
+    assert [row.name for row in rows] == ["trees", "signs", "poles", "wires", "extraction"]
+    values = [row.value or 0.0 for row in rows]
+    assert min(values) > 0
+    assert sum(values[:-1]) < values[-1]
+    assert "noise" in rows[-1].detail
+    assert "curbs" in rows[-1].detail
 
 
 def test_curbs_and_gutters_have_times_by_stage_and_length() -> None:

@@ -27,7 +27,6 @@ def test_a_page_says_command_machine_load_and_whether_targets_are_met(tmp_path: 
     assert "| `b` | What b is | 1,234 x | ≤ 2 x | **no** | behind |" in text
     assert "| `c` | What c is | – | ≤ 2 x | – | behind |" in text
     assert "| `d` | What d is | 1.00 x | – | – | behind |" in text
-    assert "comes with the tool" in text
 
 
 def test_a_busy_machine_is_told(tmp_path: Path) -> None:

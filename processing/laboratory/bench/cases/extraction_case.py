@@ -1,0 +1,107 @@
+"""Benchmarks of extraction on a simulated avenue, as for 3 M points: each tool, and their sum."""
+
+from __future__ import annotations
+
+import statistics
+import tempfile
+import time
+from collections.abc import Sequence
+from pathlib import Path
+
+from processing.core.monitor import SilentMonitor
+from processing.core.text import Text
+from processing.laboratory.bench.case import BenchmarkOptions, Measurement
+from processing.laboratory.simulate.requests import StreetRequest
+from processing.laboratory.simulate.streets import simulate_street
+from processing.project.importing.importing import ImportRequest, import_drives
+from processing.recording.drive import Drive
+from processing.tools.registry import TOOLS, extractors
+from processing.tools.run_shares import run_shares
+from processing.tools.runner import run, run_together
+from processing.tools.tool import FinishedColumns
+
+_POINTS, _LENGTH_M = 3_000_000, 80.0
+_MOST_S = {"trees": 1.5, "signs": 1.5, "poles": 1.5, "wires": 1.5}
+"""Curbs and gutters have a benchmark of their own."""
+
+_MOST_OF_ALL_S = 8.0
+_SEED, _LEAST_PULSES, _REPEATS = 11, 300, 3
+_NOISE = "noise"
+
+
+def measure_extraction(options: BenchmarkOptions) -> tuple[Measurement, ...]:
+    """How long noise and each extractor take once an avenue is imported."""
+    share = options.limited(_POINTS) / _POINTS
+    request = StreetRequest(
+        seed=_SEED,
+        length_m=max(10.0, _LENGTH_M * min(1.0, 10 * share)),
+        pulses=0 if share >= 1 else _LEAST_PULSES,
+        avenue=True,
+        images=False,
+    )
+    with tempfile.TemporaryDirectory(prefix="zuka-bench-") as name:
+        folder = Path(name)
+        made = simulate_street(request, folder / "street", SilentMonitor())
+        delivery = ImportRequest(made.points, made.trajectories)
+        drives = [Drive(one) for one in import_drives(delivery, folder / "drives", SilentMonitor())]
+        points = sum(drive.count for drive in drives)
+        seconds: dict[str, float] = {}
+        for tool in (_NOISE, *extractors()):
+            _seconds(tool, drives, folder / tool)  # kernels are compiled
+            times = [
+                _seconds(tool, drives, folder / tool) for _ in range(options.repeats(_REPEATS))
+            ]
+            seconds[tool] = statistics.median(times) * _POINTS / points
+    detail = f"{points:,} points of {len(drives)} heads"
+    rows = [_row(tool, seconds[tool], most, detail) for tool, most in _MOST_S.items()]
+    return (*rows, _row_of_all(seconds, detail))
+
+
+def _row(tool: str, seconds: float, most_s: float, detail: str) -> Measurement:
+    return Measurement(
+        tool,
+        Text(
+            "{tool} along an avenue, as for {points} points",
+            "並木道での{tool}（{points}点に換算）",
+        ).filled(tool=TOOLS[tool].name, points=f"{_POINTS:,}"),
+        seconds,
+        "s",
+        most_s,
+        is_at_most=True,
+        detail=detail,
+        figures={f"{tool}_s": seconds},
+    )
+
+
+def _row_of_all(seconds: dict[str, float], detail: str) -> Measurement:
+    parts = ", ".join(f"{tool} {one:.2f} s" for tool, one in seconds.items())
+    return Measurement(
+        "extraction",
+        Text(
+            "Noise and all extraction along an avenue, as for {points} points",
+            "並木道でのノイズ除去と全抽出（{points}点に換算）",
+        ).filled(points=f"{_POINTS:,}"),
+        sum(seconds.values()),
+        "s",
+        _MOST_OF_ALL_S,
+        is_at_most=True,
+        detail=f"{detail}: {parts}",
+        figures={f"{tool}_s": one for tool, one in seconds.items()},
+    )
+
+
+def _seconds(tool: str, drives: Sequence[Drive], into: Path) -> float:
+    """Of one run on all drives, its columns removed again."""
+    begin = time.perf_counter()
+    results: list[FinishedColumns] = []
+    shares = run_shares(tool, drives, TOOLS[tool].parameters(), SilentMonitor())
+    for number, share in enumerate(shares):
+        folder = into.with_name(f"{into.name}-{number}")
+        if TOOLS[tool].outputs:
+            results.extend(run_together(share.request, share.monitor, into=folder).columns)
+        else:
+            run(share.request, share.monitor, into=folder)
+    passed = time.perf_counter() - begin
+    for one in results:
+        one.remove()
+    return passed
