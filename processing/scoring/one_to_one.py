@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import linear_sum_assignment
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
@@ -54,6 +53,8 @@ def best_pairs(
     of_result, of_truth : (p,) int64
         By rising ``of_truth``.
     """
+    from scipy.optimize import linear_sum_assignment  # a fifth of a second to load
+
     if not len(gains):
         return np.empty(0, np.int64), np.empty(0, np.int64)
     left, right = np.asarray(of_result, np.int64), np.asarray(of_truth, np.int64)

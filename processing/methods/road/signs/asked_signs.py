@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
 from processing.core.arrays import Floats
 from processing.methods.road.signs.initial_positions import FARTHEST_M, InitialPosition
@@ -48,6 +47,8 @@ def asked_signs(
     for row, position in enumerate(positions):
         for column, sign in enumerate(likely):
             costs[row, column] = _cost(sign, position)
+    from scipy.optimize import linear_sum_assignment  # a fifth of a second to load
+
     rows, columns = linear_sum_assignment(np.where(np.isfinite(costs), costs, 1e6))
     found: dict[int, RoadSign] = {
         int(row): likely[column]
