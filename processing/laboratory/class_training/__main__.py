@@ -80,22 +80,20 @@ def _make(options: argparse.Namespace) -> None:
         for one in labelled_cells(scene, options.variants, number):
             folds[number % _FOLDS].append(one)
         _say(f"learnt from {scene.name}: {sum(map(len, folds))} variants")
-    samples = [[one.sample(_CELLS, rng)[0:2] for one in fold] for fold in folds]
-    everything = [
-        (one.cells.rows[chosen], one.codes[chosen], stands)
+    samples = [[one.sample(_CELLS, rng) for one in fold] for fold in folds]
+    parts = [
+        [
+            (one.cells.rows[chosen], one.codes[chosen], stands)
+            for one, (chosen, stands) in zip(fold, some, strict=True)
+        ]
         for fold, some in zip(folds, samples, strict=True)
-        for one, (chosen, stands) in zip(fold, some, strict=True)
     ]
+    everything = list(itertools.chain(*parts))
     own = _fit(everything, _ALONE_SIZE)
     _write(own, ALONE, everything[0][0].shape[1])
     again = []
     for fold in range(_FOLDS):
-        others = [
-            (one.cells.rows[chosen], one.codes[chosen], stands)
-            for other in range(_FOLDS)
-            if other != fold
-            for one, (chosen, stands) in zip(folds[other], samples[other], strict=True)
-        ]
+        others = list(itertools.chain(*parts[:fold], *parts[fold + 1 :]))
         judge = _fit(others, _ALONE_SIZE)
         for one, (chosen, stands) in zip(folds[fold], samples[fold], strict=True):
             shares = class_shares(judge, one.cells.rows, SilentMonitor())

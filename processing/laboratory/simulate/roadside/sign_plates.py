@@ -13,6 +13,7 @@ import numpy as np
 from processing.laboratory.simulate.scene.materials import Material
 from processing.laboratory.simulate.scene.mesh import Floats, TriangleShape
 from processing.laboratory.simulate.scene.things import SectionBuilder, TrueFeature
+from processing.methods.road.signs.sign_shapes import rounded_corners
 
 SIGN = 65
 FRONT_PIECE, BACK_PIECE = 1, 2
@@ -96,24 +97,7 @@ def outline(plate: SignPlate) -> Floats:
         tall = half if plate.shape == "square" else plate.high_m / 2
         corners = [[-half, -tall], [half, -tall], [half, tall], [-half, tall]]
     least = size if plate.shape != "rectangle" else min(size, plate.high_m)
-    return _rounded(np.array(corners), least * _CORNER_SHARE.get(plate.shape, 0.05))
-
-
-def _rounded(corners: Floats, radius: float) -> Floats:
-    before, after = np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0)
-    positions = []
-    for one, previous, following in zip(corners, before, after, strict=True):
-        back = (previous - one) / np.linalg.norm(previous - one)
-        ahead = (following - one) / np.linalg.norm(following - one)
-        half = np.arccos(np.clip(back @ ahead, -1, 1)) / 2
-        middle = (back + ahead) / np.linalg.norm(back + ahead)
-        centre = one + middle * radius / np.sin(half)
-        start = one + back * radius / np.tan(half) - centre
-        end = one + ahead * radius / np.tan(half) - centre
-        turn = np.arctan2(start[0] * end[1] - start[1] * end[0], start @ end)
-        angles = np.arctan2(start[1], start[0]) + np.linspace(0, turn, _ARC)
-        positions.append(centre + radius * np.column_stack([np.cos(angles), np.sin(angles)]))
-    return np.concatenate(positions)
+    return rounded_corners(np.array(corners), least * _CORNER_SHARE.get(plate.shape, 0.05), _ARC)
 
 
 def axes_of(hung: PlateMounting) -> tuple[Floats, Floats, Floats]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from processing.methods.road.logistic import chance_of_logit
 from processing.methods.road.poles.carried import Carried
 from processing.methods.road.poles.shaft_kernels import ARC, FREE, INSIDE, POINTS, SLABS
 from processing.methods.road.poles.shafts import Shaft
@@ -34,9 +35,6 @@ _WIRED = 4.0
 
 _PIPE_M = 0.07
 """Radius of the thickest posts of signs and mirrors, 101.6 mm and a wrap (JIS G 3444)."""
-
-_MOST_LOGIT = 30.0
-"""Guard of the exponential."""
 
 
 class PoleFacts(NamedTuple):
@@ -221,4 +219,4 @@ def chance_of(facts: PoleFacts, *, is_low: bool) -> float:
     """The chance of being a pole, 0 to 1."""
     constant, weights = (_LOW_CONSTANT, _LOW_WEIGHTS) if is_low else (_HIGH_CONSTANT, _HIGH_WEIGHTS)
     logit = constant + sum(weight * fact for weight, fact in zip(weights, facts, strict=True))
-    return 1 / (1 + math.exp(-max(-_MOST_LOGIT, min(_MOST_LOGIT, logit))))
+    return chance_of_logit(logit)

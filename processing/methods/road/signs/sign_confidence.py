@@ -8,11 +8,9 @@ from typing import NamedTuple
 import numpy as np
 
 from processing.core.arrays import Floats
+from processing.methods.road.logistic import chance_of_logit
 from processing.methods.road.signs.plates import Plate
 from processing.methods.road.signs.sign_shapes import RECTANGLE
-
-_MOST_LOGIT = 30.0
-"""Guard of the exponential."""
 
 _LOW_EDGE_M = 1.6
 """Lower edges of signs hang higher (道路標識設置基準 2-2: 1.8 m), those of machines and of boards
@@ -153,4 +151,4 @@ def _across(plate: Plate, along: Floats) -> float:
 def chance_of(facts: SignFacts) -> float:
     """The chance of being a sign, 0 to 1."""
     logit = _CONSTANT + sum(weight * fact for weight, fact in zip(_WEIGHTS, facts, strict=True))
-    return 1 / (1 + math.exp(-max(-_MOST_LOGIT, min(_MOST_LOGIT, logit))))
+    return chance_of_logit(logit)

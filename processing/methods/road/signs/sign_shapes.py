@@ -126,7 +126,7 @@ def outline_of(shape: SignShape) -> Floats:
     corners = sharp_outline_of(shape)
     if len(corners) == 1:
         return corners
-    return _rounded(corners, _CORNER_SHARE * min(shape.size_m, shape.high_m))
+    return rounded_corners(corners, _CORNER_SHARE * min(shape.size_m, shape.high_m), _ARC)
 
 
 def centroid_of(shape: SignShape) -> Floats:
@@ -139,7 +139,8 @@ def centroid_of(shape: SignShape) -> Floats:
     return np.asarray(((corners + ahead) * cross[:, None]).sum(axis=0) / (3 * cross.sum()))
 
 
-def _rounded(corners: Floats, radius: float) -> Floats:
+def rounded_corners(corners: Floats, radius: float, count: int) -> Floats:
+    """The outline of a polygon whose corners are arcs of so many points: (k * count, 2)."""
     before, ahead = np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0)
     places = []
     for one, previous, following in zip(corners, before, ahead, strict=True):
@@ -151,6 +152,6 @@ def _rounded(corners: Floats, radius: float) -> Floats:
         start = one + back * radius / np.tan(half) - centre
         end = one + on * radius / np.tan(half) - centre
         turn = np.arctan2(start[0] * end[1] - start[1] * end[0], start @ end)
-        angles = np.arctan2(start[1], start[0]) + np.linspace(0, turn, _ARC)
+        angles = np.arctan2(start[1], start[0]) + np.linspace(0, turn, count)
         places.append(centre + radius * np.column_stack([np.cos(angles), np.sin(angles)]))
     return np.concatenate(places)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from processing.methods.road.logistic import chance_of_logit
 from processing.methods.road.trees.cone_kernels import TOLERANCE_M
 from processing.methods.road.trees.crowns import Crown, UprightTrunk
 
@@ -40,9 +41,6 @@ is."""
 
 _MOST_NOISE_M = 1.4826 * TOLERANCE_M / 2
 """What is told of the noise where points fill the tolerance about a stem evenly."""
-
-_MOST_LOGIT = 30.0
-"""Guard of the exponential."""
 
 # Learnt by `python -m processing.laboratory.road_training.tree_training` from 1,234 upright things,
 # 165 of them trees, on avenues of seeds 600 to 615 and worn streets of seeds 540, 541, 544 to 547,
@@ -128,4 +126,4 @@ def facts_of(upright: UprightTrunk, crown: Crown) -> TreeFacts:
 def chance_of(facts: TreeFacts) -> float:
     """The chance of being a tree, 0 to 1."""
     logit = sum(weight * fact for weight, fact in zip(WEIGHTS, (1.0, *facts), strict=True))
-    return 1 / (1 + math.exp(-max(-_MOST_LOGIT, min(_MOST_LOGIT, logit))))
+    return chance_of_logit(logit)

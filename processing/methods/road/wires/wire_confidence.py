@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+from processing.methods.road.logistic import chance_of_logit
 from processing.methods.road.wires.spans import WireSpan
 
 _LONGEST_M = 16.0
@@ -18,9 +19,6 @@ _STIFF_M = 0.01
 
 _MOST_BEND = 0.02
 """1/m; half the second derivative of a service drop of 8 m that sags by 0.3 m."""
-
-_MOST_LOGIT = 30.0
-"""Guard of the exponential."""
 
 
 class WireFacts(NamedTuple):
@@ -74,4 +72,4 @@ def facts_of(span: WireSpan) -> WireFacts:
 def chance_of(facts: WireFacts) -> float:
     """The chance of being a wire, 0 to 1."""
     logit = _CONSTANT + sum(weight * fact for weight, fact in zip(_WEIGHTS, facts, strict=True))
-    return 1 / (1 + math.exp(-max(-_MOST_LOGIT, min(_MOST_LOGIT, logit))))
+    return chance_of_logit(logit)
