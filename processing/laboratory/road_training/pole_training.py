@@ -38,7 +38,7 @@ from processing.laboratory.road_training.learned_confidence import (
 from processing.laboratory.road_training.training_streets import training_streets
 from processing.laboratory.simulate.requests import StreetRequest
 from processing.methods.road.objects.column_points import points_about
-from processing.methods.road.objects.sparse_plan import plan_of
+from processing.methods.road.objects.survey import survey_columns
 from processing.methods.road.poles.pole_confidence import PoleFacts, facts_of, is_low
 from processing.methods.road.poles.shaft_kernels import FREE
 from processing.methods.road.poles.shafts import Shaft, find_shafts
@@ -121,8 +121,9 @@ def known_shafts(scenes: Iterator[RoadScene]) -> dict[bool, LabelledThings]:
 
 def _judge_shafts(scene: RoadScene) -> Iterator[tuple[bool, PoleFacts, bool]]:
     monitor = SilentMonitor()
-    plan = plan_of([(drive.info.lowest, drive.info.highest) for drive in scene.drives])
-    shafts = find_shafts(scene.drives, plan, monitor)
+    below, columns = survey_columns(scene.drives, monitor)
+    plan = below.plan
+    shafts = find_shafts(scene.drives, plan, columns, monitor)
     if not shafts:
         return
     truth = read_mapped(scene.truth("poles"))

@@ -28,8 +28,7 @@ from processing.laboratory.road_training.learned_confidence import (
 )
 from processing.laboratory.road_training.pole_training import training_options_of
 from processing.laboratory.road_training.training_streets import training_streets
-from processing.methods.road.objects.ground_heights import ground_heights
-from processing.methods.road.objects.sparse_plan import plan_of
+from processing.methods.road.objects.survey import survey_ground
 from processing.methods.road.wires.spans import spans_of
 from processing.methods.road.wires.wire_confidence import WireFacts, facts_of
 from processing.methods.road.wires.wire_points import wire_points
@@ -61,8 +60,7 @@ def _judge_lines(scene: RoadScene) -> Iterator[tuple[WireFacts, bool, float]]:
     from scipy.spatial import cKDTree
 
     monitor = SilentMonitor()
-    plan = plan_of([(drive.info.lowest, drive.info.highest) for drive in scene.drives])
-    ground = ground_heights(scene.drives, plan, monitor)
+    plan, ground = survey_ground(scene.drives, monitor)
     found = wire_points(scene.drives, plan, ground, _LOWEST_M, monitor)
     true = [one.xyz - plan.origin for one in read_mapped(scene.truth("wires")).features]
     fine = [_every(line) for line in true]

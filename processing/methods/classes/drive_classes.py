@@ -22,8 +22,9 @@ from processing.methods.classes.class_trees import class_shares
 from processing.methods.classes.features import REACH_M, ClassCells, class_cells
 from processing.methods.noise.tiles_of_space import TiledCloud
 from processing.methods.noise.tree_files import Forest, read_forest
-from processing.methods.road.objects.ground_heights import GROUND_CELLS, ground_heights
-from processing.methods.road.objects.sparse_plan import SparsePlan, cell_of, plan_of
+from processing.methods.road.objects.ground_heights import GROUND_CELLS
+from processing.methods.road.objects.sparse_plan import SparsePlan, cell_of
+from processing.methods.road.objects.survey import survey_ground
 from processing.recording.columns.counted_classes import class_columns
 from processing.recording.drive import Drive
 from resources import path_of
@@ -72,8 +73,8 @@ class DriveSurroundings:
     @classmethod
     def of(cls, drive: Drive, monitor: Monitor) -> DriveSurroundings:
         """Find the ground of a drive and how bright it is."""
-        plan = plan_of([(drive.info.lowest, drive.info.highest)])
-        ground = ground_heights([drive], plan, monitor).reshape(-1)
+        plan, heights = survey_ground([drive], monitor)
+        ground = heights.reshape(-1)
         bare = cls(drive, plan, ground, 0.0)
         points = np.arange(0, drive.count, max(1, drive.count // _SAMPLE))
         heights = bare.heights_of(drive.xyz(points) - plan.origin)

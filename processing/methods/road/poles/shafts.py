@@ -11,10 +11,9 @@ from numpy.typing import NDArray
 from processing.core.arrays import Floats, Integers
 from processing.core.monitor import Monitor, PartMonitor
 from processing.methods.road.objects.column_points import ColumnPoints, points_about
-from processing.methods.road.objects.columns import FoundColumns, find_columns
+from processing.methods.road.objects.columns import FoundColumns
 from processing.methods.road.objects.drive_passes import passes_of
 from processing.methods.road.objects.foot import foot_height
-from processing.methods.road.objects.ground_heights import ground_heights
 from processing.methods.road.objects.sparse_plan import SparsePlan
 from processing.methods.road.poles.shaft_kernels import (
     ARC,
@@ -101,17 +100,19 @@ class Shaft:
         return self.radius_m - self.taper * height_m
 
 
-def find_shafts(drives: Sequence[Drive], plan: SparsePlan, monitor: Monitor) -> list[Shaft]:
+def find_shafts(
+    drives: Sequence[Drive], plan: SparsePlan, columns: FoundColumns, monitor: Monitor
+) -> list[Shaft]:
     """All shafts of a survey; many are trunks, posts of fences and edges of walls.
 
     Parameters
     ----------
     plan : SparsePlan
-        Gets the tiles of all points.
+        With the tiles of all points.
+    columns : FoundColumns
+        What stands upright on it.
     """
-    ground = ground_heights(drives, plan, PartMonitor(monitor, 0.0, 0.3))
-    columns = find_columns(drives, plan, ground, PartMonitor(monitor, 0.3, 0.6))
-    gathered = points_about(drives, plan, columns.middles, _ABOUT_M, PartMonitor(monitor, 0.6, 0.9))
+    gathered = points_about(drives, plan, columns.middles, _ABOUT_M, PartMonitor(monitor, 0.0, 0.8))
     found: list[Shaft] = []
     for members in passes_of(drives):
         monitor.check()

@@ -14,7 +14,7 @@ import numpy as np
 from processing.core.arrays import Floats, Integers
 from processing.core.monitor import Monitor, PartMonitor
 from processing.methods.road.objects.column_points import points_about
-from processing.methods.road.objects.sparse_plan import plan_of
+from processing.methods.road.objects.survey import survey_columns
 from processing.methods.road.poles.carried import Carried, carried_of, type_of
 from processing.methods.road.poles.pole_confidence import chance_of, facts_of, is_low
 from processing.methods.road.poles.shaft_kernels import LEVEL_M, POINTS
@@ -94,8 +94,9 @@ def street_poles(drives: Sequence[Drive], monitor: Monitor) -> tuple[StreetPole,
     2. Rails, roofs and crowns about a shaft speak against a pole.
     3. Wires, arms and plates tell its type.
     """
-    plan = plan_of([(drive.info.lowest, drive.info.highest) for drive in drives])
-    shafts = find_shafts(drives, plan, PartMonitor(monitor, 0.0, 0.7))
+    below, columns = survey_columns(drives, PartMonitor(monitor, 0.0, 0.4))
+    plan = below.plan
+    shafts = find_shafts(drives, plan, columns, PartMonitor(monitor, 0.4, 0.7))
     if not shafts:
         return ()
     feet = np.array([one.foot[:2] for one in shafts])

@@ -11,8 +11,9 @@ from scipy.spatial import cKDTree
 
 from processing.core.arrays import Floats, Integers
 from processing.core.monitor import Monitor, PartMonitor
-from processing.methods.road.objects.ground_heights import ground_heights, height_of
-from processing.methods.road.objects.sparse_plan import SparsePlan, plan_of
+from processing.methods.road.objects.ground_heights import height_of
+from processing.methods.road.objects.sparse_plan import SparsePlan
+from processing.methods.road.objects.survey import survey_ground
 from processing.methods.road.signs.piece_kernels import FIRST, FROM
 from processing.methods.road.signs.plate_fit import fit_plates
 from processing.methods.road.signs.plate_groups import plate_groups
@@ -100,8 +101,7 @@ def road_signs(
        each other where one doesn't explain all (:mod:`.plate_fit`).
     4. Which side shines is the face; how well a plate is explained says how sure it is.
     """
-    plan = plan_of([(drive.info.lowest, drive.info.highest) for drive in drives])
-    ground = ground_heights(drives, plan, PartMonitor(monitor, 0.0, 0.3))
+    plan, ground = survey_ground(drives, PartMonitor(monitor, 0.0, 0.3))
     pieces = scan_pieces(drives, plan, ground, PartMonitor(monitor, 0.3, 0.7))
     reaches = np.array([_reach(drive) for drive in drives])
     groups = plate_groups(pieces, reaches, PartMonitor(monitor, 0.7, 0.8))

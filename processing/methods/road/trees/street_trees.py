@@ -16,10 +16,10 @@ from processing.methods.road.objects.column_points import (
     nearest_columns,
     points_about,
 )
-from processing.methods.road.objects.columns import FoundColumns, find_columns
+from processing.methods.road.objects.columns import FoundColumns
 from processing.methods.road.objects.foot import foot_height
-from processing.methods.road.objects.ground_heights import ground_heights
-from processing.methods.road.objects.sparse_plan import SparsePlan, plan_of
+from processing.methods.road.objects.sparse_plan import SparsePlan
+from processing.methods.road.objects.survey import survey_columns
 from processing.methods.road.trees.crown_cells import StandingStems, crown_cells
 from processing.methods.road.trees.crowns import CROWN_M, Crown, CrownShares, UprightTrunk
 from processing.methods.road.trees.rises import followed, rise_of
@@ -127,8 +127,11 @@ def upright_things(
     4. What hangs together above is shared out between trunks, first between all, then between
        those that may be trees' (:mod:`processing.methods.road.trees.crowns`).
     """
-    plan = plan_of([(drive.info.lowest, drive.info.highest) for drive in drives])
-    trunks = _standing_trunks(drives, plan, settings, PartMonitor(monitor, 0.0, 0.8))
+    below, columns = survey_columns(drives, PartMonitor(monitor, 0.0, 0.4))
+    plan = below.plan
+    trunks = _standing_trunks(
+        drives, plan, _joined(columns), settings, PartMonitor(monitor, 0.4, 0.8)
+    )
     if not trunks:
         return ()
     standing = [one.standing for one in trunks]
@@ -186,22 +189,21 @@ def _stems_of(trunks: Sequence[UprightTrunk]) -> StandingStems:
 
 
 def _standing_trunks(
-    drives: Sequence[Drive], plan: SparsePlan, settings: TreeSettings, monitor: Monitor
+    drives: Sequence[Drive],
+    plan: SparsePlan,
+    columns: FoundColumns,
+    settings: TreeSettings,
+    monitor: Monitor,
 ) -> list[_MeasuredTrunk]:
     """What is round and upright among the columns."""
-    ground = ground_heights(drives, plan, PartMonitor(monitor, 0.0, 0.25))
-    found = find_columns(drives, plan, ground, PartMonitor(monitor, 0.25, 0.5))
-    columns = _joined(found)
-    gathered = points_about(
-        drives, plan, columns.middles, _TRUNK_M, PartMonitor(monitor, 0.5, 0.75)
-    )
+    gathered = points_about(drives, plan, columns.middles, _TRUNK_M, PartMonitor(monitor, 0.0, 0.5))
     trunks: list[_MeasuredTrunk] = []
     for number in range(len(columns)):
         monitor.check()
         one = _trunk_at(columns, gathered, number, settings)
         if one is not None and is_round(one.standing.trunk):
             trunks.append(one)
-        monitor.report(0.75 + 0.25 * (number + 1) / len(columns))
+        monitor.report(0.5 + 0.5 * (number + 1) / len(columns))
     return trunks
 
 

@@ -12,8 +12,9 @@ from numpy.typing import NDArray
 from processing.core.arrays import Floats, Integers
 from processing.core.monitor import Monitor, PartMonitor
 from processing.methods.road.objects.drive_passes import passes_of
-from processing.methods.road.objects.ground_heights import ground_heights, height_of
-from processing.methods.road.objects.sparse_plan import SparsePlan, plan_of
+from processing.methods.road.objects.ground_heights import height_of
+from processing.methods.road.objects.sparse_plan import SparsePlan
+from processing.methods.road.objects.survey import survey_ground
 from processing.methods.road.wires.spans import WireSpan, spans_of
 from processing.methods.road.wires.wire_confidence import chance_of, facts_of
 from processing.methods.road.wires.wire_points import WirePoints, wire_points
@@ -94,8 +95,7 @@ def street_wires(
     2. Points on each other's lines are of one piece; pieces are fitted as wires hang, split where
        they are held and joined over gaps.
     """
-    plan = plan_of([(drive.info.lowest, drive.info.highest) for drive in drives])
-    ground = ground_heights(drives, plan, PartMonitor(monitor, 0.0, 0.4))
+    plan, ground = survey_ground(drives, PartMonitor(monitor, 0.0, 0.4))
     seen = _seen_wires(drives, plan, ground, settings, PartMonitor(monitor, 0.4, 0.9))
     is_over = _path_tree(drives, plan)
     wires: list[StreetWire] = []
