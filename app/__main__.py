@@ -6,6 +6,7 @@ import sys
 
 from app.cli.terminal import end_with_status, run_in_terminal
 from app.jobs.error_log import start_log
+from app.loading import load_without_qt
 from processing.core.output_streams import write_every_character
 
 
@@ -19,6 +20,7 @@ def main() -> int:
         return request
 
     def show() -> int:
+        load_without_qt()
         from app.application import run_window
 
         return run_window(request)

@@ -12,6 +12,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from app.cli.terminal import run_in_terminal
+from app.loading import load_without_qt
 from processing.core.output_streams import write_every_character
 
 
@@ -20,6 +21,7 @@ def show_window() -> float:
     run_in_terminal([])  # what the program does before it knows that a window is wanted
 
     # As the program itself: Qt is loaded only now.
+    load_without_qt()
     from PySide6.QtCore import QTimer
 
     from app.application import build_window, make_application

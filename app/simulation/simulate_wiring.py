@@ -1,9 +1,13 @@
-"""Simulations: made in the background, then opened as a project."""
+"""Simulations: made in the background, then opened as a project.
+
+The simulator is loaded when it is asked for; the window shows itself sooner.
+"""
 
 from __future__ import annotations
 
 import shutil
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QObject
 from PySide6.QtGui import QAction
@@ -14,12 +18,12 @@ from app.window.window_parts import WindowParts
 from processing.core.errors import UserError
 from processing.core.monitor import Monitor
 from processing.core.text import Text
-from processing.laboratory.simulate.forecast import Forecast
-from processing.laboratory.simulate.simulate_operation import operation_for, simulate
 from processing.laboratory.simulate.simulated import Simulated
-from processing.laboratory.simulate.simulations import SIMULATIONS
 from processing.project.importing.import_request import ImportRequest
-from widgets.dialogs.simulate import SimulateForm, SimulationRequest
+
+if TYPE_CHECKING:
+    from processing.laboratory.simulate.forecast import Forecast
+    from widgets.dialogs.simulate import SimulateForm, SimulationRequest
 
 
 class Simulations(QObject):
@@ -47,6 +51,8 @@ class Simulations(QObject):
 
     def choose(self) -> None:
         """Show the form."""
+        from widgets.dialogs.simulate import SimulateForm
+
         if self._form is not None:
             self._form.raise_()
             self._form.activateWindow()
@@ -67,6 +73,8 @@ class Simulations(QObject):
         show_manual(self._parts, "simulate.html")
 
     def _on_form_forecast_wanted(self, asked: SimulationRequest) -> None:
+        from processing.laboratory.simulate.simulations import SIMULATIONS
+
         def work(_monitor: Monitor) -> tuple[Forecast, int]:
             forecast = SIMULATIONS[asked.order].forecast(asked.request)
             return forecast, shutil.disk_usage(_there(asked.folder)).free
@@ -76,6 +84,8 @@ class Simulations(QObject):
         self._forecast = self._parts.jobs.start(title, work, lane=JobLane.INTERACTIVE)
 
     def _on_form_simulation_requested(self, asked: SimulationRequest) -> None:
+        from processing.laboratory.simulate.simulate_operation import operation_for, simulate
+
         operation = operation_for(asked.order, asked.request, asked.folder)
 
         def work(monitor: Monitor) -> Simulated:

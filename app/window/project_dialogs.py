@@ -11,13 +11,9 @@ from PySide6.QtWidgets import QDialog, QWidget
 from app.window.window_parts import WindowParts
 from processing.core.text import Language
 from processing.project.project import Project
-from widgets.dialogs.shortcuts import ShortcutsForm
-from widgets.dialogs.simulate import SimulateForm
+from widgets.dialogs.program_dialog import ProgramDialog
 
 Form = TypeVar("Form", bound=QDialog)
-
-_OF_THE_PROGRAM = (ShortcutsForm, SimulateForm)
-"""They act on no project, so they stay when one is closed, with what they have opened."""
 
 
 class ProjectDialogs(QObject):
@@ -73,6 +69,6 @@ class ProjectDialogs(QObject):
 
 def _is_of_the_program(dialog: QDialog) -> bool:
     widget: QWidget | None = dialog
-    while widget is not None and not isinstance(widget, _OF_THE_PROGRAM):
+    while widget is not None and not isinstance(widget, ProgramDialog):
         widget = widget.parentWidget()
     return widget is not None

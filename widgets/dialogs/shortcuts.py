@@ -9,7 +9,6 @@ from pathlib import Path
 from PySide6.QtCore import QSignalBlocker, Qt, Signal
 from PySide6.QtGui import QKeySequence
 from PySide6.QtWidgets import (
-    QDialog,
     QDialogButtonBox,
     QFileDialog,
     QHBoxLayout,
@@ -24,6 +23,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from widgets.dialogs.program_dialog import ProgramDialog
 from widgets.parts.plain_buttons import remove_icons
 
 _NAME, _MENU, _KEYS = range(3)
@@ -78,7 +78,7 @@ KeyCheck = Callable[[str, str], KeyProblem | None]
 """From an action's id and a key to what speaks against it."""
 
 
-class ShortcutsForm(QDialog):
+class ShortcutsForm(ProgramDialog):
     """A form beside the window; what is changed in it holds at once.
 
     Signals

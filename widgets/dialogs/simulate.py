@@ -9,7 +9,6 @@ from typing import Any
 from PySide6.QtCore import QLocale, Qt, Signal
 from PySide6.QtGui import QKeyEvent
 from PySide6.QtWidgets import (
-    QDialog,
     QDialogButtonBox,
     QFileDialog,
     QGridLayout,
@@ -27,6 +26,7 @@ from typing_extensions import override
 from processing.core.text import Language
 from processing.laboratory.simulate.forecast import Forecast
 from processing.laboratory.simulate.simulations import SIMULATIONS
+from widgets.dialogs.program_dialog import ProgramDialog
 from widgets.panels.processing.parameter_form import ParameterForm
 from widgets.parts.density_view import DensityView
 from widgets.parts.plain_buttons import remove_icons
@@ -54,7 +54,7 @@ class SimulationRequest:
     folder: Path
 
 
-class SimulateForm(QDialog):
+class SimulateForm(ProgramDialog):
     """A form beside the window; the window stays usable while it is open.
 
     Parameters

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 import time
@@ -11,6 +12,7 @@ from processing.core.text import Text
 from processing.laboratory.bench.case import BenchmarkOptions, Measurement
 
 _REPEATS = 5
+_NO_BYTECODE = "PYTHONDONTWRITEBYTECODE"
 
 
 def measure_start(options: BenchmarkOptions, *, window: str) -> tuple[Measurement, ...]:
@@ -30,6 +32,8 @@ def measure_start(options: BenchmarkOptions, *, window: str) -> tuple[Measuremen
     """
     times = []
     repeats = options.repeats(_REPEATS)
+    # The first start writes it, as after an installation, wherever the shell forbids it.
+    with_bytecode = {name: value for name, value in os.environ.items() if name != _NO_BYTECODE}
     for _ in range(repeats + 1):
         start = time.time()
         done = subprocess.run(  # noqa: S603 - our own program
@@ -38,6 +42,7 @@ def measure_start(options: BenchmarkOptions, *, window: str) -> tuple[Measuremen
             capture_output=True,
             text=True,
             errors="replace",
+            env=with_bytecode,
         )
         if done.returncode != 0:
             raise no_window(done.stderr)
