@@ -60,7 +60,8 @@ def load_now() -> tuple[float, ...]:
 def write_table(page: Path, circumstances: Circumstances, rows: Sequence[Measurement]) -> None:
     """Put rows into a page and into the JSON beside it.
 
-    Rows of earlier runs stay, each with its circumstances, unless they are measured again.
+    Rows of earlier runs stay, each with its circumstances, unless they are measured again; what
+    could not be measured now, for want of a peer, replaces nothing that was.
 
     Parameters
     ----------
@@ -75,12 +76,15 @@ def write_table(page: Path, circumstances: Circumstances, rows: Sequence[Measure
     with report_as_user_error(page):
         before = json.loads(data.read_text("utf-8")) if data.exists() else []
         text = page.read_text("utf-8") if page.exists() else ""
+    measured = {one["name"] for run in before for one in run["rows"] if one["value"] is not None}
+    rows = [row for row in rows if row.value is not None or row.name not in measured]
     new = {row.name for row in rows}
     runs = [
         {**run, "rows": [one for one in run["rows"] if one["name"] not in new]} for run in before
     ]
     runs = [run for run in runs if run["rows"]]
-    runs.append(_describe_rows(circumstances, rows))
+    if rows:
+        runs.append(_describe_rows(circumstances, rows))
     kept = KEPT + text.partition(KEPT)[2] if KEPT in text else f"{KEPT}\n"
     with write_safely(data) as path:
         path.write_text(json.dumps(runs, ensure_ascii=False, indent=1) + "\n", "utf-8")

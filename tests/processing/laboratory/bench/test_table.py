@@ -56,3 +56,11 @@ def test_what_people_wrote_below_the_table_stays(tmp_path: Path) -> None:
     text = page.read_text("utf-8")
     assert text.endswith(f"{KEPT}\n\nBecause of this.\n")
     assert "# Old" not in text
+
+
+def test_what_could_not_be_measured_now_replaces_no_figure(tmp_path: Path) -> None:
+    page = tmp_path / "benchmarks.md"
+    write_table(page, FIRST, [row("a", 1.5)])
+    write_table(page, SECOND, [row("a", None)])
+    assert "| `a` | What a is | 1.50 x |" in page.read_text("utf-8")
+    assert "zuka bench start" not in page.read_text("utf-8")
