@@ -10,9 +10,10 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,31 +35,64 @@ class StreetLabels:
     Attributes
     ----------
     folder : str
-    ground, uncounted, low, high : frozenset of int
-        Ground; vegetation and what nobody named; walls, fences, shrubs and stairs; buildings and
-        vehicles. All other labels are things and count in the precision alone.
+    ground, uncounted, high : frozenset of int
+        Ground; vegetation and what nobody named; buildings and vehicles. All other labels are
+        things and count in the precision alone.
+    low : mapping of str to frozenset of int
+        Low things, by their kind.
     """
 
     folder: str
     ground: frozenset[int]
     uncounted: frozenset[int]
-    low: frozenset[int]
+    low: Mapping[str, frozenset[int]]
     high: frozenset[int]
 
+    @property
+    def any_low(self) -> frozenset[int]:
+        """Low things of all kinds."""
+        return frozenset[int]().union(*self.low.values())
+
+
+class StreetGround(NamedTuple):
+    """A street's ground as the program finds it.
+
+    Attributes
+    ----------
+    name : str
+    label : (n,) int64
+        What each point is.
+    found : (n,) bool
+        Whether it became ground.
+    size_m : float
+        Side of a cell.
+    """
+
+    name: str
+    label: NDArray[np.int64]
+    found: NDArray[np.bool_]
+    size_m: float
+
+
+_LabelledStreets = tuple[StreetLabels, Sequence[StreetGround]]
 
 DATA_SETS = (
     StreetLabels(
         "street_oakland",
         ground=frozenset((1200, 1202, 1203, 1204, 1205, 1206)),
         uncounted=frozenset((1000, 1001, 1002, 1003, 1004, 1005, 1300, 1301, 1304, 1305)),
-        low=frozenset((1207, 1306, 1401, 1402, 1407, 1408, 1409)),
+        low={
+            "walls, fences and gates": frozenset((1401, 1407, 1408, 1409)),
+            "shrubs": frozenset((1306,)),
+            "stairs and ledges": frozenset((1207, 1402)),
+        },
         high=frozenset((1400, 1403, 1404, 1405, 1406, 1410, 1411, 1412, 1501)),
     ),
     StreetLabels(
         "street_semantic_kitti",
         ground=frozenset((9, 10, 11, 12, 17)),
         uncounted=frozenset((0, 15)),
-        low=frozenset((14,)),
+        low={"fences": frozenset((14,))},
         high=frozenset((1, 2, 3, 4, 5, 13)),
     ),
 )
@@ -71,38 +105,58 @@ def main(arguments: list[str]) -> int:
     parser.add_argument("data", type=Path)
     parser.add_argument("--markdown", type=Path)
     chosen = parser.parse_args(arguments)
-    table = markdown_table(list(_rows(chosen.data)))
-    write_sections(chosen.markdown, {HEADING: f"{_ABOUT}\n{table}"})
+    streets = [(labels, list(_streets(chosen.data, labels))) for labels in DATA_SETS]
+    tables = (markdown_table(list(rows(streets))) for rows in (_street_rows, _kind_rows))
+    write_sections(chosen.markdown, {HEADING: "\n".join((_ABOUT, *tables))})
     return 0
 
 
-def _rows(data: Path) -> Iterator[list[str]]:
+def _streets(data: Path, labels: StreetLabels) -> Iterator[StreetGround]:
+    for cloud in sorted(data.glob(f"**/{labels.folder}/*.laz")):
+        blocks = [block.xyz for block in read_result(cloud).blocks() if block.xyz is not None]
+        with np.load(cloud.parent / "truth" / f"{cloud.stem}.npz") as truth:
+            label = truth["label"].astype(np.int64)
+        surface = find_ground(lambda points=blocks: points, GroundAssumptions(), SilentMonitor())
+        found = np.concatenate([surface.is_ground(xyz) for xyz in blocks])
+        yield StreetGround(cloud.stem, label, found, surface.grid.size_m)
+
+
+def _street_rows(streets: Sequence[_LabelledStreets]) -> Iterator[list[str]]:
     yield ["street", "points", "cell (m)", "ground R", "P", "low things left", "high things left"]
-    for labels in DATA_SETS:
+    for labels, own in streets:
         counts = np.zeros(7, np.int64)
-        for cloud in sorted(data.glob(f"**/{labels.folder}/*.laz")):
-            own, points, size_m = _counts(cloud, labels)
-            counts += own
-            yield [f"{labels.folder}, {cloud.stem}", f"{points:,}", f"{size_m:.2f}", *_shares(own)]
+        for street in own:
+            of_street = _counts(street, labels)
+            counts += of_street
+            size = [f"{len(street.label):,}", f"{street.size_m:.2f}"]
+            yield [f"{labels.folder}, {street.name}", *size, *_shares(of_street)]
         if counts.any():
             yield [f"**{labels.folder}, all**", "", "", *_shares(counts)]
 
 
-def _counts(cloud: Path, labels: StreetLabels) -> tuple[NDArray[np.int64], int, float]:
+def _kind_rows(streets: Sequence[_LabelledStreets]) -> Iterator[list[str]]:
+    yield ["low things of all streets", "points", "left as ground"]
+    for labels, own in streets:
+        for kind, codes in labels.low.items():
+            masks = [np.isin(street.label, list(codes)) for street in own]
+            points = sum(int(mask.sum()) for mask in masks)
+            left = sum(
+                int((mask & street.found).sum()) for mask, street in zip(masks, own, strict=True)
+            )
+            if points:
+                yield [f"{labels.folder}, {kind}", f"{points:,}", f"{left / points:.3f}"]
+
+
+def _counts(street: StreetGround, labels: StreetLabels) -> NDArray[np.int64]:
     """Ground found, ground, things taken for ground, and of low and of high ones both numbers."""
-    blocks = [block.xyz for block in read_result(cloud).blocks() if block.xyz is not None]
-    with np.load(cloud.parent / "truth" / f"{cloud.stem}.npz") as truth:
-        label = truth["label"].astype(np.int64)
-    surface = find_ground(lambda: blocks, GroundAssumptions(), SilentMonitor())
-    found = np.concatenate([surface.is_ground(xyz) for xyz in blocks])
+    found = street.found
     ground, uncounted, low, high = (
-        np.isin(label, list(kind))
-        for kind in (labels.ground, labels.uncounted, labels.low, labels.high)
+        np.isin(street.label, list(kind))
+        for kind in (labels.ground, labels.uncounted, labels.any_low, labels.high)
     )
     wrong = found & ~ground & ~uncounted
     masks = (found & ground, ground, wrong, found & low, low, found & high, high)
-    counts = np.array([mask.sum() for mask in masks], np.int64)
-    return counts, len(label), surface.grid.size_m
+    return np.array([mask.sum() for mask in masks], np.int64)
 
 
 def _shares(counts: NDArray[np.int64]) -> list[str]:
