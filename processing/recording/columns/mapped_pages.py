@@ -16,6 +16,10 @@ from pathlib import Path
 LIMIT_BYTES = 256 * 2**20
 """Maps hold no more than about this: less than views read in a second."""
 
+_ROUNDS = 2
+"""While hundreds of megabytes are given back, kernels read on: what they took meanwhile goes in a
+second round at once, or it would count as the program's own and the limit would creep upwards."""
+
 _LOOKED_AT_EVERY_S = 0.02
 _LOOKED_AGAIN_AFTER_S = 0.03
 _STATM = Path("/proc/self/statm")
@@ -73,9 +77,13 @@ class MappedPages:
             # What libraries map meanwhile counts too: then pages go a little early.
             self._held_before = min(self._held_before, held)
             if held - self._held_before > self._limit_bytes:
-                for mapped in self._maps:
-                    mapped.madvise(mmap.MADV_DONTNEED)
-                self._held_before = self._held_bytes()
+                self._held_before = min(self._give_back() for _ in range(_ROUNDS))
+
+    def _give_back(self) -> int:
+        """Give all pages back; what the process holds of files then."""
+        for mapped in self._maps:
+            mapped.madvise(mmap.MADV_DONTNEED)
+        return self._held_bytes()
 
     def _held_bytes(self) -> int:
         """Pages of files that the process holds."""
