@@ -39,6 +39,25 @@ _FEWEST = 6
 _HELD_SHARE = 0.3
 """Of the cells about, empty and thin, of which a true surface holds this share at least."""
 
+_ABOUT_M = 1.0
+"""To each side of a cell, within which others of its ground lie. On fourteen development sites (seeds
+2401 to 2414) whole cut and fill were off by 1.7 and 4.3 % of what was moved, root mean square; with
+1.4 m and twelve others by 2.3 and 4.9 %; with 0.6 m and three on eleven of them by 2.1 and 4.8
+against 1.7 and 4.6 %."""
+
+_MOST_ABOUT = 8
+"""Others that a cell needs at most: two crossing lines of points, or one with a point every quarter
+metre, as scanners that are set to 6 cm 10 m away lay it 40 m away."""
+
+_LONELY_SHARE = 0.02
+"""Of all cells, as many may be dropped for want of others: where points are sparse everywhere, few
+others are no sign of a stray. By the same sites mixed pixels and ghosts that pass for ground are
+fewer than one cell in a hundred."""
+
+_LEVEL_M, _STEEP = 0.1, 0.75
+"""How far another may lie above or below to be of the same ground: the scatter of rough ground, and
+37° between, the angle of repose of spoil, the steepest ground that isn't walled or cut."""
+
 _ACROSS_CELLS2 = 0.1
 """Variance of positions, in cells squared, added along both axes: cells in one line say nothing of
 the slope across it, which is then nearly none."""
@@ -159,26 +178,56 @@ def ground_cells(
 def _drop_strays(counts: NDArray[np.int32], sums: Floats, size_m: float) -> None:
     """Forget cells that hold only strays, in place.
 
-    Where the ground was hidden, a few points that came by way of a mirror or a puddle are all
-    there is: few among many about them, at any height, or at the height that was filled in there,
-    and then in one cell of several only.
+    Where the ground was hidden, a few points that came by way of a mirror or a puddle, or hang
+    between a crest and what lies behind it, are all there is.
+    """
+    for strays in (_thin_strays, _lonely_strays):
+        dropped = strays(counts, sums, size_m)
+        counts[dropped] = 0
+        sums[dropped] = 0.0
+
+
+def _thin_strays(counts: NDArray[np.int32], sums: Floats, size_m: float) -> NDArray[np.bool_]:
+    """Cells with few points among many about them, at any height or at the filled one.
+
+    At the height that was filled in there, a surface fills several cells and strays one of them.
     """
     from scipy.ndimage import maximum_filter, uniform_filter
 
+    strays = np.zeros(counts.shape, np.bool_)
     reach = max(1, round(_AMONG_M / size_m))
     most = maximum_filter(counts, 2 * reach + 1)
     thin = (counts > 0) & (counts < _FEW_SHARE * most)
     if not thin.any():
-        return
-    heights = np.where(thin, sums[..., _Z] / np.maximum(counts, 1), np.nan)
+        return strays
     near = max(1, round(_NEAR_M / size_m))
-    strays = np.zeros(counts.shape, np.bool_)
+    heights = _mean_heights(thin, counts, sums)
     _stray_kernel(heights, near, _StrayLimits(_FEWEST, _SCATTER_M), strays)
     empty = uniform_filter((counts == 0).astype(np.float32), 2 * near + 1)
     held = uniform_filter(thin.astype(np.float32), 2 * near + 1)
     strays |= thin & (held < _HELD_SHARE * (held + empty))
-    counts[strays] = 0
-    sums[strays] = 0.0
+    return strays
+
+
+def _lonely_strays(counts: NDArray[np.int32], sums: Floats, size_m: float) -> NDArray[np.bool_]:
+    """Cells that hardly another of their height lies about, where points are sparse anyway.
+
+    A beam that grazes a crest and comes back from the crest and from what lies behind gives one
+    point between them, over ground that nobody saw. A filled hole would hang from it.
+    """
+    known = counts > 0
+    others = np.full(counts.shape, _MOST_ABOUT, np.int32)
+    if known.any():
+        reach = max(1, round(_ABOUT_M / size_m))
+        _others_kernel(_mean_heights(known, counts, sums), reach, size_m, others)
+        known &= others < np.quantile(others[known], _LONELY_SHARE)
+    return known
+
+
+def _mean_heights(wanted: NDArray[np.bool_], counts: NDArray[np.int32], sums: Floats) -> Floats:
+    """Of the points in each wanted cell, m above the grid's origin; NaN in others."""
+    heights: Floats = np.where(wanted, sums[..., _Z] / np.maximum(counts, 1), np.nan)
+    return heights
 
 
 def _planes(counts: NDArray[np.int32], sums: Floats, size_m: float) -> CellPlanes:
@@ -241,6 +290,27 @@ def _stray_kernel(
 
 
 @kernel
+def _others_kernel(heights: Floats, reach: int, size_m: float, others: NDArray[np.int32]) -> None:
+    """How many cells about each (NaN: passed over) are of its ground, up to ``_MOST_ABOUT``."""
+    rows, columns = heights.shape
+    for row in range(rows):
+        for column in range(columns):
+            if np.isnan(heights[row, column]):
+                continue
+            count = -1  # itself
+            for at in range(max(0, row - reach), min(rows, row + reach + 1)):
+                for beside in range(max(0, column - reach), min(columns, column + reach + 1)):
+                    away_m = size_m * np.hypot(at - row, beside - column)
+                    apart_m = abs(heights[at, beside] - heights[row, column])
+                    # NaN fails the test.
+                    if apart_m <= _LEVEL_M + _STEEP * away_m:
+                        count += 1
+                if count >= _MOST_ABOUT:
+                    break
+            others[row, column] = min(count, _MOST_ABOUT)
+
+
+@kernel
 def _apart_kernel(heights: Floats, window: _Window, base: float) -> tuple[int, float]:
     """How many cells of a window are known, and how far they lie from their plane on average."""
     sums = np.zeros(_SUMS)
@@ -282,3 +352,4 @@ def warm_up() -> None:
     counts, sums = np.zeros((1, 1), np.int32), np.zeros((1, 1, 3))
     _sum_kernel(np.zeros((1, 3)), np.zeros(3), 1.0, counts, sums)
     _stray_kernel(np.zeros((2, 2)), 1, _StrayLimits(1, 1.0), np.zeros((2, 2), np.bool_))
+    _others_kernel(np.zeros((2, 2)), 1, 1.0, np.zeros((2, 2), np.int32))

@@ -69,3 +69,23 @@ def test_rough_bare_ground_stays_where_it_is() -> None:
     cells = cells_of(scan_of(rough, per_m2=2000, noise_m=0.003))
 
     assert abs(np.nanmean(cells.heights[:, 55:95])) < 0.002
+
+
+def test_single_points_hanging_in_a_hole_of_sparse_ground_are_no_ground() -> None:
+    def seen(x: Floats, y: Floats) -> NDArray[np.bool_]:
+        return np.hypot(x - 10.0, y - 10.0) > 3.0
+
+    hanging = np.array([[10.1, 10.1, 1.5], [11.5, 10.1, 2.0], [10.1, 8.5, 0.9]])
+    epoch = with_points(scan_of(flat, per_m2=10, noise_m=0.003, keep=seen), hanging)
+
+    assert (cells_of(epoch).counts[40:60, 40:60] == 0).all()
+
+
+def test_ground_that_is_sparse_everywhere_stays() -> None:
+    # Scan lines 1.2 m apart with a point every 0.6 m, as at the far end of a coarse scan.
+    x, y = (one.ravel() for one in np.meshgrid(np.arange(0.3, 20, 0.6), np.arange(0.5, 20, 1.2)))
+    points = np.column_stack([x, y, 0.02 * x]) + ORIGIN
+    scan = scan_of(flat, per_m2=10, noise_m=0.0)
+    lines = cells_of(replace(scan, blocks=lambda: [GroundBlock(points, 0)]))
+
+    assert (lines.counts > 0).sum() > 0.95 * x.size
