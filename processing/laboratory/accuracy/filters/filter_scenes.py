@@ -46,7 +46,8 @@ SITE_KINDS = {
     7: "scaffold",
     8: "brush",
     9: "net",
-    10: "hut",
+    10: "grass",
+    11: "hut",
     -2: "mixed, ghosts",
     -3: "dust",
 }

@@ -40,10 +40,10 @@ _HELD_SHARE = 0.3
 """Of the cells about, empty and thin, of which a true surface holds this share at least."""
 
 _ABOUT_M = 1.0
-"""To each side of a cell, within which others of its ground lie. On fourteen development sites (seeds
-2401 to 2414) whole cut and fill were off by 1.7 and 4.3 % of what was moved, root mean square; with
-1.4 m and twelve others by 2.3 and 4.9 %; with 0.6 m and three on eleven of them by 2.1 and 4.8
-against 1.7 and 4.6 %."""
+"""To each side of a cell, within which others of its ground lie. On fourteen development sites
+(seeds 2401 to 2414) whole cut and fill were off by 1.7 and 4.3 % of what was moved, root mean
+square; with 1.4 m and twelve others by 2.3 and 4.9 %; with 0.6 m and three on eleven of them by 2.1
+and 4.8 against 1.7 and 4.6 %."""
 
 _MOST_ABOUT = 8
 """Others that a cell needs at most: two crossing lines of points, or one with a point every quarter
