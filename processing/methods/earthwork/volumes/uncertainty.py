@@ -38,14 +38,6 @@ _BEND_VARIANCE = 1.5
 _STEP_M = 0.5
 """Between places whose distance from points is looked up: a cell of holes."""
 
-_SHARED = 4 * 6 * math.pi
-"""Area that shares a cell's error over its squared distance from what was measured. By 6π the cells
-of a round hole of radius R sum up to π² R⁴ as one error of all of it does, since ∫ (R − r)² 2πr dr
-is π R⁴ / 6. Four times that, since what hides ground goes on from hole to hole, and what a rim does
-not show, a ditch or a heap, neither: with 6π volumes of twelve development sites were off by .8
-(true ground) and 1.1 (found ground) of what was stated, root mean square, with this by .43 and .57,
-where .5 is meant."""
-
 
 @dataclass(frozen=True)
 class VolumeSpread:
@@ -114,10 +106,14 @@ def _of_noise(change: ChangeGrid) -> float:
 
 
 def _of_holes(change: ChangeGrid, spread: Floats) -> float:
-    """Errors of filled ground, which are alike over about the width of a hole.
+    """Errors of filled ground, which are alike along the works and over the width of a hole.
 
-    A cell's error is shared by an area in proportion to the square of its distance from what was
-    measured.
+    What hides ground, a bank or a crest, goes on from hole to hole, and a rim doesn't show a ditch
+    or a heap in any of them: an error is shared by a strip as long as the site, the root of its
+    area, and as wide as the distance from what was measured. On fourteen development sites (seeds
+    2401 to 2414) volumes were off by .46 of what is stated then, root mean square, where .5 is
+    meant, and ± 8 % of what was moved is stated in the median. A factor on the square of that
+    distance, as of round holes, had to be fitted, and stated 11 %.
     """
     from scipy.ndimage import distance_transform_edt
 
@@ -133,6 +129,7 @@ def _of_holes(change: ChangeGrid, spread: Floats) -> float:
     ]
     # Gaps narrower than a step are at least a cell wide.
     away_m = np.maximum(away_m, size_m)
-    shared_m2 = _SHARED * np.square(away_m)
+    long_m = math.sqrt(float(change.inside.sum(dtype=np.float64))) * size_m
+    shared_m2 = long_m * away_m
     volumes = deviation * change.inside * size_m
     return float(np.sqrt((np.square(volumes) * shared_m2).sum()))
