@@ -25,9 +25,9 @@ _LOW, _HIGH, _FACE = 0, 1, 2
 _HEIGHT, _SLOPE, _SLOPE_ALONG, _TOP_HEIGHT, _TOP_SLOPE, _TOP_SLOPE_ALONG = range(6)
 """Of the two planes of ground: height at the line, m, slopes across and along; of low and high."""
 
-_LOWER, _UPPER, _BESIDE, _BEFORE, _BELOW = range(5)
-"""Of edges as known by now, m: both across; how far beside them a point of the face may lie; how
-far before the upper edge, and how far below its plane, a point of the top."""
+_LOWER, _UPPER, _BESIDE, _BEFORE, _BELOW, _DEEPER = range(6)
+"""Of edges as known by now, m: both across; how far beside them a point of the face may lie,
+before the upper one and below its plane one of the top, below its plane one of the carriageway."""
 
 _REACH_M, _DEEP_M = 0.35, 0.08
 """How far before the edge and how deep below the rough line carriageway is looked at: within the
@@ -283,7 +283,7 @@ def _sort_into(
         kind = -1
         half = max(_HALF_STEP * step, _LEAST_HALF_M)
         clear = min(max(_CLEAR_SHARE * step, _LEAST_CLEAR_M), _MOST_CLEAR_M)
-        if d < lower - _EDGE_M and h < low + half:
+        if d < lower - _EDGE_M and low - edge[_DEEPER] < h < low + half:
             kind = _LOW
         elif d > upper + _EDGE_M - edge[_BEFORE]:
             below = half if d > upper + _CHAMFER_M else _ON_ARRIS_M
@@ -316,13 +316,14 @@ def _ends(
 
 
 @kernel
-def _levels(values: _Floats, span: tuple[int, int], start: _Floats) -> tuple[float, float]:
-    """Rough heights of carriageway and top; NaN where there are too few points."""
+def _levels(values: _Floats, span: tuple[int, int], start: _Floats) -> tuple[float, float, bool]:
+    """Rough heights of carriageway and top, NaN of too few points; whether a gutter lies before."""
     width, is_hidden, step = start[of.WIDTH], start[of.IS_HIDDEN] == of.HIDDEN, start[of.STEP]
     low = _middle(values, span, _BEFORE_M, -math.inf, _LOW_SHARE)
     if math.isnan(low):
         low = _middle(values, span, _BEFORE_MORE_M, -math.inf, _LOW_SHARE)
-    if low < -_DEEP_M:  # between an open gutter and the curb there is some ground
+    is_gutter = low < -_DEEP_M
+    if is_gutter:  # between an open gutter and the curb there is some ground
         low = _middle(values, span, _BEFORE_MORE_M, -_DEEP_M, _GUTTER_SHARE)
     high = math.nan
     if is_hidden:
@@ -337,7 +338,7 @@ def _levels(values: _Floats, span: tuple[int, int], start: _Floats) -> tuple[flo
     if math.isnan(high):
         near, far = width + _BEHIND_MORE_M[0], width + _BEHIND_MORE_M[1]
         high = _middle(values, span, (near, far), -math.inf, _HIGH_SHARE)
-    return low, high
+    return low, high, is_gutter
 
 
 @kernel
@@ -346,7 +347,7 @@ def _station(
 ) -> None:
     """Edges at a station; ``start`` is a row of what is known roughly."""
     is_hidden, tolerance = start[of.IS_HIDDEN] == of.HIDDEN, least_tolerance
-    low, high = _levels(values, span, start)
+    low, high, is_gutter = _levels(values, span, start)
     if math.isnan(high) or (math.isnan(low) and not is_hidden):
         return
     is_shaded = math.isnan(low)  # the carriageway lies in the curb's own shadow
@@ -355,7 +356,8 @@ def _station(
     # At first a hidden top may begin elsewhere; close below a narrow one its other face may be.
     before_m = _ASIDE_M if is_hidden else 0.0
     below_m = _CLOSE_BELOW_M if is_hidden and start[of.IS_EDGING] > 0 else math.inf
-    edge = np.array([0.0, start[of.WIDTH], _FIRST_BESIDE_M, before_m, below_m])
+    deeper_m = _ON_GROUND_M if is_gutter else math.inf  # its wall is no carriageway
+    edge = np.array([0.0, start[of.WIDTH], _FIRST_BESIDE_M, before_m, below_m, deeper_m])
     weights, spread = np.zeros(3), math.nan
     for number in range(_ROUNDS):
         _sort_into(span, values, edge, planes, kinds)
@@ -586,8 +588,7 @@ def _measure_span(
 
 def warm_up() -> None:
     """Compile the kernel."""
-    random = np.random.default_rng(0)
-    across = random.uniform(-0.3, 0.3, 200)
+    across = np.random.default_rng(0).uniform(-0.3, 0.3, 200)
     position = np.column_stack([across, np.where(across > 0, 0.15, 0.0)])
     measures = np.full((3, of.MEASURES), np.nan)
     edges_kernel(

@@ -12,6 +12,7 @@ from processing.core.kernels import kernel
 from processing.methods.road.curbs.steps.step_columns import (
     FACE_COUNT,
     FOOT_COVER_M,
+    FOOT_M,
     FOOT_ROUGH_M,
     FOOT_SLOPE,
     LOWER_ACROSS,
@@ -63,6 +64,11 @@ show two cells; so far before the first vertex of the top its edge lies at most.
 _BESIDE_M, _MOST_ROUGH_M = 0.16, 0.30
 """How far beyond the face vertices of foot and top are looked for, a kerb stone's width; no vertex
 counts as farther off the foot, so that a single one cannot decide. By trial."""
+
+_LEDGE_M, _LEDGE_OFF_M, _LEDGE_VERTICES, _LEDGE_APART_M = 0.04, 0.01, 3, 0.04
+"""Even ground within a face is the top of the wall of an open gutter, 4.5 to 9 cm wide (JIS A
+5372): so much of it, m, off by no more, m, told by no fewer vertices, and above the foot and below
+the top by four times what it may be off, m, at least, so that it is of neither."""
 
 _LEAST_RISE_M = 1e-3
 """Guard of a division where foot and top meet."""
@@ -124,6 +130,7 @@ def edges_kernel(
         begin, end = starts[section], starts[section + 1]
         x, h = across[begin:end], height[begin:end]
         row[VERTEX] = -1.0
+        _stand_on_ledge(x, h, row)
         if not _cross(x, h, limits.scanner_m, row):
             continue
         wide = abs(row[UPPER_ACROSS] - row[LOWER_ACROSS])
@@ -147,6 +154,37 @@ def _is_same(one: _Floats, other: _Floats) -> bool:
     """Whether two steps that were found apart turn out to be one."""
     apart = abs(one[LOWER_ACROSS] + one[UPPER_ACROSS] - other[LOWER_ACROSS] - other[UPPER_ACROSS])
     return bool(one[SECTION] == other[SECTION] and one[SIGN] == other[SIGN] and apart < 2 * _SAME_M)
+
+
+@kernel
+def _stand_on_ledge(x: _Floats, h: _Floats, row: _Floats) -> None:
+    """Take a step whose face holds even ground for what it is: a curb that stands on a wall."""
+    sign, low = row[SIGN], row[LOWER_HEIGHT]
+    middle = (row[LOWER_ACROSS] + row[UPPER_ACROSS]) / 2
+    rise = row[UPPER_HEIGHT] - low
+    reach = abs(row[UPPER_ACROSS] - row[LOWER_ACROSS]) / 2 + _BEYOND_M
+    if rise <= 2 * _LEDGE_APART_M:
+        return
+    begin, count, total = 0.0, 0, 0.0
+    for k in range(x.size):
+        i = k if sign > 0 else x.size - 1 - k
+        u = (x[i] - middle) * sign
+        if abs(u) > reach:
+            continue
+        # Vertices of the wall itself lie lower and may come after the first ones on its top.
+        if count > 0 and h[i] < total / count - _LEDGE_OFF_M and u - begin < _WALL_M:
+            continue
+        if count > 0 and abs(h[i] - total / count) <= _LEDGE_OFF_M:
+            count += 1
+            total += h[i]
+        else:
+            is_between = _LEDGE_APART_M < h[i] - low < rise - _LEDGE_APART_M
+            begin, count, total = u, int(is_between), h[i]
+        if count >= _LEDGE_VERTICES and u - begin >= _LEDGE_M:
+            row[SIGNIFICANCE] *= 1.0 - (total / count - low) / rise
+            row[LOWER_HEIGHT], row[FOOT_SLOPE], row[FOOT_M] = total / count, 0.0, u - begin
+            row[LOWER_ACROSS] = middle + sign * u
+            return
 
 
 @kernel

@@ -119,6 +119,21 @@ def test_the_foot_of_a_curb_behind_an_open_gutter_is_the_strip_between() -> None
     assert found[LOWER_ACROSS] == pytest.approx(0.0, abs=0.01)
 
 
+@pytest.mark.parametrize("seed", range(6))
+def test_the_wall_of_a_gutter_does_not_draw_the_foot_down(seed: int) -> None:
+    along, positions = curb_points(fall=0.0, per_m=120.0)
+    random = np.random.default_rng(seed)
+    # From the far side little is seen of the strip that the curb stands on, and all of the wall.
+    is_strip = (positions[:, 0] > -0.09) & (positions[:, 0] < 0.0)
+    is_shown = (positions[:, 0] > 0.0) | (is_strip & (random.random(along.size) < 0.8))
+    wall = np.column_stack([np.full(60, -0.09), random.uniform(-0.25, 0.0, 60)])
+    along = np.append(along[is_shown], random.uniform(0.0, 8.0, 60))
+    order = np.argsort(along)
+    found = measured((along[order], np.vstack([positions[is_shown], wall])[order]))
+    assert found[LOWER_ABOVE] == pytest.approx(0.0, abs=0.01)
+    assert found[LOWER_ACROSS] == pytest.approx(0.0, abs=0.01)
+
+
 def test_of_a_hidden_face_the_end_of_the_top_is_the_upper_edge() -> None:
     along, positions = curb_points()
     is_top = (positions[:, 0] > 0.015) & (positions[:, 1] > 0.14)
