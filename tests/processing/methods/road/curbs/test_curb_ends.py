@@ -14,7 +14,9 @@ from processing.methods.road.curbs.edges.edge_measures import (
     HIGH_OFF,
     LOW_OFF,
     LOWER_ABOVE,
+    LOWER_ACROSS,
     UPPER_ABOVE,
+    UPPER_ACROSS,
 )
 from tests.processing.methods.road.curbs.test_curb_lines import approximate_line_of, measures_of
 
@@ -57,6 +59,26 @@ def test_a_planting_strip_is_no_dropped_curb() -> None:
     measures[END:, HIGH_OFF] = SOIL_M
     measures[END:, UPPER_ABOVE] = measures[END:, LOWER_ABOVE] + 0.04
     assert [line.is_seen.size for line in lines(measures)] == [END]
+
+
+@pytest.mark.parametrize("is_turned", [False, True])
+def test_a_curb_ends_where_its_edge_lies_now_here_now_there(is_turned: bool) -> None:
+    measures = curb()
+    aside = np.random.default_rng(3).normal(0.0, 0.04, COUNT - END)
+    measures[END:, [LOWER_ACROSS, UPPER_ACROSS]] += aside[:, None]
+    (line,) = lines(measures[:: -1 if is_turned else 1])
+    assert line.is_seen.size == pytest.approx(END, abs=2)
+
+
+def test_stones_that_have_settled_and_places_without_a_face_end_no_curb() -> None:
+    measures = curb()
+    random = np.random.default_rng(3)
+    aside = np.repeat(random.normal(0.0, 0.008, 10), 4)
+    measures[END:, [LOWER_ACROSS, UPPER_ACROSS]] += aside[:, None]
+    hidden = slice(10, 30)
+    measures[hidden, FACE_POINTS] = 0.0
+    measures[hidden, LOWER_ACROSS] += random.normal(0.0, 0.04, 20)
+    assert [line.is_seen.size for line in lines(measures)] == [COUNT]
 
 
 def test_rough_places_inside_and_short_ends_are_kept() -> None:
