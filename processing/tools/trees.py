@@ -97,8 +97,12 @@ def _candidate(tree: StreetTree) -> Candidate:
         "crown_across_m": round(crown.spread_m[1], 2),
         "lean_deg": round(trunk.lean_deg, 1),
     }
-    if math.isfinite(crown.lowest_m):
-        attributes["lowest_branch_m"] = round(crown.lowest_m, 2)
+    heights = {
+        "lowest_branch_m": crown.lowest_m,
+        "road_clearance_m": tree.clearances.road_m,
+        "walk_clearance_m": tree.clearances.walk_m,
+    }
+    attributes |= {name: round(high, 2) for name, high in heights.items() if math.isfinite(high)}
     return Candidate(
         "street_tree",
         "point",

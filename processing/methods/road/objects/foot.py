@@ -29,6 +29,37 @@ _LOW_SHARE = 0.1
 """Of a sector's points: what lies higher is grass, leaves and things."""
 
 
+_LAYER_M, _HIGHEST_M = 0.1, 3.0
+"""Layers in which points about a column are counted, and how far above the coarse ground."""
+
+_MIRRORED = 0.05
+"""Of the points of the fullest layer: windows and wet roads mirror few beams, and the ground beside
+a hedge, which hides some of it, holds more."""
+
+_LEAST_RISE_M = 0.5
+"""What lies less below the ground isn't looked for: gutters and tree pits have such steps."""
+
+
+def ground_seen(heights: Floats, coarse_m: float) -> float:
+    """The ground of the coarse map, or what lies above it where that is a few mirrored points.
+
+    Parameters
+    ----------
+    heights : (n,) float64
+        Of points about a column, m about any origin.
+    coarse_m : float
+        The ground of the coarse map, about the same.
+    """
+    layers = round((_HIGHEST_M + _LEAST_RISE_M) / _LAYER_M)
+    lowest = coarse_m - _LEAST_RISE_M
+    counts = np.histogram(heights, layers, (lowest, lowest + layers * _LAYER_M))[0]
+    filled = np.flatnonzero(counts > _MIRRORED * counts.max(initial=0))
+    if not filled.size:
+        return coarse_m
+    seen = lowest + (float(filled[0]) + 0.5) * _LAYER_M
+    return seen if seen > coarse_m + _LEAST_RISE_M else coarse_m
+
+
 def foot_height(points: Floats, axis: Floats, coarse_m: float, radius_m: float = 0.0) -> float:
     """Height of the ground about an axis.
 

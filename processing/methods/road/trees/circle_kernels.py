@@ -41,6 +41,16 @@ _SECTORS = 24
 """Of 15 degrees, in which an arc is covered or not."""
 
 
+_LINE_FROM = 4
+"""Circles from which a line through their middles tells the lean."""
+
+_LINE_OVER = 6
+"""Slabs to either side that a line which leans is taken from."""
+
+_LEANS_BY = 2.0
+"""Times as much worth has to lie on a line that leans as on an upright one: most stems stand."""
+
+
 class CircleLimits(NamedTuple):
     """What a circle must be.
 
@@ -217,11 +227,13 @@ class ChainLimits(NamedTuple):
     """How circles of slabs join to a stem.
 
     ``shift_m``, ``swell_m``: how far middle and radius may be off what the circles below tell;
+    ``lean_m``: how far a middle moves from slab to slab at most;
     ``swell``: the second as a share of the radius besides; ``skipped``: slabs without a circle that
     may lie between two; ``remembered``: circles that tell where the next is.
     """
 
     shift_m: float
+    lean_m: float
     swell_m: float
     swell: float
     skipped: int
@@ -232,23 +244,27 @@ class ChainLimits(NamedTuple):
 def chain_kernel(
     circles: Floats,
     worth: Floats,
-    slab: int,
-    number: int,
-    step: int,
+    seed: tuple[int, int, int],
+    lean: tuple[float, float],
     limits: ChainLimits,
     chain: Integers,
 ) -> None:
-    """Follow a circle upwards (``step`` 1) or downwards (−1).
+    """Follow a circle upwards or downwards.
 
     Parameters
     ----------
     circles : (slabs, MOST_CIRCLES, CIRCLE_WIDTH) float64
     worth : (slabs, MOST_CIRCLES) float64
         0: belongs to another stem already.
+    seed : (slab, number, step)
+        The circle, and 1 for upwards, −1 for downwards.
+    lean : (float, float)
+        m to the east and north from slab to slab, until the circles tell it.
     chain : (slabs,) int64
         The circle of each slab, −1: none; those of earlier calls are built on. Written.
     """
     slabs = len(circles)
+    slab, number, step = seed
     chain[slab] = number
     last = slab
     for ahead in range(1, slabs):
@@ -258,7 +274,7 @@ def chain_kernel(
         if chain[at] >= 0:
             last = at
             continue
-        east, north, radius = _expected(circles, chain, last, step, at, limits.remembered)
+        east, north, radius = _expected(circles, chain, (last, step, at), lean, limits.remembered)
         allowed = limits.shift_m * (1 + 0.3 * abs(at - last)) + 0.1 * radius
         best, nearest = -1, allowed
         for one in range(MOST_CIRCLES):
@@ -276,9 +292,14 @@ def chain_kernel(
 
 @kernel
 def _expected(
-    circles: Floats, chain: Integers, last: int, step: int, at: int, remembered: int
+    circles: Floats,
+    chain: Integers,
+    steps: tuple[int, int, int],
+    lean: tuple[float, float],
+    remembered: int,
 ) -> tuple[float, float, float]:
     """Middle and radius that the circles behind tell of a slab: a line, and the median."""
+    last, step, at = steps
     slabs = np.zeros(remembered)
     rows = np.zeros((remembered, 3))
     count = 0
@@ -290,11 +311,68 @@ def _expected(
             count += 1
         behind -= step
     radius = np.median(rows[:count, 2])
-    if count < 4:
-        return rows[0, 0], rows[0, 1], radius
+    if count < _LINE_FROM:
+        ahead = at - slabs[0]
+        return rows[0, 0] + ahead * lean[0], rows[0, 1] + ahead * lean[1], radius
     middle = slabs[:count].mean()
     off = slabs[:count] - middle
     ahead = (at - middle) / (off**2).sum()
     east = rows[:count, 0].mean() + (off * rows[:count, 0]).sum() * ahead
     north = rows[:count, 1].mean() + (off * rows[:count, 1]).sum() * ahead
     return east, north, radius
+
+
+@kernel
+def lean_kernel(
+    circles: Floats, worth: Floats, slab: int, number: int, limits: ChainLimits
+) -> tuple[float, float]:
+    """How a stem leans whose circle this is, from slab to slab: by the line that meets most worth.
+
+    Upright unless a line that leans meets clearly more.
+    """
+    own = circles[slab, number]
+    best, east, north = (
+        _LEANS_BY * _met_by(circles, worth, (slab, number), (0.0, 0.0), limits),
+        0.0,
+        0.0,
+    )
+    for at in range(max(0, slab - _LINE_OVER), min(len(circles), slab + _LINE_OVER + 1)):
+        for one in range(MOST_CIRCLES):
+            if at == slab or worth[at, one] <= 0:
+                continue
+            row = circles[at, one]
+            steps = at - slab
+            lean = ((row[EAST] - own[EAST]) / steps, (row[NORTH] - own[NORTH]) / steps)
+            if math.hypot(lean[0], lean[1]) > limits.lean_m:
+                continue
+            met = _met_by(circles, worth, (slab, number), lean, limits)
+            if met > best:
+                best, east, north = met, lean[0], lean[1]
+    return east, north
+
+
+@kernel
+def _met_by(
+    circles: Floats,
+    worth: Floats,
+    seed: tuple[int, int],
+    lean: tuple[float, float],
+    limits: ChainLimits,
+) -> float:
+    """The worth of the circles like one on a line through its middle, the nearest of each slab."""
+    own, total = circles[seed[0], seed[1]], 0.0
+    for at in range(len(circles)):
+        nearest, most = limits.shift_m, 0.0
+        for one in range(MOST_CIRCLES):
+            row = circles[at, one]
+            swell = abs(row[RADIUS] - own[RADIUS])
+            if worth[at, one] <= 0 or swell > limits.swell_m + limits.swell * own[RADIUS]:
+                continue
+            steps = at - seed[0]
+            away = math.hypot(
+                row[EAST] - own[EAST] - steps * lean[0], row[NORTH] - own[NORTH] - steps * lean[1]
+            )
+            if away <= nearest:
+                nearest, most = away, worth[at, one]
+        total += most
+    return total

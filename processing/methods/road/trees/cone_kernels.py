@@ -12,13 +12,16 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.core.arrays import Floats
+from processing.core.arrays import Floats, Integers
 from processing.core.kernels import kernel
 
 NUMBERS = 8
 
 TOLERANCE_M = 0.012
 """First tolerance, before the noise is known: three times the 4 mm of usual scanners."""
+
+EVEN_NOISE_M = 1.4826 * TOLERANCE_M / 2
+"""What is told of the noise where points fill the tolerance about a stem evenly."""
 
 LEAST_NOISE_M = 0.002
 """Bark is no smoother."""
@@ -43,6 +46,17 @@ _TURNS = 6
 
 _SECTORS = 24
 """Of 15 degrees, in which a circumference was seen or not."""
+
+CAPTURED_M = 0.06
+"""Off a stem's surface: passes lie so far apart where satellites are hidden for a minute."""
+
+_APART_M = 0.03
+"""Standard deviation of how far drives lie apart, by which shifts are held where few points of a
+drive tell them; passes in towns differ by 2 to 5 cm."""
+
+_SHRINKS, _APART_TURNS = 0.7, 10
+"""The tolerance of each step over that of the one before, until it is `TOLERANCE_M`; steps of the
+fit, of which the last six have it."""
 
 
 @kernel
@@ -107,9 +121,10 @@ def _hold(
 ) -> None:
     """Hold lean, taper and flattening, and fill the other half of the normal equations."""
     oval = OVAL * abs(body[4])
-    for i in range(NUMBERS):
+    for i in range(len(normal)):
         for j in range(i):
             normal[j, i] = normal[i, j]
+    for i in range(NUMBERS):
         weight = 0.0
         if i in (2, 3):
             weight = (spread / _LEAN) ** 2
@@ -137,14 +152,12 @@ def off_of(local: Floats, point: int, body: Floats, row: Floats) -> float:
 
 
 @kernel
-def scatter_kernel(
-    local: Floats, body: Floats, near: NDArray[np.bool_], other: NDArray[np.bool_]
-) -> float:
-    """How far the points of either of two bodies lie off one, m."""
+def scatter_kernel(local: Floats, body: Floats, near: NDArray[np.bool_]) -> float:
+    """How far some points lie off a body, m."""
     row = np.empty(NUMBERS)
     square, count = 0.0, 0
     for point in range(len(local)):
-        if near[point] or other[point]:
+        if near[point]:
             square += min(abs(off_of(local, point, body, row)), TOLERANCE_M) ** 2
             count += 1
     return math.sqrt(square / max(count, 1))
@@ -161,3 +174,86 @@ def arc_kernel(local: Floats, body: Floats, near: NDArray[np.bool_]) -> float:
             sector = int((math.atan2(north, east) / math.pi + 1) / 2 * _SECTORS)
             seen[min(sector, _SECTORS - 1)] = True
     return float(seen.sum() / _SECTORS)
+
+
+@kernel
+def apart_kernel(
+    local: Floats, numbers: tuple[Integers, Integers], shape_m: float, body: Floats, shifts: Floats
+) -> float:
+    """Fit a body and how far the points of each drive lie aside of it together.
+
+    Parameters
+    ----------
+    numbers : (drive of each point, shift of each drive)
+        (n,) and (drives,) int64; −1: a drive has none.
+    body : (8,) float64
+        Where it begins; where it ends is written.
+    shifts : (drives, 2) float64
+        m to the east and north. Written.
+
+    Returns
+    -------
+    float
+        How much lies on the body: 1 for a point on it, less for one beside it.
+    """
+    drive, shift = numbers
+    size = NUMBERS + 2 * (int(shift.max()) + 1)
+    moved, tolerance = local.copy(), CAPTURED_M
+    for _ in range(_APART_TURNS):
+        normal, right = np.zeros((size, size)), np.zeros(size)
+        on, square = _add_rows(moved, numbers, tolerance, body, (normal, right))
+        if on < size:
+            return 0.0
+        spread = max(LEAST_NOISE_M, math.sqrt(square / on))
+        _hold(body, spread, shape_m, on, normal, right)
+        for one in range(shift.size):
+            for axis in range(2 if shift[one] >= 0 else 0):
+                at = NUMBERS + 2 * shift[one] + axis
+                normal[at, at] += (spread / _APART_M) ** 2
+                right[at] -= (spread / _APART_M) ** 2 * shifts[one, axis]
+        step = np.linalg.solve(normal, right)
+        body += step[:NUMBERS]
+        for one in range(shift.size):
+            if shift[one] >= 0:
+                at = NUMBERS + 2 * shift[one]
+                shifts[one] += step[at : at + 2]
+        for point in range(len(local)):
+            moved[point, 0] = local[point, 0] - shifts[drive[point], 0]
+            moved[point, 1] = local[point, 1] - shifts[drive[point], 1]
+        tolerance = max(_SHRINKS * tolerance, TOLERANCE_M)
+    row, lies = np.empty(NUMBERS), 0.0
+    for point in range(len(moved)):
+        lies += max(0.0, 1.0 - (off_of(moved, point, body, row) / TOLERANCE_M) ** 2)
+    return lies
+
+
+@kernel
+def _add_rows(
+    moved: Floats,
+    numbers: tuple[Integers, Integers],
+    tolerance: float,
+    body: Floats,
+    equations: tuple[Floats, Floats],
+) -> tuple[int, float]:
+    """Fill the lower half of normal equations with points near a body; how many, and squares."""
+    drive, shift = numbers
+    normal, right = equations
+    row, columns = np.empty(NUMBERS), np.arange(NUMBERS + 2)
+    values = np.empty(NUMBERS + 2)
+    on, square = 0, 0.0
+    for point in range(len(moved)):
+        off = off_of(moved, point, body, row)
+        if abs(off) > tolerance:
+            continue
+        on += 1
+        square += off * off
+        own = shift[drive[point]]
+        values[:NUMBERS] = row
+        # Points that lie aside look like an axis that does.
+        values[NUMBERS], values[NUMBERS + 1] = row[0], row[1]
+        columns[NUMBERS], columns[NUMBERS + 1] = NUMBERS + 2 * own, NUMBERS + 2 * own + 1
+        for i in range(NUMBERS + 2 if own >= 0 else NUMBERS):
+            right[columns[i]] -= values[i] * off
+            for j in range(i + 1):
+                normal[columns[i], columns[j]] += values[i] * values[j]
+    return on, square

@@ -19,7 +19,7 @@ from scipy.spatial import cKDTree
 
 from processing.core.arrays import Floats, Integers
 from processing.core.kernels import kernel
-from processing.methods.road.trees.crown_cells import CELL_M, CrownCells
+from processing.methods.road.trees.crown_cells import CELL_M, LOW_M, CrownCells
 from processing.methods.road.trees.rises import StemRise
 from processing.methods.road.trees.trunks import Trunk
 
@@ -88,8 +88,8 @@ class Crown:
         The crown's widest extent in plan and that square to it.
     lowest_m : float
         Where branches begin above the foot; NaN without any.
-    points : int
-        Of the crown.
+    underside : (n, 3) float64
+        The lowest point of each 0.4 m of the plan, m about the plan's origin.
     """
 
     cells: int
@@ -100,7 +100,7 @@ class Crown:
     height_m: float
     spread_m: tuple[float, float]
     lowest_m: float
-    points: int
+    underside: Floats
 
 
 @dataclass(frozen=True)
@@ -166,6 +166,7 @@ class CrownShares:
             for top in self._tops
         ]
         self._sizes = [np.bincount(parts[parts >= 0]) for parts in self._parts]
+        self._low = self._low_cells()
         touched = [self._touched(number) for number in range(len(trunks))]
         # Which of both links, and which part.
         self._part_of = np.array(touched, np.int64).reshape(-1, 2)
@@ -254,8 +255,8 @@ class CrownShares:
             gap_m=self._gap(near, share, number),
             height_m=max(top, float(highest) - foot),
             spread_m=_spread(cells.lowest[share, :2], cells.highest[share, :2]),
-            lowest_m=_lowest(cells, share) - foot,
-            points=int(cells.counts[share].sum()),
+            lowest_m=self._lowest(share, number) - foot,
+            underside=_underside(cells, dense),
         )
 
     def _is_inner(self, share: Integers, number: int) -> NDArray[np.bool_]:
@@ -266,6 +267,34 @@ class CrownShares:
         near = np.hypot(*(places - np.median(places, axis=0)).T) < _TOP_M
         above = np.hypot(*(places - self._tops[number]).T) < _TOP_M
         return np.asarray(near | above)
+
+    def _low_cells(self) -> dict[tuple[int, int, int], int]:
+        """Cells below 1.4 m that may be branches, by their place.
+
+        The lowest of all heights hold shrubs and shoots, and what stands on those is theirs.
+        """
+        cells = self._cells
+        bottom = cells.places[:, 2] * CELL_M - self._feet[cells.trunks]
+        # Legs of a tripod rise as boughs do.
+        is_leafy = cells.is_told & ~cells.is_flat & ~cells.is_bough
+        is_low = ~self._is_high & is_leafy & (bottom >= LOW_M) & (cells.counts >= _FEWEST)
+        filled = set(map(tuple, cells.places[~self._is_high].tolist()))
+        places = zip(np.flatnonzero(is_low).tolist(), cells.places[is_low].tolist(), strict=True)
+        return {(i, j, k): cell for cell, (i, j, k) in places if (i, j, k - 1) not in filled}
+
+    def _lowest(self, share: Integers, number: int) -> float:
+        """Where branches begin, m about the plan's origin: those that hang below the crown too."""
+        cells, lowest = self._cells, _lowest(self._cells, share)
+        waiting = cells.places[share[cells.lowest[share, 2] < lowest + 2 * CELL_M]].tolist()
+        seen: set[int] = set()
+        while waiting:
+            i, j, k = waiting.pop()
+            for place in itertools.product((i - 1, i, i + 1), (j - 1, j, j + 1), (k - 1, k)):
+                cell = self._low.get(place)
+                if cell is not None and cell not in seen and cells.trunks[cell] == number:
+                    seen.add(cell)
+                    waiting.append(list(place))
+        return min([lowest, *(float(cells.lowest[cell, 2]) for cell in seen)])
 
     def _gap(self, near: Integers, share: Integers, number: int) -> float:
         """The longest piece of the axis between stem and crown about which nothing was measured."""
@@ -323,7 +352,7 @@ def _bare(height_m: float, flat_share: float = 1.0) -> Crown:
         height_m=height_m,
         spread_m=(0.0, 0.0),
         lowest_m=float("nan"),
-        points=0,
+        underside=np.empty((0, 3)),
     )
 
 
@@ -379,6 +408,17 @@ def _lowest(cells: CrownCells, share: Integers) -> float:
     below = np.cumsum(cells.counts[order])
     first = int(np.searchsorted(below, _LOWEST_SHARE * below[-1]))
     return float(cells.lowest[order[first], 2])
+
+
+def _underside(cells: CrownCells, share: Integers) -> Floats:
+    """The lowest point of each column of cells of a crown, (n, 3)."""
+    order = share[np.lexsort((cells.places[share, 2], *cells.places[share, :2].T))]
+    places = cells.places[order, :2]
+    first = np.ones(len(order), np.bool_)
+    first[1:] = (np.diff(places, axis=0) != 0).any(axis=1)
+    lowest = order[first]
+    below: Floats = np.column_stack([(places[first] + 0.5) * CELL_M, cells.lowest[lowest, 2]])
+    return below
 
 
 def _spread(low: NDArray[np.float32], high: NDArray[np.float32]) -> tuple[float, float]:

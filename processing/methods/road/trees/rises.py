@@ -15,8 +15,8 @@ import numpy as np
 
 from processing.core.arrays import Floats, Integers
 from processing.core.kernels import kernel
-from processing.methods.road.trees.cone_kernels import NUMBERS, settle_kernel
-from processing.methods.road.trees.stems import BREAST_M, THICK_M, FittedStem
+from processing.methods.road.trees.cone_kernels import settle_kernel
+from processing.methods.road.trees.stems import BREAST_M, SHAPE_M, THICK_M, FittedStem
 from processing.methods.road.trees.stems import HIGHEST_M as LOOKED_M
 
 HIGHEST_M = 8.0
@@ -52,9 +52,6 @@ _HIDDEN = 5
 _ROUNDS = 3
 """Each fits the body again to what was found, and looks farther."""
 
-_SHAPE_M = 0.003
-"""How far bark and mixed points make a stem's shape seem off."""
-
 _CORE_M, _ROUND_CORE_M, _CORE_HIGH_M = 0.3, 0.65, 1.5
 """m: the axis with the branches that begin there; a ring about it; how high both are."""
 
@@ -86,9 +83,7 @@ def rise_of(points: Floats, stem: FittedStem) -> StemRise:
     points : (n, 3) float64
         About the foot, of all heights.
     """
-    body = np.zeros(NUMBERS)
-    body[:2], body[2:4] = stem.middle_at(BREAST_M), stem.lean
-    body[4], body[5] = stem.radius_m, -stem.taper
+    body = stem.body
     near = points[_within(points, body)]
     near = near[np.argsort(near[:, 2], kind="stable")]
     low, top = stem.low_m, stem.high_m
@@ -102,7 +97,7 @@ def rise_of(points: Floats, stem: FittedStem) -> StemRise:
         whole = near[(near[:, 2] >= low) & (near[:, 2] <= top)] - (0.0, 0.0, BREAST_M)
         fitted = body.copy()
         room = np.empty(len(whole)), np.zeros(len(whole), np.bool_)
-        _, noise = settle_kernel(whole, _SHAPE_M, fitted, *room)
+        _, noise = settle_kernel(whole, SHAPE_M, fitted, *room)
         if noise > 0 and abs(fitted[4] - body[4]) < _TOLERANCE_M:
             body = fitted
     thins = float(-body[5] / body[4])

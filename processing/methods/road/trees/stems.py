@@ -8,6 +8,7 @@ cone whose axis may lean.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -27,6 +28,7 @@ from processing.methods.road.trees.circle_kernels import (
     CircleLimits,
     chain_kernel,
     circles_kernel,
+    lean_kernel,
 )
 from processing.methods.road.trees.cone_kernels import (
     NUMBERS,
@@ -68,18 +70,33 @@ _FEWEST_SLABS = 4
 _STEEPEST = 0.5
 """Run over rise of a stem's lean: 27 degrees; what leans more is a branch or a stay."""
 
+_STEEP = 0.35
+"""Run over rise of the stems of a tree that has several: they lean outwards by up to 20 degrees."""
+
 _THINNEST_M = 0.015
 """Radius: a cane of 3 cm; what is thinner shows as a few points however near it stands."""
 
 _ABOUT_M = 0.1
 """From a body's surface to the points that are looked at: what it may move while it is fitted."""
 
-_SHAPE_M = 0.003
+SHAPE_M = 0.003
 """How far bark and the points at a trunk's edges make its shape seem off; as for the girth."""
 
-_CLEARLY = 0.85
-"""A trunk is taken for flatter than that if its points then lie nearer by so much: of a round one
-they don't, by more than chance."""
+_SHAPES_M = (SHAPE_M, 0.001, 0.0)
+"""Less and less of what is seen is held for bark, and more for a trunk that isn't round. Of the
+stems that were looked at, sectors of 15 degrees lie 0.4 to 1.3 mm off an ellipse."""
+
+_ALIKE = 10
+"""Points that lie off a trunk together: a burr or a lobe of bark holds so many."""
+
+_FLATTER = (0.0, 5.0, 6.0)
+"""How much likelier (natural logarithm, halves) each shape must make the points: Akaike's 2 for
+each of the two numbers of an ellipse, and somewhat more, since few trunks are flat."""
+
+
+_OPEN = 0.5
+"""Standard deviation of the radius over what its shapes differ in it: where they do, half a trunk
+was seen, and how flat it is stays open."""
 
 
 @dataclass(frozen=True)
@@ -126,6 +143,14 @@ class FittedStem:
             low_m=self.low_m - higher_m,
             high_m=self.high_m - higher_m,
         )
+
+    @property
+    def body(self) -> Floats:
+        """(8,) as kernels have it, round."""
+        body = np.zeros(NUMBERS)
+        body[:2], body[2:4] = self.middle_at(BREAST_M), self.lean
+        body[4], body[5] = self.radius_m, -self.taper
+        return body
 
     def middle_at(self, height_m: float) -> Floats:
         """Its axis at a height above the foot: (2,) float64."""
@@ -201,13 +226,14 @@ def _chains(circles: Floats, heights: Floats) -> list[Floats]:
     """Circles that follow each other upwards: (k, 5) height, middle, radius, arc."""
     free = circles[..., RADIUS] > 0
     worth = np.where(free, circles[..., INLIERS] * (0.5 + circles[..., ARC]), 0.0)
-    limits = ChainLimits(_SHIFT_M, _SWELL_M, _SWELL, _SKIPPED, _REMEMBERED)
+    limits = ChainLimits(_SHIFT_M, _STEEP * STEP_M, _SWELL_M, _SWELL, _SKIPPED, _REMEMBERED)
     chains: list[Floats] = []
     while worth.max(initial=0.0) > 0:
         slab, number = divmod(int(worth.argmax()), MOST_CIRCLES)
         chain = np.full(len(circles), -1, np.int64)
-        chain_kernel(circles, worth, slab, number, 1, limits, chain)
-        chain_kernel(circles, worth, slab, number, -1, limits, chain)
+        lean = lean_kernel(circles, worth, slab, number, limits)
+        chain_kernel(circles, worth, (slab, number, 1), lean, limits, chain)
+        chain_kernel(circles, worth, (slab, number, -1), lean, limits, chain)
         slabs = np.flatnonzero(chain >= 0)
         worth[slabs, chain[slabs]] = 0.0
         if slabs.size >= _FEWEST_SLABS:
@@ -222,12 +248,9 @@ def _fitted(points: Floats, chain: Floats, most_diameter_m: float) -> FittedStem
     start = _body_of(chain)
     about = _points_near(points, start, low, high)
     local = points[about] - (0.0, 0.0, BREAST_M)
-    cone, oval = _settled(local, start, _SHAPE_M), _settled(local, start, 0.0)
-    if cone is None or oval is None:
+    cone = _likeliest(local, start)
+    if cone is None:
         return None
-    off = scatter_kernel(local, cone.body, cone.near, oval.near)
-    if scatter_kernel(local, oval.body, cone.near, oval.near) < _CLEARLY * off:
-        cone = oval
     radius = float(cone.body[4])
     lean = cone.body[2:4]
     if not _THINNEST_M <= radius <= most_diameter_m / 2 or np.hypot(*lean) > _STEEPEST:
@@ -275,6 +298,27 @@ def _body_of(chain: Floats) -> Floats:
     body[:2] = np.average(chain[:, 1:3] - height[:, None] * slope, axis=0, weights=weight)
     body[4] = float(np.median(chain[:, 3]))
     return body
+
+
+def _likeliest(local: Floats, start: Floats) -> _Cone | None:
+    """The body that the points near it give, as flat as they show it; None where too few are."""
+    cones: list[_Cone] = []
+    for shape_m in _SHAPES_M:
+        cone = _settled(local, cones[-1].body if cones else start, shape_m)
+        if cone is None:
+            break
+        cones.append(cone)
+    if not cones:
+        return None
+    near = np.any([cone.near for cone in cones], axis=0)
+    number = np.count_nonzero(near) / _ALIKE
+    worse = [
+        2 * number * math.log(scatter_kernel(local, cone.body, near)) + more
+        for cone, more in zip(cones, _FLATTER, strict=False)
+    ]
+    chosen = cones[int(np.argmin(worse))]
+    open_m = _OPEN * float(np.ptp([cone.body[4] for cone in cones]))
+    return chosen._replace(deviation_m=math.hypot(chosen.deviation_m, open_m))
 
 
 def _settled(local: Floats, start: Floats, shape_m: float) -> _Cone | None:

@@ -17,11 +17,14 @@ from processing.methods.road.objects.column_points import (
     points_about,
 )
 from processing.methods.road.objects.columns import FoundColumns
-from processing.methods.road.objects.foot import foot_height
+from processing.methods.road.objects.driven_path import driven_places
+from processing.methods.road.objects.foot import foot_height, ground_seen
 from processing.methods.road.objects.sparse_plan import SparsePlan
 from processing.methods.road.objects.survey import survey_columns
+from processing.methods.road.trees.clearances import Clearances, StreetGround
 from processing.methods.road.trees.crown_cells import StandingStems, crown_cells
 from processing.methods.road.trees.crowns import CROWN_M, Crown, CrownShares, UprightTrunk
+from processing.methods.road.trees.drive_shifts import without_shifts
 from processing.methods.road.trees.rises import followed, rise_of
 from processing.methods.road.trees.stems import stems_of
 from processing.methods.road.trees.tree_confidence import chance_of, facts_of
@@ -48,6 +51,11 @@ _APART_M = 1.2
 the crown of the other."""
 
 
+_NEIGHBOURS, _MOST = list(range(1, 21)), 0.5
+"""Nearest columns that are asked whether drives lie apart, and how many have to say so: positions
+drift over minutes, so columns of a street agree."""
+
+
 @dataclass(frozen=True)
 class TreeSettings:
     """What is looked for.
@@ -72,6 +80,8 @@ class StreetTree:
     upright : UprightTrunk
         Its trunk, about the column's foot.
     crown : Crown
+    clearances : Clearances
+        Of its crown over carriageway and walk.
     confidence : float
         The share of its like that are trees.
     points : (n,) int64
@@ -83,6 +93,7 @@ class StreetTree:
     foot: Floats
     upright: UprightTrunk
     crown: Crown
+    clearances: Clearances
     confidence: float
     points: Integers
     drives: Integers
@@ -91,6 +102,20 @@ class StreetTree:
     def trunk(self) -> Trunk:
         """Its stems, about the column's foot."""
         return self.upright.trunk
+
+
+class _ColumnTrunk(NamedTuple):
+    """The trunk of a column, by its number, and the points about its foot, (n, 3).
+
+    ``coarse_m``, ``height_m``: the ground by the coarse map and by what lies about the column, m
+    about the plan's origin.
+    """
+
+    number: int
+    coarse_m: float
+    height_m: float
+    about: Floats
+    trunk: Trunk
 
 
 class _MeasuredTrunk(NamedTuple):
@@ -127,13 +152,13 @@ def upright_things(
     4. What hangs together above is shared out between trunks, first between all, then between
        those that may be trees' (:mod:`processing.methods.road.trees.crowns`).
     """
-    below, columns = survey_columns(drives, PartMonitor(monitor, 0.0, 0.4))
-    plan = below.plan
+    (plan, ground), columns = survey_columns(drives, PartMonitor(monitor, 0.0, 0.4))
     trunks = _standing_trunks(
         drives, plan, _joined(columns), settings, PartMonitor(monitor, 0.4, 0.8)
     )
     if not trunks:
         return ()
+    street = StreetGround(plan, ground, driven_places(drives, plan))
     standing = [one.standing for one in trunks]
     crowns = _crowns(drives, plan, standing, PartMonitor(monitor, 0.8, 1.0))
     return tuple(
@@ -141,6 +166,7 @@ def upright_things(
             one.standing.foot + plan.origin,
             one.standing,
             crown,
+            street.clearances(one.standing.foot, crown.underside),
             chance,
             one.points,
             one.drives,
@@ -197,14 +223,17 @@ def _standing_trunks(
 ) -> list[_MeasuredTrunk]:
     """What is round and upright among the columns."""
     gathered = points_about(drives, plan, columns.middles, _TRUNK_M, PartMonitor(monitor, 0.0, 0.5))
-    trunks: list[_MeasuredTrunk] = []
+    about: list[_ColumnTrunk] = []
     for number in range(len(columns)):
         monitor.check()
-        one = _trunk_at(columns, gathered, number, settings)
-        if one is not None and is_round(one.standing.trunk):
-            trunks.append(one)
-        monitor.report(0.5 + 0.5 * (number + 1) / len(columns))
-    return trunks
+        one = _trunk_about(columns, gathered, number, settings)
+        if one is not None:
+            about.append(one)
+        monitor.report(0.5 + 0.4 * (number + 1) / len(columns))
+    if len(drives) > 1:
+        about = _drives_joined(about, gathered, settings)
+    trunks = [_standing(columns, gathered, one) for one in about]
+    return [one for one in trunks if is_round(one.standing.trunk)]
 
 
 def _joined(columns: FoundColumns) -> FoundColumns:
@@ -231,26 +260,70 @@ def _joined(columns: FoundColumns) -> FoundColumns:
     return FoundColumns(np.array(middles), np.array(ground), np.array(bits, np.uint32))
 
 
-def _trunk_at(
+def _trunk_about(
     columns: FoundColumns, gathered: ColumnPoints, number: int, settings: TreeSettings
-) -> _MeasuredTrunk | None:
+) -> _ColumnTrunk | None:
     """The trunk of a column; None where none of its stems is one."""
-    part = gathered.of(number)
-    local = gathered.local[part]
+    local = gathered.local[gathered.of(number)]
     middle = columns.middles[number]
-    height = foot_height(local, middle, float(columns.ground[number]))
+    coarse = ground_seen(local[:, 2], float(columns.ground[number]))
+    height = foot_height(local, middle, coarse)
     about = local - (*middle, height)
-    trunk = trunk_of(followed(about, stems_of(about, settings.most_diameter_m)))
-    if trunk is None:
-        return None
-    stem = trunk.stems[0]
-    ground = float(columns.ground[number])
-    higher = foot_height(local, middle + stem.base, ground, stem.radius_m) - height
-    trunk, height = trunk.about(higher), height + higher
-    lines = trunk.lines[np.argsort(local[trunk.lines, 2], kind="stable")]
-    rise = rise_of(local - (*middle, height), trunk.stems[0])
+    trunk = _trunk_in(about, settings)
+    return _ColumnTrunk(number, coarse, height, about, trunk) if trunk is not None else None
+
+
+def _trunk_in(about: Floats, settings: TreeSettings) -> Trunk | None:
+    """The trunk among points about a foot."""
+    return trunk_of(followed(about, stems_of(about, settings.most_diameter_m)))
+
+
+def _drives_joined(
+    trunks: Sequence[_ColumnTrunk], gathered: ColumnPoints, settings: TreeSettings
+) -> list[_ColumnTrunk]:
+    """The trunks by points of all drives laid onto each other, where these lie apart.
+
+    Bark that is not round looks like a shift too: drives lie apart where most columns that are
+    near say so.
+    """
+    moved = [
+        without_shifts(one.about, gathered.drives[gathered.of(one.number)], one.trunk.stems[0])
+        for one in trunks
+    ]
+    told = [number for number, one in enumerate(moved) if one.is_told]
+    if not told:
+        return list(trunks)
+    tree = cKDTree([_middle_of(gathered, trunks[number].number) for number in told])
+    is_apart = np.array([moved[number].points is not None for number in told])
+    joined: list[_ColumnTrunk] = []
+    for one, shifted in zip(trunks, moved, strict=True):
+        points = shifted.points
+        near = np.asarray(tree.query(_middle_of(gathered, one.number), k=_NEIGHBOURS)[1])
+        if points is not None and is_apart[near[near < len(told)]].mean() > _MOST:
+            trunk = _trunk_in(points, settings)
+            joined.append(one._replace(about=points, trunk=trunk or one.trunk))
+        else:
+            joined.append(one)
+    return joined
+
+
+def _middle_of(gathered: ColumnPoints, number: int) -> Floats:
+    """Of the points about a column, in plan."""
+    middle: Floats = gathered.local[gathered.of(number), :2].mean(axis=0)
+    return middle
+
+
+def _standing(columns: FoundColumns, gathered: ColumnPoints, one: _ColumnTrunk) -> _MeasuredTrunk:
+    """A trunk with its foot on the ground, and how it goes on above."""
+    part, middle = gathered.of(one.number), columns.middles[one.number]
+    stem = one.trunk.stems[0]
+    higher = foot_height(one.about, stem.base, one.coarse_m - one.height_m, stem.radius_m)
+    trunk = one.trunk.about(higher)
+    lines = trunk.lines[np.argsort(one.about[trunk.lines, 2], kind="stable")]
+    rise = rise_of(one.about - (0.0, 0.0, higher), trunk.stems[0])
+    foot = np.array([*(middle + trunk.base), one.height_m + higher])
     return _MeasuredTrunk(
-        UprightTrunk(trunk, np.array([*(middle + trunk.base), height]), rise),
+        UprightTrunk(trunk, foot, rise),
         gathered.points[part][lines],
         gathered.drives[part][lines],
     )

@@ -6,7 +6,7 @@ import math
 from typing import NamedTuple
 
 from processing.methods.road.logistic import chance_of_logit
-from processing.methods.road.trees.cone_kernels import TOLERANCE_M
+from processing.methods.road.trees.cone_kernels import EVEN_NOISE_M
 from processing.methods.road.trees.crowns import Crown, UprightTrunk
 
 _MOST_GAP_M = 1.5
@@ -38,9 +38,6 @@ _MOST_CORE = 3.0
 _HALF = 0.5
 """Of its circumference one scanner sees of any round thing; a second head shows no better what it
 is."""
-
-_MOST_NOISE_M = 1.4826 * TOLERANCE_M / 2
-"""What is told of the noise where points fill the tolerance about a stem evenly."""
 
 # Learnt by `python -m processing.laboratory.road_training.tree_training` from 1,234 upright things,
 # 165 of them trees, on avenues of seeds 600 to 615 and worn streets of seeds 540, 541, 544 to 547,
@@ -115,7 +112,7 @@ def facts_of(upright: UprightTrunk, crown: Crown) -> TreeFacts:
         thick_m=max(0.0, 2 * stem.radius_m - _USUAL_M),
         arc=min(stem.arc, _HALF),
         seen_m=min(stem.high_m - stem.low_m, _MOST_SEEN_M),
-        loose=min(stem.noise_m / _MOST_NOISE_M, 1.0) ** 3,
+        loose=min(stem.noise_m / EVEN_NOISE_M, 1.0) ** 3,
         rival=max(-1.0, min(crown.rival / _SUITS, 1.0)),
         stout_m=into * max(0.0, 1.0 - max(0.0, upright.rise.thins) / _THINS),
         slender=max(0.0, crown.height_m / upright.trunk.diameter_m / _SLENDER - 1.0),
