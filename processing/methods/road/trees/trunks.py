@@ -149,12 +149,12 @@ def trunk_of(stems: Sequence[FittedStem]) -> Trunk | None:
         for stem in whole
         if stem.low_m <= BREAST_M + _HIDDEN_M and stem.high_m >= BREAST_M - _SHORT_M
     ]
+    high = [stem for stem in high if not _is_loose(stem, high)]
     if not high:
         return None
     tops = max(stem.high_m for stem in high)
     tall = [stem for stem in high if stem.high_m >= tops - _ENDS_M]
     tall = [stem for stem in tall if not _is_guard(stem, tall)]
-    tall = [stem for stem in tall if not _is_loose(stem, tall)]
     tall = [stem for stem in tall if not _is_stay(stem, tall)]
     thick = max(stem.radius_m for stem in tall)
     trunks = [stem for stem in tall if stem.radius_m >= _STEM_SHARE * thick]
@@ -188,10 +188,11 @@ def _is_loose(stem: FittedStem, others: Sequence[FittedStem]) -> bool:
 
 
 def _is_stay(stem: FittedStem, others: Sequence[FittedStem]) -> bool:
-    """Whether it leans on a thicker one."""
+    """Whether it leans on a thicker one that shows more."""
     low, high = stem.low_m, stem.high_m
     return any(
         one.radius_m > stem.radius_m
+        and one.lines.size > stem.lines.size
         and np.hypot(*(one.middle_at(low) - stem.middle_at(low)))
         - np.hypot(*(one.middle_at(high) - stem.middle_at(high)))
         > _STAY * (high - low)
