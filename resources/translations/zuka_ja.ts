@@ -44,6 +44,10 @@
         <source>Confidence</source>
         <translation>信頼度</translation>
     </message>
+    <message>
+        <source>Choose the sign&apos;s number by the shape of its plate (Alt+Down)</source>
+        <translation>標識番号を板の形から選択します（Alt+Down）</translation>
+    </message>
 </context>
 <context>
     <name>AttributePanel</name>

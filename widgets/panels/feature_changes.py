@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 
 from processing.core.text import Text
@@ -55,12 +55,17 @@ def kind_change(features: Iterable[Feature], kind: FeatureKind) -> tuple[Text, C
 
 
 def attribute_change(
-    features: Iterable[Feature], id_: str, name: Text, value: AttributeValue
+    features: Iterable[Feature],
+    id_: str,
+    name: Text,
+    value: AttributeValue,
+    *,
+    implied: Mapping[str, AttributeValue] | None = None,
 ) -> tuple[Text, Change]:
-    """An attribute set to one value; None takes it away."""
+    """An attribute set to one value, and others that it implies; None takes it away."""
 
     def changed(feature: Feature) -> Feature:
-        attributes = {**feature.attributes, id_: value}
+        attributes = {**feature.attributes, **(implied or {}), id_: value}
         if value is None:
             del attributes[id_]
         return replace(feature, attributes=attributes)

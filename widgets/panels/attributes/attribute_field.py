@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import unicodedata
+from collections.abc import Callable
 from typing import Final
 
 from PySide6.QtCore import QDate, QLocale, QObject, QRegularExpression, QSize, Qt, Signal
-from PySide6.QtGui import QRegularExpressionValidator, QWheelEvent
+from PySide6.QtGui import QIcon, QKeyEvent, QRegularExpressionValidator, QWheelEvent
 from PySide6.QtWidgets import QComboBox, QLineEdit, QSizePolicy, QStyle, QWidget
 from typing_extensions import override
 
@@ -58,6 +59,26 @@ class QuietBox(QComboBox):
             event.ignore()
 
 
+class TypedLine(QLineEdit):
+    """A line for typing.
+
+    Signals
+    -------
+    asked()
+        Alt+Down, which opens a list elsewhere, too.
+    """
+
+    asked = Signal()
+
+    @override
+    def keyPressEvent(self, event: QKeyEvent) -> None:
+        is_alt = bool(event.modifiers() & Qt.KeyboardModifier.AltModifier)
+        if is_alt and event.key() == Qt.Key.Key_Down:
+            self.asked.emit()
+        else:
+            super().keyPressEvent(event)
+
+
 class AttributeEditor(QObject):
     """A line or a list; what isn't of the attribute's type can't be typed or isn't taken.
 
@@ -94,7 +115,7 @@ class AttributeEditor(QObject):
             self._box.activated.connect(self._on_box_activated)
             self.widget = self._box
         else:
-            self._line = QLineEdit()
+            self._line = TypedLine()
             self._add_clearing()
             if field.type in _PATTERNS:
                 pattern = QRegularExpression(_PATTERNS[field.type])
@@ -118,6 +139,22 @@ class AttributeEditor(QObject):
         """Take what is typed as it stands, before the field goes."""
         if self._field.type != "choice":
             self._on_line_editing_finished()
+
+    def offer(self, words: str, icon: QIcon, ask: Callable[[], None]) -> None:
+        """Add a button to a line for typing, and Alt+Down, that ask for a value in another way."""
+        if self._field.type == "choice":
+            return
+        asking = self._line.addAction(icon, QLineEdit.ActionPosition.TrailingPosition)
+        asking.setToolTip(words)
+        asking.triggered.connect(ask)
+        self._line.asked.connect(ask)
+
+    def take(self, value: AttributeValue) -> None:
+        """Take a value as if it had been typed."""
+        self._report(value)
+        if self._field.type != "choice":
+            self._line.setModified(False)
+            self._write()
 
     def _add_clearing(self) -> None:
         """A button that empties a field of several values: there is no text to delete."""

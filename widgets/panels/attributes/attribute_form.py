@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QComboBox, QFormLayout, QLabel, QSizePolicy, QWidg
 from processing.core.text import Language
 from processing.map.catalogue import Catalogue
 from processing.map.feature import AttributeValue, Feature, Status
+from processing.map.sign_numbers import FIELD as NUMBER_FIELD
 from widgets.feature_drawing.swatch import swatch_of
 from widgets.panels.attributes.attribute_field import (
     AttributeEditor,
@@ -19,6 +20,7 @@ from widgets.panels.attributes.attribute_field import (
 )
 from widgets.panels.attributes.occluded_row import OccludedRow
 from widgets.panels.attributes.shared_values import common_fields, common_value
+from widgets.panels.attributes.sign_numbers import SignNumberMenu, plate_picture
 from widgets.panels.feature_changes import kinds_for
 from widgets.panels.feature_words import STATUS_NAMES, name_of_kind, words_of_value
 from widgets.panels.geometry_facts import facts_of
@@ -186,6 +188,8 @@ class AttributeForm(QWidget):
             value = self._value_of(field.id)
             editor = AttributeEditor(field, value, self._language)
             editor.edited.connect(self.attribute_edited)
+            if field.id == NUMBER_FIELD:
+                self._offer_numbers(editor)
             name = field.name.in_language(self._language)
             self._add_row(f"{name} ({field.unit})" if field.unit else name, editor.widget)
             self._editors[field.id] = editor
@@ -193,6 +197,18 @@ class AttributeForm(QWidget):
             # Attributes that the catalogue doesn't know: shown as they are.
             for id_, value in self._others(self._features[0]).items():
                 self._add_row(id_, _wrap_words(words_of_value(value, None, self._language)))
+
+    def _offer_numbers(self, editor: AttributeEditor) -> None:
+        """Legal numbers of signs are chosen among the plates of that shape, with their pictures."""
+
+        def ask() -> None:
+            menu = SignNumberMenu(self._features, self._language, editor.widget)
+            menu.number_chosen.connect(editor.take)
+            menu.aboutToHide.connect(menu.deleteLater)
+            menu.popup(editor.widget.mapToGlobal(editor.widget.rect().bottomLeft()))
+
+        words = self.tr("Choose the sign's number by the shape of its plate (Alt+Down)")
+        editor.offer(words, plate_picture("diamond", "yellow"), ask)
 
     def _add_facts(self, feature: Feature) -> None:
         for title, words in facts_of(feature, self._language):

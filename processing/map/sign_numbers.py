@@ -1,0 +1,84 @@
+"""Legal numbers of road signs, with the plates that carry them: what is chosen from.
+
+Numbers and names: 道路標識、区画線及び道路標示に関する命令, 別表第一; shapes, colours: 別表第二.
+Variants of one number (-A, -B) are listed where they mean different things; what isn't listed can
+be typed.
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cache
+from typing import Literal, cast
+
+from processing.core.text import Text
+from resources import path_of
+
+SignClass = Literal["guide", "warning", "regulation", "instruction", "supplement"]
+SignColour = Literal["blue", "green", "yellow", "red", "white"]
+
+FIELD = "sign_number"
+"""Attribute that holds the number."""
+
+SUPPLEMENT: SignClass = "supplement"
+
+
+@dataclass(frozen=True)
+class SignNumber:
+    """A kind of road sign.
+
+    Attributes
+    ----------
+    number : str
+        As the order writes it: "330", "108の2", "201-A".
+    sign_class : str
+        Which part of the order it is in.
+    shapes : tuple of str
+        Of its plate, as the tool ``signs`` names them.
+    colour : str
+        Of the plate's ground, of its face for signs with a rim.
+    name : Text
+        The Japanese one is the order's.
+    """
+
+    number: str
+    sign_class: SignClass
+    shapes: tuple[str, ...]
+    colour: SignColour
+    name: Text
+
+
+@cache
+def sign_numbers() -> tuple[SignNumber, ...]:
+    """All of them, by number."""
+    lines = path_of("catalogue/sign_numbers.csv").read_text(encoding="utf-8").splitlines()
+    return tuple(
+        SignNumber(
+            row["number"],
+            cast("SignClass", row["class"]),
+            tuple(row["shapes"].split()),
+            cast("SignColour", row["colour"]),
+            Text(row["en"], row["ja"]),
+        )
+        for row in csv.DictReader(lines)
+    )
+
+
+def numbers_for(shape: str, *, is_supplement: bool) -> Sequence[SignNumber]:
+    """The signs whose plates have a shape, by number.
+
+    Parameters
+    ----------
+    shape : str
+        Of the plate.
+    is_supplement : bool
+        Whether it hangs below another sign, as only supplementary plates do; a rectangle that
+        hangs alone may be any rectangular sign.
+    """
+    return tuple(
+        one
+        for one in sign_numbers()
+        if shape in one.shapes and (one.sign_class == SUPPLEMENT) == is_supplement
+    )
