@@ -21,7 +21,7 @@ from processing.methods.road.signs.initial_positions import (
     read_positions,
 )
 from processing.methods.road.signs.road_signs import RoadSign, road_signs
-from processing.methods.road.signs.sign_shapes import SignShape, standard_shapes
+from processing.methods.road.signs.sign_shapes import SignShape, looked_for
 from processing.recording.drive import Drive
 from processing.scoring.scorers import SIGN_SCORER
 from processing.tools.tool import (
@@ -92,7 +92,7 @@ def _by_positions(
     here = [one for one in positions if one.line not in elsewhere]
 
     def shapes_at(place: Floats) -> Sequence[SignShape]:
-        return standard_shapes() if is_near(place, here, _CUT_OUT_M + FARTHEST_M) else ()
+        return looked_for() if is_near(place, here, _CUT_OUT_M + FARTHEST_M) else ()
 
     signs, without = asked_signs(road_signs(drives, monitor, shapes_at), here)
     nothing = tuple(one.line for one in without)
@@ -154,6 +154,8 @@ def _candidate(sign: RoadSign, plates: int) -> Candidate:
         "scan_lines": plate.evidence.turns,
         "front_seen": plate.evidence.bright > 0.5,
     }
+    if sign.post is not None:
+        attributes["post"] = sign.post
     return Candidate(
         "sign",
         "point",

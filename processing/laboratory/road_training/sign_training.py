@@ -2,11 +2,11 @@
 
 ``python -m processing.laboratory.road_training.sign_training``.
 
-Simulates streets of ``--seeds`` and ``--worn``, finds plates on them without leaving any out, and
-fits the weights of `processing.methods.road.signs.sign_confidence` to which of them are signs;
-streets of ``--check`` are not learnt from. ``--deliveries`` are further streets to learn from,
-recorded before. Prints the weights and how many plates of each confidence are signs: of streets
-learnt from by weights that were fitted without the street itself.
+Simulates streets of ``--seeds`` and avenues of ``--avenues``, finds plates on them without leaving
+any out, and fits the weights of `processing.methods.road.signs.sign_confidence` to which of them
+are signs; streets of ``--check`` are not learnt from. ``--deliveries`` are further streets to learn
+from, recorded before. Prints the weights and how many plates of each confidence are signs: of
+streets learnt from by weights that were fitted without the street itself.
 """
 
 from __future__ import annotations
@@ -19,13 +19,20 @@ import numpy as np
 from processing.core.monitor import SilentMonitor
 from processing.core.output_streams import write_every_character
 from processing.formats.vectors.mapped_shapes import read_mapped
-from processing.laboratory.accuracy.road.road_scenes import RoadScene, worn_options_of
+from processing.laboratory.accuracy.road.road_scenes import (
+    RoadScene,
+    avenue_options_of,
+    options_of,
+    simulated_scenes,
+)
+from processing.laboratory.accuracy.road.signs import fast_options_of
 from processing.laboratory.road_training.learned_confidence import (
     LabelledThings,
     WeightPrior,
     learn_weights,
 )
 from processing.laboratory.road_training.training_streets import training_streets
+from processing.laboratory.simulate.requests import StreetRequest
 from processing.methods.road.signs.road_signs import road_signs
 from processing.methods.road.signs.sign_confidence import SignFacts
 from processing.scoring.object_matches import positions_of
@@ -47,6 +54,9 @@ EXPECTED = WeightPrior(
             is_large=-1.0,
             high=-2.0,
             across=-1.0,
+            thick=-1.5,
+            narrow=-2.0,
+            other_disc=-3.0,
         ),
     ),
     (
@@ -65,12 +75,15 @@ EXPECTED = WeightPrior(
             is_large=1.0,
             high=1.5,
             across=1.0,
+            thick=1.0,
+            narrow=1.5,
+            other_disc=1.5,
         ),
     ),
 )
 """Before anything is learnt: a face shines, an outline fits and is seen all round."""
 
-_SEEDS, _WORN, _CHECK = "700-717", "", "718-719"
+_SEEDS, _AVENUES, _CHECK = "700-711", "600-605", "718-719"
 """Streets that the weights were learnt from, and such that they were looked at with."""
 
 _WITHIN_M = 0.3
@@ -93,10 +106,24 @@ def _judged(scene: RoadScene) -> Iterator[tuple[SignFacts, bool, float]]:
         yield one.facts, bool(away.size and away.min() <= _WITHIN_M), 1.0
 
 
+def training_options_of(_number: int, seed: int, length_m: float) -> StreetRequest:
+    """Styles and sensors by seed; among every other one are expressways driven fast."""
+    return (fast_options_of if seed % 2 else options_of)(seed % 100, seed, length_m)
+
+
+def _scenes(seeds: Sequence[int], length_m: float) -> Iterator[RoadScene]:
+    return simulated_scenes(seeds, length_m, training_options_of)
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """The command."""
-    others = {"worn": (_WORN, worn_options_of)}
-    asked = training_streets("sign_training", arguments, seeds=(_SEEDS, _CHECK), others=others)
+    asked = training_streets(
+        "sign_training",
+        arguments,
+        _scenes,
+        seeds=(_SEEDS, _CHECK),
+        others={"avenues": (_AVENUES, avenue_options_of)},
+    )
     known, check = known_plates(asked.learnt), known_plates(asked.check)
     sys.stdout.write(learn_weights(SignFacts._fields, EXPECTED, known, check))
     return 0

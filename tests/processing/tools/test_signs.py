@@ -89,12 +89,26 @@ TRIANGLE = known("triangle", 0.8, (16.0, 5.5, 2.6), 85.0)
 DIAMOND = known("diamond", 0.45, (22.0, 5.5, 2.7), 95.0)
 FROM_BEHIND = known("square", 0.6, (14.0, -5.5, 2.4), 270.0)
 GUIDE = known("rectangle", 1.8, (26.0, 0.5, 6.0), high_m=1.2)
-PLATES = (CIRCLE, BELOW, TRIANGLE, DIAMOND, FROM_BEHIND, GUIDE)
+ON_A_POLE = known("circle", 0.6, (22.0, -5.5, 2.6), 270.0)
+ON_TWO = known("rectangle", 1.6, (19.0, 6.4, 2.9), high_m=0.8)
+PLATES = (CIRCLE, BELOW, TRIANGLE, DIAMOND, FROM_BEHIND, GUIDE, ON_A_POLE, ON_TWO)
+BUS_STOP = known("circle", 0.45, (11.5, -5.5, 2.4))
+POSTS = (
+    (CIRCLE, "single"),
+    (FROM_BEHIND, "single"),
+    (ON_A_POLE, "attached"),
+    (ON_TWO, "double"),
+    (GUIDE, "cantilever"),
+)
 
 
-def post(x: float, y: float, top_m: float) -> TriangleShape:
+def post(x: float, y: float, top_m: float, radius_m: float = 0.03) -> TriangleShape:
     path = np.array([[x, y, -0.3], [x, y, top_m]])
-    return tube(path, np.full(2, 0.03), 16)
+    return tube(path, np.full(2, radius_m), 16)
+
+
+def arm(x: float, z: float, y: tuple[float, float]) -> TriangleShape:
+    return tube(np.array([[x, y[0], z], [x, y[1], z]]), np.full(2, 0.05), 16)
 
 
 def street() -> tuple[TriangleShape, ...]:
@@ -104,6 +118,12 @@ def street() -> tuple[TriangleShape, ...]:
         *(one.shape for one in PLATES),
         *(post(x, 5.5, 2.9) for x in (7.94, 15.94, 21.94)),
         post(14.06, -5.5, 2.75),
+        post(22.15, -5.5, 7.5, 0.14),
+        *(post(18.94, y, 3.35, 0.04) for y in (5.9, 6.9)),
+        post(25.9, 5.8, 6.6, 0.08),
+        arm(25.9, 6.0, (-0.2, 5.8)),
+        BUS_STOP.shape,
+        post(11.44, -5.5, 2.6),
         box((11.0, 5.4, 0.0), (12.0, 6.1, 1.83)),
         box((19.0, -6.0, 0.3), (19.05, -4.6, 1.5)),
     )
@@ -183,6 +203,11 @@ def test_a_plate_below_a_sign_is_its_supplement(told: RunOutcome) -> None:
     assert sign_at(told, BELOW).attributes["supplementary"] is True
     assert sign_at(told, CIRCLE).attributes["supplementary"] is False
     assert sign_at(told, CIRCLE).attributes["plates"] == 2
+
+
+@pytest.mark.parametrize(("plate", "form"), POSTS, ids=[form for _, form in POSTS])
+def test_what_a_sign_hangs_on_is_named(told: RunOutcome, plate: KnownPlate, form: str) -> None:
+    assert sign_at(told, plate).attributes["post"] == form
 
 
 def asked(drives: tuple[Drive, ...], table: Path, text: str) -> CandidateResult:

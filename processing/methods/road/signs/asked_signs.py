@@ -12,8 +12,9 @@ from processing.core.arrays import Floats
 from processing.methods.road.signs.initial_positions import FARTHEST_M, InitialPosition
 from processing.methods.road.signs.road_signs import RoadSign
 
-_OFF_M = 0.8
-"""Standard deviation of a given position in plan: errors reach 2 m (Takahashi 2022, 8.3)."""
+_OFF_M = 1.0
+"""Standard deviation of a given position, of easting and of northing: errors are anywhere up to 2 m
+(Takahashi 2022, 8.3), those of a disc have half of its radius."""
 
 _OFF_HEIGHT_M = 0.5
 """The same of heights: a camera sees them better than the distance."""
@@ -21,6 +22,10 @@ _OFF_HEIGHT_M = 0.5
 _OTHER_SHAPE = 12.0
 """What a plate of another shape than the given one, or another size, costs: as a position that is
 three and a half standard deviations off."""
+
+_SUPPLEMENT = 6.0
+"""What a plate that hangs below another one costs where its shape wasn't given: positions are given
+of signs."""
 
 _SIZE_SHARE = 0.15
 """Sizes are the same so near: standard ones differ by a third."""
@@ -41,8 +46,7 @@ def asked_signs(
     Each plate is of one position at most; all are assigned together, so that two signs on one post
     with a position each get one each.
     """
-    surer = [replace(one, confidence=_with_word(one.confidence)) for one in signs]
-    likely = [one for one in surer if one.confidence >= _LEAST_CHANCE]
+    likely = [one for one in signs if _with_word(one.confidence) >= _LEAST_CHANCE]
     costs = np.full((len(positions), len(likely)), np.inf)
     for row, position in enumerate(positions):
         for column, sign in enumerate(likely):
@@ -51,7 +55,7 @@ def asked_signs(
 
     rows, columns = linear_sum_assignment(np.where(np.isfinite(costs), costs, 1e6))
     found: dict[int, RoadSign] = {
-        int(row): likely[column]
+        int(row): replace(likely[column], confidence=_with_word(likely[column].confidence))
         for row, column in zip(rows, columns, strict=True)
         if np.isfinite(costs[row, column])
     }
@@ -65,7 +69,10 @@ def _with_word(chance: float) -> float:
 
 
 def _cost(sign: RoadSign, position: InitialPosition) -> float:
-    """Twice the negative logarithm of how likely a plate is the asked one; infinite: too far."""
+    """Twice the negative logarithm of how likely a plate is the asked one; infinite: too far.
+
+    Of plates about a position each is asked for in so far as it is a sign without anybody's word.
+    """
     off = math.hypot(sign.centre[0] - position.easting_m, sign.centre[1] - position.northing_m)
     if off > FARTHEST_M:
         return math.inf
@@ -73,6 +80,8 @@ def _cost(sign: RoadSign, position: InitialPosition) -> float:
     if not math.isnan(position.height_m):
         cost += ((sign.centre[2] - position.height_m) / _OFF_HEIGHT_M) ** 2
     shape = sign.plate.shape
+    if sign.is_supplement and not position.shape:
+        cost += _SUPPLEMENT
     if position.shape and position.shape != shape.shape:
         cost += _OTHER_SHAPE
     if not math.isnan(position.size_m) and abs(shape.size_m / position.size_m - 1) > _SIZE_SHARE:

@@ -44,7 +44,8 @@ _SEARCHED_LINES = 40
 """Longest lines that the coarse search looks at."""
 
 _TRIED, _RECTANGLES = 8, 2
-"""Outlines of standard plates, and rectangles, that are fitted finely."""
+"""Outlines of standard plates, and rectangles, that are fitted finely; of rectangles as many that
+explain most, and as many that explain best what they do explain: plates of a stack."""
 
 _MOST_LINES = 120
 """Of a plane that outlines are laid on: more lie nearer to each other than a plate's rim is
@@ -308,7 +309,7 @@ def _best_fits(lines: Floats, empty: Floats, outlines: _Outlines) -> list[tuple[
         cost = fit_kernel(outline_of(shape), every, _FINE, SIGMA_M, pose)
         fine.append((cost, shape, pose))
     if outlines.with_rectangles:
-        fine += _rectangles(every, box[0], box[1])
+        fine += _rectangles(lines, every, box)
     fine.sort(key=lambda one: one[0])
     found: list[tuple[SignShape, Floats]] = []
     for _, shape, pose in fine:
@@ -324,8 +325,9 @@ def _spacing_across(lines: Floats) -> float:
     return min(0.35, 1.5 * extent / max(1, len(lines) - 1))
 
 
-def _rectangles(every: Floats, low: Floats, high: Floats) -> list[tuple[float, SignShape, Floats]]:
+def _rectangles(lines: Floats, every: Floats, box: Floats) -> list[tuple[float, SignShape, Floats]]:
     """The best rectangles that are stretched to fit, begun as the whole and as parts of it."""
+    low, high = box
     whole = high - low
     starts = [(low, high)]
     for axis, least in ((1, 0.3), (0, 0.8)):
@@ -338,15 +340,26 @@ def _rectangles(every: Floats, low: Floats, high: Floats) -> list[tuple[float, S
     for first, last in starts:
         pose, sides = np.array([*(first + last) / 2, 0.0]), np.maximum(last - first, 0.08)
         cost = stretch_kernel(every, _STRETCH_COARSE, pose, sides, np.zeros(2))
-        coarse.append((cost, pose, sides))
+        coarse.append((cost, pose, sides, _own_cost(lines, pose, sides)))
     coarse.sort(key=lambda one: one[0])
+    clean = sorted(coarse, key=lambda one: one[3])[:_RECTANGLES]
+    chosen = coarse[:_RECTANGLES]
+    chosen += [one for one in clean if all(one is not other for other in chosen)]
     found = []
-    for _, pose, sides in coarse[:_RECTANGLES]:
+    for _, pose, sides, _ in chosen:
         cost = stretch_kernel(every, _STRETCH, pose, sides, np.zeros(2))
         cost, pose, sides = _snapped(every, cost, pose, sides)
         shape = SignShape(RECTANGLE, float(sides[0]), float(sides[1]))
         found.append((cost + _RECTANGLE_COST, shape, pose))
     return found
+
+
+def _own_cost(lines: Floats, pose: Floats, sides: Floats) -> float:
+    """What the ends on a rectangle say against it, each; much of one that holds hardly any."""
+    shape = SignShape(RECTANGLE, float(sides[0]), float(sides[1]))
+    rest, blocked = np.empty((2 * len(lines), LINE)), np.empty((2 * len(lines), LINE))
+    cost, ends, *_ = explain_kernel(outline_of(shape), lines, pose, rest, blocked)
+    return float((cost + CAP) / max(ends, 1))
 
 
 def _below(lines: Floats, empty: Floats, upper: FittedPlate) -> list[tuple[SignShape, Floats]]:

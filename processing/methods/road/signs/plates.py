@@ -18,7 +18,16 @@ from processing.methods.road.signs.fit_kernels import (
     U,
     V,
 )
-from processing.methods.road.signs.piece_kernels import BRIGHTS, COUNT, NOISE, VIEW
+from processing.methods.road.signs.piece_kernels import (
+    BEFORE,
+    BEHIND,
+    BRIGHTS,
+    COUNT,
+    FREE,
+    HIDDEN,
+    NOISE,
+    VIEW,
+)
 from processing.methods.road.signs.plate_fit import Fit, FittedPlate, hangs_below
 from processing.methods.road.signs.plate_groups import PlateGroup, group_of
 from processing.methods.road.signs.scan_pieces import ScanPieces
@@ -26,6 +35,9 @@ from processing.methods.road.signs.sign_shapes import SignShape, centroid_of, ou
 
 _SECTORS = 12
 """Of a plate's rim, 30 degrees each."""
+
+_FEWEST_ENDS = 3
+"""Of lines at an edge, that say whether it is thick."""
 
 _INSIDE_M = 0.03
 """How far beyond an outline the middle of a piece on it may lie."""
@@ -56,6 +68,9 @@ class PlateEvidence(NamedTuple):
         Sine of the angle by which it looks up or down.
     seen_sides : int
         1, or 2 where scanners saw front and back.
+    thick : float
+        By how much more of the scan lines go on at its left edge than at its right one, or the
+        reverse, 0 to 1: they cross over to the side of a thick board or a box.
     """
 
     bright: float
@@ -69,6 +84,7 @@ class PlateEvidence(NamedTuple):
     roll_rad: float
     tilt: float
     seen_sides: int
+    thick: float
 
 
 @dataclass(frozen=True)
@@ -169,6 +185,7 @@ def _plate(
         roll_rad=float(fitted.pose[2]),
         tilt=float(facing[2]),
         seen_sides=sides,
+        thick=_thick(fitted, lines[on], pieces.values[members]),
     )
     return Plate(fitted.shape, xyz[0], xyz[1:], facing, evidence, upper, members)
 
@@ -190,6 +207,25 @@ def _facing(pieces: ScanPieces, members: Integers, normal: Floats) -> tuple[Floa
     if shares[best] > 0.5:
         return (normal if best == 0 else -normal), shares[best], sides
     return (-normal if seen[0] >= seen[1] else normal), shares[best], sides
+
+
+def _thick(fitted: FittedPlate, lines: Floats, values: Floats) -> float:
+    """How differently lines end at the left and the right edge of a plate."""
+    ends = []
+    for column, along in ((BEFORE, 0.0), (BEHIND, 1.0)):
+        places = lines[:, [U, V]] + along * lines[:, [LONG]] * lines[:, [ALONG_U, ALONG_V]]
+        ends.append(np.column_stack([places, values[:, column]]))
+    every = np.concatenate(ends)
+    flat = _turned(every[:, :2] - fitted.pose[:2], -fitted.pose[2])
+    half = fitted.shape.wide_m / 2
+    shares = []
+    for side in (-1.0, 1.0):
+        codes = every[np.abs(side * flat[:, 0] - half) <= 3 * SIGMA_M + 0.03, 2]
+        seen = codes[codes != HIDDEN]
+        if seen.size < _FEWEST_ENDS:
+            return 0.0
+        shares.append(float((seen != FREE).mean()))
+    return abs(shares[0] - shares[1])
 
 
 def _rim(fitted: FittedPlate, lines: Floats) -> tuple[int, float]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +21,8 @@ from processing.methods.road.signs.plate_lines import empty_lines, lines_of
 from processing.methods.road.signs.plates import Plate, plates_of
 from processing.methods.road.signs.scan_pieces import ScanPieces, scan_pieces
 from processing.methods.road.signs.sign_confidence import SignFacts, chance_of, facts_of
-from processing.methods.road.signs.sign_shapes import SignShape, standard_shapes
+from processing.methods.road.signs.sign_posts import PostForm, posts_of
+from processing.methods.road.signs.sign_shapes import SignShape, looked_for
 from processing.recording.drive import Drive
 
 _LEAST_REACH_M, _MOST_REACH_M = 0.1, 0.8
@@ -36,6 +37,9 @@ is seen askew and a vehicle that goes faster elsewhere add."""
 
 _EVERY = 20
 """Records of a trajectory of which one is kept: a tenth of a second."""
+
+_LIKELY = 0.1
+"""Chance from which it is looked for what a plate hangs on: what is less likely is hardly shown."""
 
 _ONE_PLATE_M = 0.2
 """Centres of two plates are farther apart: half of the smallest plate."""
@@ -60,6 +64,8 @@ class RoadSign:
         Whether it hangs below another plate that it explains.
     point, drive : int
         The measured point nearest to the centre that lies on it, and which of the drives it is of.
+    post : str or None
+        What it hangs on; None where that wasn't measured.
     """
 
     plate: Plate
@@ -70,6 +76,7 @@ class RoadSign:
     is_supplement: bool
     point: int
     drive: int
+    post: PostForm | None = None
 
 
 ShapesAt = Callable[[Floats], Sequence[SignShape]]
@@ -78,7 +85,7 @@ ShapesAt = Callable[[Floats], Sequence[SignShape]]
 
 def any_shape(_place: Floats) -> Sequence[SignShape]:
     """All shapes, wherever a plate is."""
-    return standard_shapes()
+    return looked_for()
 
 
 def road_signs(
@@ -100,6 +107,7 @@ def road_signs(
     3. Outlines of the standard plates, and rectangles, are laid on the lines of a plane, beside
        each other where one doesn't explain all (:mod:`.plate_fit`).
     4. Which side shines is the face; how well a plate is explained says how sure it is.
+    5. What stands behind and beside it says what it hangs on (:mod:`.sign_posts`).
     """
     plan, ground = survey_ground(drives, PartMonitor(monitor, 0.0, 0.3))
     pieces = scan_pieces(drives, plan, ground, PartMonitor(monitor, 0.3, 0.7))
@@ -116,8 +124,14 @@ def road_signs(
         fit = fit_plates(lines, empty_lines(pieces, group, lines), shapes)
         plates = plates_of(pieces, group, lines, fit)
         found += _signs(plates, pieces, (plan, ground), ways)
-        monitor.report(0.8 + 0.2 * (number + 1) / len(groups))
-    return _one_of_each(found)
+        monitor.report(0.8 + 0.1 * (number + 1) / len(groups))
+    signs = _one_of_each(found)
+    likely = [one for one in signs if one.confidence >= _LIKELY]
+    others = [one for one in signs if one.confidence < _LIKELY]
+    plates = [(one.plate, one.ground_m - float(plan.origin[2])) for one in likely]
+    forms = posts_of(drives, plan, plates, PartMonitor(monitor, 0.9, 1.0))
+    held = [replace(one, post=form) for one, form in zip(likely, forms, strict=True)]
+    return (*held, *others)
 
 
 class _Ways:

@@ -26,6 +26,9 @@ _LARGE_M = 1.0
 _HIGH_M = 3.5
 """Signs beside a road hang lower; over a road they are guide signs, and their backs plain."""
 
+_NARROWEST_M, _WIDE_M = 0.2, 0.35
+"""The narrowest plates are 40 cm wide (標識令, 別表第二), less what their rims are uncertain by."""
+
 _USUAL_ACROSS = 0.3
 """Where nobody knows the way of the vehicle: about what most signs have."""
 
@@ -63,6 +66,14 @@ class SignFacts(NamedTuple):
     across : float
         Sine of the angle in plan between where it looks and where the vehicle drove by: signs look
         along the road.
+    thick : float
+        By how much more of its scan lines go on at one of its upright edges than at the other: over
+        the side of a board or a box; plates are thin.
+    narrow : float
+        How far it is narrower than 35 cm, 1 from 20 cm on: no sign is, but strips of poles and
+        pieces of larger plates are.
+    other_disc : float
+        1 of a disc of a size that bus stops and mirrors have and signs don't.
     high : float
         Of what is dull, how far its middle is above 3.5 m, over 3.5 m, 0 to 1: parts of buildings
         are.
@@ -81,6 +92,9 @@ class SignFacts(NamedTuple):
     is_large: float
     high: float
     across: float
+    thick: float
+    narrow: float
+    other_disc: float
 
 
 # By `python -m processing.laboratory.road_training.sign_training` on 1,767 plates, of which 99 were
@@ -102,6 +116,9 @@ _WEIGHTS = SignFacts(
     is_large=-1.49,
     high=-2.62,
     across=-2.79,
+    thick=-1.0,
+    narrow=-2.0,
+    other_disc=-3.0,
 )
 
 
@@ -134,6 +151,9 @@ def facts_of(plate: Plate, ground_m: float, along: Floats) -> SignFacts:
         is_large=min(max(longer - _LARGE_M, 0.0), 1.0) * is_plain,
         high=min(max(high / _HIGH_M - 1.0, 0.0), 1.0) * (one.bright < _BRIGHT),
         across=_across(plate, along),
+        thick=one.thick,
+        narrow=1.0 - _over(plate.shape.wide_m, _NARROWEST_M, _WIDE_M),
+        other_disc=float(plate.shape.is_other_disc),
     )
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 
 import numpy as np
 
@@ -29,6 +29,11 @@ STANDARD_M: dict[str, tuple[float, ...]] = {
 and of the Order on Road Signs (標識令, 別表第二) where that has more: warning signs (diamonds) and
 small squares of 45 cm, stop signs of 60 cm."""
 
+_OTHER_DISCS_M = (0.45, 0.5, 0.8, 1.0)
+"""Diameters of discs that are no signs: of bus stops (45 and 50 cm) and of mirrors (道路反射鏡
+設置指針: 80 and 100 cm; those of 60 cm are as large as signs). Without them such a disc would be
+laid into the next best outline of a sign."""
+
 _USUAL_M: dict[str, tuple[float, ...]] = {
     CIRCLE: (0.6,),
     TRIANGLE: (0.8,),
@@ -45,6 +50,9 @@ been met whose roof is a third of their height and such whose sides are."""
 
 _CORNER_SHARE = 0.05
 """Radius of a rounded corner over the shorter side: 3 cm of 60 cm (標識令, 別表第二, figures)."""
+
+_KEPT = 1_000
+"""Outlines in memory: standard ones, and of rectangles those that were looked at last."""
 
 _ARC = 3
 """Corners that stand for a rounded one."""
@@ -81,6 +89,11 @@ class SignShape:
         """Whether it has the size that is usual on ordinary roads."""
         return self.size_m in _USUAL_M[self.shape]
 
+    @property
+    def is_other_disc(self) -> bool:
+        """Whether it is a disc of a size that signs don't have."""
+        return self.shape == CIRCLE and self.size_m in _OTHER_DISCS_M
+
 
 def shape_of(shape: str, size_m: float) -> SignShape:
     """A plate of one size; rectangles have two and are made directly."""
@@ -100,6 +113,12 @@ def standard_shapes() -> tuple[SignShape, ...]:
 
 
 @cache
+def looked_for() -> tuple[SignShape, ...]:
+    """All plates but rectangles, and the discs that would be mistaken for them."""
+    return (*standard_shapes(), *(shape_of(CIRCLE, size) for size in _OTHER_DISCS_M))
+
+
+@lru_cache(maxsize=_KEPT)
 def sharp_outline_of(shape: SignShape) -> Floats:
     """(n, 2) corners, m: right and up about the middle of the outline's box, anticlockwise.
 
@@ -120,7 +139,7 @@ def sharp_outline_of(shape: SignShape) -> Floats:
     return np.array(corners)
 
 
-@cache
+@lru_cache(maxsize=_KEPT)
 def outline_of(shape: SignShape) -> Floats:
     """The same with rounded corners."""
     corners = sharp_outline_of(shape)
