@@ -12,6 +12,8 @@ from processing.core.arrays import Floats
 from processing.core.monitor import Monitor
 from processing.core.parameters import file, least_confidence
 from processing.core.text import Text
+from processing.methods.road.diagnostics import Diagnostic
+from processing.methods.road.requested_position import RequestedPosition
 from processing.methods.road.signs.asked_signs import asked_signs, is_near
 from processing.methods.road.signs.initial_positions import (
     FARTHEST_M,
@@ -21,6 +23,7 @@ from processing.methods.road.signs.initial_positions import (
     read_positions,
 )
 from processing.methods.road.signs.road_signs import RoadSign, road_signs
+from processing.methods.road.signs.sign_diagnostics import sign_diagnostics
 from processing.methods.road.signs.sign_shapes import SignShape, looked_for
 from processing.recording.drive import Drive
 from processing.scoring.scorers import SIGN_SCORER
@@ -79,6 +82,11 @@ def find_signs(
     found = road_signs(drives, monitor)
     signs = [one for one in found if one.confidence >= parameters.least_confidence]
     return CandidateResult(_candidates(signs), _note(drives, found, signs))
+
+
+def diagnose_signs(asked: RequestedPosition, parameters: SignParameters) -> tuple[Diagnostic, ...]:
+    """The plates about a place with the outlines laid on them, and what speaks for each."""
+    return sign_diagnostics(asked, parameters.least_confidence)
 
 
 def _by_positions(
@@ -185,5 +193,6 @@ SIGNS = Tool(
     button=ToolButton(
         Text("Find road signs", "道路標識を抽出"), "Ctrl+Shift+F7", "mdi6.sign-direction"
     ),
+    diagnostics=diagnose_signs,
     scorer=SIGN_SCORER,
 )

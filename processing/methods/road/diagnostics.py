@@ -45,8 +45,11 @@ class Diagnostic:
     outcomes : tuple of DiagnosticTest
         In the order in which the tool asks.
     is_taken : bool
+    outline : (n, 3) float64 or None
+        Ring of what was laid on the points there, m, project CRS; its first place isn't repeated.
     """
 
     xyz: NDArray[np.float64]
     outcomes: tuple[DiagnosticTest, ...]
     is_taken: bool
+    outline: NDArray[np.float64] | None = None

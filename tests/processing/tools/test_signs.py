@@ -12,6 +12,7 @@ import pytest
 
 from processing.core.errors import BadFile
 from processing.core.monitor import SilentMonitor
+from processing.image.scan_lines.scanlines import ScanlineSettings, scanline_through
 from processing.laboratory.simulate.roadside.sign_plates import (
     PlateMounting,
     PlateShape,
@@ -21,9 +22,10 @@ from processing.laboratory.simulate.roadside.sign_plates import (
     outline,
 )
 from processing.laboratory.simulate.scene.mesh import TriangleShape, box, tube
+from processing.methods.road.requested_position import RequestedPosition
 from processing.recording.drive import Drive
 from processing.tools.runner import RunRequest, run
-from processing.tools.signs import SignParameters
+from processing.tools.signs import SignParameters, diagnose_signs
 from processing.tools.tool import Candidate, CandidateResult
 from tests.processing.methods.road.bad_recordings import (
     HEAD_45,
@@ -40,6 +42,7 @@ from tests.processing.methods.road.bad_recordings import (
     road_along,
     straight,
     told_by,
+    told_of,
 )
 
 LENGTH_M = 34.0
@@ -208,6 +211,30 @@ def test_a_plate_below_a_sign_is_its_supplement(told: RunOutcome) -> None:
 @pytest.mark.parametrize(("plate", "form"), POSTS, ids=[form for _, form in POSTS])
 def test_what_a_sign_hangs_on_is_named(told: RunOutcome, plate: KnownPlate, form: str) -> None:
     assert sign_at(told, plate).attributes["post"] == form
+
+
+@pytest.mark.parametrize("plate", [CIRCLE, BUS_STOP], ids=["sign", "bus stop"])
+def test_diagnostics_lay_the_outline_on_a_plate_and_say_why_it_is_taken(
+    drives: tuple[Drive, ...], plate: KnownPlate
+) -> None:
+    place = plate.centroid + ORIGIN
+    scanlines = scanline_through(drives[0], place, ScanlineSettings())
+    assert scanlines is not None
+    looked_at = diagnose_signs(RequestedPosition(drives[0], place, scanlines), SignParameters())
+    (found,) = (one for one in looked_at if math.dist(one.xyz, place) < 0.05)
+    assert found.is_taken is (plate is CIRCLE)
+    assert found.outcomes[0].is_met is (plate is CIRCLE)
+    assert found.outline is not None
+    radii = np.linalg.norm(found.outline - place, axis=1)
+    assert radii == pytest.approx(plate.plate.size_m / 2, abs=0.04)
+
+
+def test_signs_are_found_without_a_trajectory(tmp_path: Path) -> None:
+    request = delivered(recording(), tmp_path)
+    shine(request.inputs[0])
+    told = told_of("signs", replace(request, trajectories=()), tmp_path)
+    assert sign_at(told, TRIANGLE).attributes["shape"] == "triangle"
+    assert sign_at(told, GUIDE).attributes["shape"] == "rectangle"
 
 
 def asked(drives: tuple[Drive, ...], table: Path, text: str) -> CandidateResult:

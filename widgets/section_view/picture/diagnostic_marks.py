@@ -83,6 +83,9 @@ class DiagnosticMarks:
                 painter.drawPolyline(QPolygonF([QPointF(x, y) for x, y in spots.tolist()]))
         for shown in sorted(_diagnostics_of(picture), key=lambda shown: shown.diagnostic.is_taken):
             x, y = viewport.to_screen(projection.on_plane(shown.section[None]))[0].tolist()
+            if len(shown.outline):
+                ring = viewport.to_screen(projection.on_plane(shown.outline)).tolist()
+                _paint_outline(painter, ring, is_taken=shown.diagnostic.is_taken)
             _paint_mark(painter, QPointF(x, y), is_taken=shown.diagnostic.is_taken)
 
     def paint_words(
@@ -196,6 +199,17 @@ def _paint_mark(painter: QPainter, at: QPointF, *, is_taken: bool) -> None:
         reach = _MARK_PX * 0.7
         painter.drawLine(QLineF(at.x() - reach, at.y() + reach, at.x() + reach, at.y() - reach))
     painter.setBrush(Qt.BrushStyle.NoBrush)
+
+
+def _paint_outline(painter: QPainter, ring: Sequence[Sequence[float]], *, is_taken: bool) -> None:
+    """What a tool laid on the points: whole where it was taken, dashed where it was not."""
+    polygon = QPolygonF([QPointF(x, y) for x, y in ring])
+    painter.setBrush(Qt.BrushStyle.NoBrush)
+    painter.setPen(QPen(_LINE_EDGE, 4.0))
+    painter.drawPolygon(polygon)
+    line = Qt.PenStyle.SolidLine if is_taken else Qt.PenStyle.DashLine
+    painter.setPen(QPen(_YES if is_taken else _NO, 2.0, line))
+    painter.drawPolygon(polygon)
 
 
 def _paint_sign(painter: QPainter, at: QPointF, *, is_met: bool) -> None:

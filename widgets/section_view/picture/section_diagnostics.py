@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -28,11 +28,14 @@ class ShownDiagnostic:
         Id of the tool.
     section : (3,) float64
         Offset, height, distance from the plane, m.
+    outline : (n, 3) float64
+        The same of the ring that was laid on the points; none: empty.
     """
 
     tool: str
     diagnostic: Diagnostic
     section: Floats
+    outline: Floats = field(default_factory=lambda: np.empty((0, 3)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +86,7 @@ def _find_diagnostics(
     asked: RequestedPosition, cut: Cut, parameters: Mapping[str, object]
 ) -> SectionDiagnostics:
     diagnostics = [
-        ShownDiagnostic(tool.id, diagnostic, cut.to_section(diagnostic.xyz.reshape(1, 3))[0])
+        _shown(tool.id, diagnostic, cut)
         for tool in TOOLS.values()
         if tool.diagnostics is not None and tool.id in parameters
         for diagnostic in tool.diagnostics(asked, parameters[tool.id])
@@ -91,6 +94,12 @@ def _find_diagnostics(
     return SectionDiagnostics(
         asked.drive.info.name, _lines(asked.scanlines, cut), tuple(diagnostics)
     )
+
+
+def _shown(tool: str, diagnostic: Diagnostic, cut: Cut) -> ShownDiagnostic:
+    ring = np.empty((0, 3)) if diagnostic.outline is None else diagnostic.outline
+    section = cut.to_section(diagnostic.xyz.reshape(1, 3))[0]
+    return ShownDiagnostic(tool, diagnostic, section, cut.to_section(ring))
 
 
 def _lines(scanlines: Scanlines, cut: Cut) -> tuple[Floats, ...]:

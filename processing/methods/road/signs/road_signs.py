@@ -9,11 +9,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from processing.core.arrays import Floats, Integers
+from processing.core.arrays import Floats
 from processing.core.monitor import Monitor, PartMonitor
 from processing.methods.road.objects.ground_heights import height_of
 from processing.methods.road.objects.sparse_plan import SparsePlan
 from processing.methods.road.objects.survey import survey_ground
+from processing.methods.road.signs.distinct_plates import distinct_plates
 from processing.methods.road.signs.piece_kernels import FIRST, FROM
 from processing.methods.road.signs.plate_fit import fit_plates
 from processing.methods.road.signs.plate_groups import plate_groups
@@ -40,9 +41,6 @@ _EVERY = 20
 
 _LIKELY = 0.1
 """Chance from which it is looked for what a plate hangs on: what is less likely is hardly shown."""
-
-_ONE_PLATE_M = 0.2
-"""Centres of two plates are farther apart: half of the smallest plate."""
 
 
 @dataclass(frozen=True)
@@ -111,10 +109,10 @@ def road_signs(
     """
     plan, ground = survey_ground(drives, PartMonitor(monitor, 0.0, 0.3))
     pieces = scan_pieces(drives, plan, ground, PartMonitor(monitor, 0.3, 0.7))
-    reaches = np.array([_reach(drive) for drive in drives])
+    reaches = np.array([reach_of(drive) for drive in drives])
     groups = plate_groups(pieces, reaches, PartMonitor(monitor, 0.7, 0.8))
     found: list[RoadSign] = []
-    ways = _Ways(drives)
+    ways = DriveWays(drives)
     for number, group in enumerate(groups):
         monitor.check()
         shapes = shapes_at(group.middle + plan.origin)
@@ -125,7 +123,10 @@ def road_signs(
         plates = plates_of(pieces, group, lines, fit)
         found += _signs(plates, pieces, (plan, ground), ways)
         monitor.report(0.8 + 0.1 * (number + 1) / len(groups))
-    signs = _one_of_each(found)
+    kept = distinct_plates(
+        [one.plate for one in found], np.array([one.confidence for one in found]), _LIKELY
+    )
+    signs = [found[number] for number in kept]
     likely = [one for one in signs if one.confidence >= _LIKELY]
     others = [one for one in signs if one.confidence < _LIKELY]
     plates = [(one.plate, one.ground_m - float(plan.origin[2])) for one in likely]
@@ -134,7 +135,7 @@ def road_signs(
     return (*held, *others)
 
 
-class _Ways:
+class DriveWays:
     """Which way the vehicles of drives went, wherever they were."""
 
     def __init__(self, drives: Sequence[Drive]) -> None:
@@ -154,7 +155,7 @@ class _Ways:
         return np.asarray(self._steps[int(self._tree.query(place[:2])[1])])
 
 
-def _reach(drive: Drive) -> float:
+def reach_of(drive: Drive) -> float:
     """How far neighbouring scan lines of a drive lie apart at most, m."""
     revolutions, trajectory = drive.revolutions, drive.trajectory
     if revolutions is None or trajectory is None:
@@ -169,7 +170,7 @@ def _signs(
     plates: Sequence[Plate],
     pieces: ScanPieces,
     below: tuple[SparsePlan, NDArray[np.float32]],
-    ways: _Ways,
+    ways: DriveWays,
 ) -> list[RoadSign]:
     """The plates of one plane with what is known of each; supplements are as sure as their sign."""
     plan, ground = below
@@ -200,19 +201,3 @@ def _point_near(plate: Plate, pieces: ScanPieces) -> tuple[int, int]:
     values = pieces.values[plate.pieces]
     nearest = int(np.linalg.norm(values[:, FROM : FROM + 3] - plate.centre, axis=1).argmin())
     return int(values[nearest, FIRST]), int(pieces.drive[plate.pieces[nearest]])
-
-
-def _one_of_each(signs: Sequence[RoadSign]) -> tuple[RoadSign, ...]:
-    """Of plates in one place the surest one."""
-    if not signs:
-        return ()
-    order = sorted(signs, key=lambda one: -one.confidence)
-    centres = np.array([one.centre for one in order])
-    near = cKDTree(centres).query_ball_point(centres, _ONE_PLATE_M)
-    taken: Integers = np.zeros(len(order), np.int64)
-    kept = []
-    for number, one in enumerate(order):
-        if not taken[number]:
-            kept.append(one)
-            taken[near[number]] = 1
-    return tuple(kept)

@@ -26,6 +26,7 @@ from processing.methods.road.signs.piece_kernels import (
     ranges_of,
     runs_kernel,
 )
+from processing.recording.columns.counted_classes import class_columns
 from processing.recording.drive import Drive
 
 _LOWEST_M = 1.0
@@ -48,6 +49,9 @@ _USUAL_PULSES = 2_000
 _LEAST_HIGH = 0.1
 """Share of points that rise above the ground from which they tell what is bright; where fewer do,
 signs are many of them, and the road tells it too."""
+
+_LOWEST_SHARE = 0.05
+"""Of the points of a few turns: on the road, not below it."""
 
 _FEWEST_STRAIGHT_M = 0.012
 _STRAIGHT_NOISES = 4.0
@@ -84,9 +88,9 @@ class ScanPieces:
 class _Head:
     """What is known of a drive's scanner: where it was, how fine it looks, what is bright to it."""
 
-    def __init__(self, drive: Drive, plan: SparsePlan, ground: NDArray[np.float32]) -> None:
+    def __init__(self, drive: Drive, plan: SparsePlan, ground: NDArray[np.float32] | None) -> None:
         self._drive, self._plan = drive, plan
-        self._ground = ground.reshape(-1)
+        self._ground = None if ground is None else ground.reshape(-1)
         self._lever = head_position(drive)
         revolutions = drive.revolutions
         self.pulses = revolutions.pulses_per_revolution if revolutions else _USUAL_PULSES
@@ -113,7 +117,10 @@ class _Head:
         )
 
     def heights(self, local: Floats) -> NDArray[np.float32]:
-        """(n,) above the ground."""
+        """(n,) above the ground; where it isn't given, above what lies lowest among the points."""
+        if self._ground is None:
+            low = np.quantile(local[:, 2], _LOWEST_SHARE) if len(local) else 0.0
+            return (local[:, 2] - low).astype(np.float32)
         heights = np.empty(len(local), np.float32)
         heights_kernel(local, self._plan.table, self._ground, heights)
         return heights
@@ -176,6 +183,17 @@ def scan_pieces(
     middles = np.ascontiguousarray((whole[:, 0:3] + whole[:, 3:6]) / 2)
     heights = heads[0].heights(middles)
     return ScanPieces(whole, np.concatenate(owners), np.concatenate(rows), middles[:, 2] - heights)
+
+
+def pieces_between(drive: Drive, start: int, stop: int, plan: SparsePlan) -> ScanPieces:
+    """Pieces of some points of a drive alone, with the road there for ground."""
+    head = _Head(drive, plan, None)
+    local = drive.coordinates.chunk_about(start, stop, plan.origin)
+    is_noise = class_columns(drive.columns).noise_between(start, stop)
+    found, pulses = _pieces_of(DriveChunk(0, start, local, is_noise), head)
+    ground = float(np.quantile(local[:, 2], _LOWEST_SHARE))
+    rows = (pulses / head.pulses).astype(np.int64)
+    return ScanPieces(found, np.zeros(len(found), np.int64), rows, np.full(len(found), ground))
 
 
 def _pieces_of(chunk: DriveChunk, head: _Head) -> tuple[Floats, Integers]:
