@@ -10,7 +10,10 @@ import numpy as np
 from processing.core.monitor import Monitor
 from processing.core.parameters import least_confidence, length
 from processing.core.text import Text
+from processing.methods.road.diagnostics import Diagnostic
+from processing.methods.road.poles.shaft_diagnostics import shaft_diagnostics
 from processing.methods.road.poles.street_poles import StreetPole, street_poles
+from processing.methods.road.requested_position import RequestedPosition
 from processing.recording.drive import Drive
 from processing.scoring.scorers import POLE_SCORER
 from processing.tools.tool import (
@@ -37,6 +40,7 @@ class PoleParameters:
             "Lower posts are left out: 1.5 m leaves out bollards and delineators.",
             "これより低いものは出力しません。1.5 mにすると車止めと視線誘導標を除きます。",
         ),
+        picture="pole/lowest",
     )
     least_confidence: float = least_confidence(
         0.5,
@@ -58,6 +62,11 @@ def find_poles(
         if one.confidence >= parameters.least_confidence and one.height_m >= parameters.lowest_m
     ]
     return CandidateResult(tuple(_candidate(one) for one in poles), _note(drives, found, poles))
+
+
+def diagnose_poles(asked: RequestedPosition, _parameters: PoleParameters) -> tuple[Diagnostic, ...]:
+    """The circles of the shafts about a place, and what makes them shafts."""
+    return shaft_diagnostics(asked)
 
 
 def _note(
@@ -117,5 +126,6 @@ POLES = Tool(
     method=SurveyFinder(find_poles),
     makes=("pole",),
     button=ToolButton(Text("Find poles", "柱状物を抽出"), "Ctrl+Shift+F11", "mdi6.post-lamp"),
+    diagnostics=diagnose_poles,
     scorer=POLE_SCORER,
 )

@@ -9,7 +9,10 @@ from dataclasses import dataclass
 from processing.core.monitor import Monitor
 from processing.core.parameters import least_confidence, length
 from processing.core.text import Text
+from processing.methods.road.diagnostics import Diagnostic
+from processing.methods.road.requested_position import RequestedPosition
 from processing.methods.road.wires.street_wires import StreetWire, WireSettings, street_wires
+from processing.methods.road.wires.wire_diagnostics import wire_diagnostics
 from processing.recording.drive import Drive
 from processing.scoring.scorers import WIRE_SCORER
 from processing.tools.tool import (
@@ -39,6 +42,7 @@ class WireParameters:
             "Thin lines nearer to the ground are no wires.",
             "地面からこの高さより低い線状の物は、架線とみなしません。",
         ),
+        picture="wire/lowest",
     )
     shortest_m: float = length(
         3.0,
@@ -49,6 +53,7 @@ class WireParameters:
             "Shorter pieces are left out: railings and pipes of buildings.",
             "これより短いものは出力しません。建物の手すりや配管などです。",
         ),
+        picture="wire/shortest",
     )
     road_clearance_m: float = length(
         5.0,
@@ -64,6 +69,7 @@ class WireParameters:
             "第7条）、低圧・高圧架空電線は6 m（電気設備の技術基準の解釈 第68条）、"
             "引込線は5 m（同 第116条）です。",
         ),
+        picture="wire/road",
     )
     least_confidence: float = least_confidence(
         0.5,
@@ -85,6 +91,12 @@ def find_wires(
         tuple(_candidate(one, parameters.road_clearance_m) for one in wires),
         _note(drives, found, wires, parameters.road_clearance_m),
     )
+
+
+def diagnose_wires(asked: RequestedPosition, parameters: WireParameters) -> tuple[Diagnostic, ...]:
+    """The lines through a section that are wires and those that are none, with their points."""
+    settings = WireSettings(parameters.lowest_m, parameters.shortest_m)
+    return wire_diagnostics(asked, settings, parameters.least_confidence)
 
 
 def _note(
@@ -158,5 +170,6 @@ WIRES = Tool(
     button=ToolButton(
         Text("Find wires", "架線を抽出"), "Ctrl+Shift+F12", "mdi6.transmission-tower"
     ),
+    diagnostics=diagnose_wires,
     scorer=WIRE_SCORER,
 )

@@ -36,22 +36,34 @@ from processing.methods.road.poles.shaft_kernels import (
 )
 from processing.recording.drive import Drive
 
-_ABOUT_M = 0.7
+ABOUT_M = 0.7
 """Points so near to a column may be of its shaft: half the thickest and what columns are off."""
+
+_ONE_M = 0.3
+"""Columns nearer to each other are of one pole, as thick as two cells; each would get a half."""
 
 _OF_COLUMN = 2
 """Shafts of a column: a post and the trunk, wall or stay beside it."""
 
-_LIMITS = ShaftLimits(
-    least_m=0.01, most_m=0.3, steepest=0.25, low_m=0.15, high_m=3.0, gap_m=1.5, noise_m=0.015
-)
-"""Radii from canes of banners to the feet of the thickest poles (JIS A 5373: 17 m, 46 cm), leans to
-14 degrees; first looked for between grass and most crowns; hidden by plates and twigs for 1.5 m."""
+MOST_DIAMETER_M = 0.6
+"""The feet of the thickest poles have 46 cm (JIS A 5373: 17 m), their sockets more."""
 
-_LEAST_LONG_M = 0.4
+_LIMITS = ShaftLimits(
+    least_m=0.01,
+    most_m=MOST_DIAMETER_M / 2,
+    steepest=0.25,
+    low_m=0.15,
+    high_m=3.0,
+    gap_m=1.5,
+    noise_m=0.015,
+)
+"""Radii from canes of banners on, leans to 14 degrees; first looked for between grass and most
+crowns; hidden by plates and twigs for 1.5 m."""
+
+LEAST_LONG_M = 0.4
 """The shortest delineators, 0.5 m, with a decimetre hidden."""
 
-_LEAST_SLABS, _LEAST_ARC, _MOST_INSIDE = 0.5, 0.24, 0.6
+LEAST_SLABS, LEAST_ARC, MOST_INSIDE = 0.5, 0.24, 0.6
 """Of the heights that show it, of its circumference, and of points within it for each on it: a
 scanner sees nearly half of any post on all its heights, and nothing inside."""
 
@@ -112,12 +124,45 @@ def find_shafts(
     columns : FoundColumns
         What stands upright on it.
     """
-    gathered = points_about(drives, plan, columns.middles, _ABOUT_M, PartMonitor(monitor, 0.0, 0.8))
+    columns = _distinct(columns)
+    gathered = points_about(drives, plan, columns.middles, ABOUT_M, PartMonitor(monitor, 0.0, 0.8))
     found: list[Shaft] = []
     for members in passes_of(drives):
         monitor.check()
         found += _of_pass(columns, _only(gathered, members))
     return _one_of_each(found)
+
+
+def _distinct(columns: FoundColumns) -> FoundColumns:
+    """Of columns that are one the one that stands free at the most heights."""
+    from scipy.spatial import cKDTree
+
+    if len(columns) < 2:
+        return columns
+    kept = np.ones(len(columns), np.bool_)
+    heights = np.bitwise_count(columns.slabs)
+    pairs = cKDTree(columns.middles).query_pairs(_ONE_M, output_type="ndarray")
+    for a, b in pairs[np.lexsort(pairs.T)].tolist():
+        if kept[a] and kept[b]:
+            kept[b if heights[a] >= heights[b] else a] = False
+    return FoundColumns(columns.middles[kept], columns.ground[kept], columns.slabs[kept])
+
+
+def shafts_about(points: Floats) -> list[Floats]:
+    """What the kernel tells of the shafts at one place, whether they are taken or not.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        m about the place on the ground.
+
+    Returns
+    -------
+    list of (SHAFT_WIDTH,) float64
+    """
+    told = np.zeros((1, _OF_COLUMN, SHAFT_WIDTH))
+    shafts_kernel(points, np.array([0, len(points)], np.int64), _LIMITS, told)
+    return [one for one in told[0] if one[RADIUS] > 0]
 
 
 def _only(gathered: ColumnPoints, members: Sequence[int]) -> ColumnPoints:
@@ -143,9 +188,9 @@ def _of_pass(columns: FoundColumns, gathered: ColumnPoints) -> list[Shaft]:
 
 
 def _are_shafts(told: Floats) -> NDArray[np.bool_]:
-    is_shaft = (told[..., RADIUS] > 0) & (told[..., TOP] - told[..., LOW] >= _LEAST_LONG_M)
-    is_shaft &= (told[..., SLABS] >= _LEAST_SLABS) & (told[..., ARC] >= _LEAST_ARC)
-    return np.asarray(is_shaft & (told[..., INSIDE] <= _MOST_INSIDE))
+    is_shaft = (told[..., RADIUS] > 0) & (told[..., TOP] - told[..., LOW] >= LEAST_LONG_M)
+    is_shaft &= (told[..., SLABS] >= LEAST_SLABS) & (told[..., ARC] >= LEAST_ARC)
+    return np.asarray(is_shaft & (told[..., INSIDE] <= MOST_INSIDE))
 
 
 def _standing(columns: FoundColumns, gathered: ColumnPoints, column: int, told: Floats) -> Shaft:

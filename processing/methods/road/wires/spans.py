@@ -26,7 +26,7 @@ _USUAL_BEND, _BEND_OFF = 0.004, 0.004
 """Half of the second derivative of usual wires, 1/m, and how far others are off: spans of 25 to
 35 m sag by 0.3 to 1.2 m, which is 4 · sag / length²."""
 
-_MOST_OFF_M = 0.03
+MOST_OFF_M = 0.03
 """Noise of a piece that is one wire: a cable's thickness, two passes and the scanner's own."""
 
 _GAP_M, _GAP_SHARE = 15.0, 1.5
@@ -162,9 +162,9 @@ def _pieces(local: Floats, lines: Integers) -> list[WireSpan]:
     span = _fit(local, lines)
     if span is None:
         return []
-    is_whole = span.lines.size > 0.9 * lines.size and span.noise_m < _MOST_OFF_M / 2
+    is_whole = span.lines.size > 0.9 * lines.size and span.noise_m < MOST_OFF_M / 2
     if is_whole or lines.size < 2 * _FEWEST:
-        return [span] if span.noise_m < _MOST_OFF_M else []
+        return [span] if span.noise_m < MOST_OFF_M else []
     order = lines[np.argsort(span.along(local[lines]), kind="stable")]
     best: tuple[float, list[WireSpan]] | None = None
     for share in np.linspace(0.1, 0.9, 17):
@@ -175,12 +175,12 @@ def _pieces(local: Floats, lines: Integers) -> list[WireSpan]:
             continue
         covered = sum(part.lines.size for part in found)
         cost = sum(part.noise_m**2 * part.lines.size for part in found)
-        cost += (lines.size - covered) * _MOST_OFF_M**2
+        cost += (lines.size - covered) * MOST_OFF_M**2
         if best is None or cost < best[0]:
             best = (cost, found)
-    alone = span.noise_m**2 * span.lines.size + (lines.size - span.lines.size) * _MOST_OFF_M**2
+    alone = span.noise_m**2 * span.lines.size + (lines.size - span.lines.size) * MOST_OFF_M**2
     if best is None or best[0] > 0.6 * alone:
-        return [span] if span.noise_m < _MOST_OFF_M else []
+        return [span] if span.noise_m < MOST_OFF_M else []
     return [one for part in best[1] for one in _pieces(local, np.sort(part.lines))]
 
 
@@ -233,7 +233,7 @@ def _both(local: Floats, one: WireSpan, other: WireSpan) -> WireSpan | None:
     if both is None or both.lines.size < 0.9 * (one.lines.size + other.lines.size):
         return None
     worse = max(one.noise_m, other.noise_m)
-    if both.noise_m > max(_WORSE * worse, worse + _WORSE_M) or both.noise_m > _MOST_OFF_M:
+    if both.noise_m > max(_WORSE * worse, worse + _WORSE_M) or both.noise_m > MOST_OFF_M:
         return None
     is_kept = all(_near_ends(both, part) < _SIDE_M for part in (one, other))
     return both if is_kept else None

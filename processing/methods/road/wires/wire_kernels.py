@@ -20,6 +20,20 @@ _MOST_NEAR = 96
 _DIRECTIONS = 20
 """Of these points, how many give a direction."""
 
+_BIN, _SIDE = 0.05, 64
+"""Directions are told apart by their tangents to this: a wire's points, off by a centimetre half a
+metre away, share a bin or lie in the next one. Bins along a side of a map, margins included."""
+
+_OVERLAP = 1.15
+"""Tangent up to which a direction counts in both maps, of the one axis and of the other."""
+
+_SAME_WAY = 0.985
+"""Cosine between the directions of two points of one line: 10°, what points 16 cm off by 3 cm
+leave open."""
+
+_AGREED = 3
+"""Points that give one direction: the fewest of a line without the one that it goes through."""
+
 
 class LineLimits(NamedTuple):
     """What a piece of a wire is.
@@ -94,39 +108,34 @@ def short_runs_kernel(
 
 
 @kernel
-def _cell_of(place: Floats, shape: Integers, low: Floats, size_m: float) -> int:
-    i = int((place[0] - low[0]) / size_m)
-    j = int((place[1] - low[1]) / size_m)
-    k = int((place[2] - low[2]) / size_m)
-    return int((i * shape[1] + j) * shape[2] + k)
-
-
-@kernel
-def _near(
-    points: Floats, point: int, cells: Integers, starts: Integers, grid: WireGrid, found: Integers
+def _spans_about(
+    cell: int, cells: Integers, starts: Integers, grid: WireGrid, spans: Integers
 ) -> int:
-    """Points within the reach of a point, by their number, thinned; how many."""
-    centre = points[point]
-    home = _cell_of(centre, grid.shape, grid.low, grid.size_m)
-    spans = np.empty((9, 2), np.int64)
+    """Write where the points of the columns of cells about a filled one lie; how many there are."""
     total = 0
     for number in range(9):
         i, j = number // 3 - 1, number % 3 - 1
-        base = home + (i * grid.shape[1] + j) * grid.shape[2] - 1
+        base = cells[cell] + (i * grid.shape[1] + j) * grid.shape[2] - 1
         first = np.searchsorted(cells, base)
         last = first
         while last < cells.size and cells[last] <= base + 2:
             last += 1
         spans[number, 0], spans[number, 1] = starts[first], starts[last]
         total += starts[last] - starts[first]
-    # Of the cells about it a sphere holds a sixth.
-    every = total // (6 * _MOST_NEAR) + 1
+    return total
+
+
+@kernel
+def _near(
+    points: Floats, point: int, spans: Integers, grid: WireGrid, every: int, found: Integers
+) -> int:
+    """Points within the reach of a point, by their number, thinned; how many."""
     count = 0
     for number in range(9):
         for other in range(spans[number, 0], spans[number, 1], every):
-            east = points[other, 0] - centre[0]
-            north = points[other, 1] - centre[1]
-            up = points[other, 2] - centre[2]
+            east = points[other, 0] - points[point, 0]
+            north = points[other, 1] - points[point, 1]
+            up = points[other, 2] - points[point, 2]
             off = east * east + north * north + up * up
             if off <= grid.size_m * grid.size_m and count < found.size:
                 found[count] = other
@@ -175,31 +184,81 @@ def lines_kernel(
         Unit vectors. Written.
     """
     found = np.empty(2 * _MOST_NEAR, np.int64)
-    way = np.empty(3)
-    best = np.empty(3)
-    for point in range(len(points)):
-        directions[point] = 0.0
-        count = _near(points, point, cells, starts, grid, found)
-        if count < limits.fewest:
+    bins = np.empty((found.size, 2), np.int64)
+    votes = np.zeros(2 * _SIDE * _SIDE, np.int32)
+    spans = np.empty((9, 2), np.int64)
+    for cell in range(cells.size):
+        # Of the cells about it a sphere holds a sixth.
+        every = _spans_about(cell, cells, starts, grid, spans) // (6 * _MOST_NEAR) + 1
+        for point in range(starts[cell], starts[cell + 1]):
+            directions[point] = 0.0
+            count = _near(points, point, spans, grid, every, found)
+            if count >= limits.fewest:
+                _vote(points, point, found[:count], limits, bins, votes)
+                _best_line(points, point, found[:count], limits, (bins, votes), directions)
+                for one in range(count):
+                    for of_map in range(2):
+                        if bins[one, of_map] >= 0:
+                            votes[bins[one, of_map]] = 0
+
+
+@kernel
+def _vote(
+    points: Floats,
+    point: int,
+    found: Integers,
+    limits: LineLimits,
+    bins: Integers,
+    votes: NDArray[np.int32],
+) -> None:
+    """Count how many points about one lie in each direction from it, whichever way along it."""
+    for one in range(found.size):
+        bins[one] = -1
+        east = points[found[one], 0] - points[point, 0]
+        north = points[found[one], 1] - points[point, 1]
+        up = points[found[one], 2] - points[point, 2]
+        level = east * east + north * north
+        if level + up * up < (limits.reach_m / 5) ** 2 or up * up > limits.steepest**2 * level:
             continue
-        step = max(1, count // _DIRECTIONS)
-        most = 0.0
-        for one in range(0, count, step):
-            other = found[one]
-            for axis in range(3):
-                way[axis] = points[other, axis] - points[point, axis]
-            away = math.sqrt(way[0] ** 2 + way[1] ** 2 + way[2] ** 2)
-            if away < limits.reach_m / 5 or abs(way[2]) > limits.steepest * math.hypot(
-                way[0], way[1]
-            ):
-                continue
-            way /= away
-            score = _on_line(points, point, found[:count], way, limits)
-            if score > most:
-                most = score
-                best[:] = way
-        if most > 0.0:
-            directions[point] = best
+        for of_map in range(2):
+            first, second = (east, north) if of_map == 0 else (north, east)
+            if abs(second) <= _OVERLAP * abs(first):
+                i = int(second / first / _BIN + _SIDE / 2)
+                j = int(up / first / _BIN + _SIDE / 2)
+                bins[one, of_map] = (of_map * _SIDE + i) * _SIDE + j
+                votes[bins[one, of_map]] += 1
+
+
+@kernel
+def _best_line(
+    points: Floats,
+    point: int,
+    found: Integers,
+    limits: LineLimits,
+    voted: tuple[Integers, NDArray[np.int32]],
+    directions: Floats,
+) -> None:
+    """Write the direction through a point that has the most on it, of those that others share."""
+    bins, votes = voted
+    way = np.empty(3)
+    most = 0.0
+    for one in range(0, found.size, max(1, found.size // _DIRECTIONS)):
+        home = bins[one, 0] if bins[one, 0] >= 0 else bins[one, 1]
+        if home < 0:
+            continue
+        agreed = 0
+        for i in range(-1, 2):
+            for j in range(-1, 2):
+                agreed += votes[home + i * _SIDE + j]
+        if agreed < _AGREED:
+            continue
+        for axis in range(3):
+            way[axis] = points[found[one], axis] - points[point, axis]
+        way /= math.sqrt(way[0] ** 2 + way[1] ** 2 + way[2] ** 2)
+        score = _on_line(points, point, found, way, limits)
+        if score > most:
+            most = score
+            directions[point] = way
 
 
 @kernel
@@ -235,27 +294,42 @@ def groups_kernel(
 ) -> None:
     """Join points that lie on each other's lines: the first of its group is written for each."""
     found = np.empty(2 * _MOST_NEAR, np.int64)
+    spans = np.empty((9, 2), np.int64)
     for point in range(len(points)):
         group[point] = point
-    for point in range(len(points)):
-        count = _near(points, point, cells, starts, grid, found)
-        for one in range(count):
-            other = found[one]
-            if other <= point:
-                continue
-            turn = 0.0
-            for axis in range(3):
-                turn += directions[point, axis] * directions[other, axis]
-            if abs(turn) < 0.985:
-                continue
-            if (
-                _off(points, point, other, directions[point]) < core_m
-                and _off(points, point, other, directions[other]) < core_m
-            ):
-                a, b = _first(group, point), _first(group, other)
-                group[max(a, b)] = min(a, b)
+    for cell in range(cells.size):
+        every = _spans_about(cell, cells, starts, grid, spans) // (6 * _MOST_NEAR) + 1
+        for point in range(starts[cell], starts[cell + 1]):
+            count = _near(points, point, spans, grid, every, found)
+            _join(points, point, found[:count], directions, core_m, group)
     for point in range(len(points)):
         group[point] = _first(group, point)
+
+
+@kernel
+def _join(
+    points: Floats,
+    point: int,
+    found: Integers,
+    directions: Floats,
+    core_m: float,
+    group: NDArray[np.int64],
+) -> None:
+    """Join a point with those about it that lie on its line, and it on theirs."""
+    for other in found:
+        if other <= point:
+            continue
+        turn = 0.0
+        for axis in range(3):
+            turn += directions[point, axis] * directions[other, axis]
+        if abs(turn) < _SAME_WAY:
+            continue
+        if (
+            _off(points, point, other, directions[point]) < core_m
+            and _off(points, point, other, directions[other]) < core_m
+        ):
+            a, b = _first(group, point), _first(group, other)
+            group[max(a, b)] = min(a, b)
 
 
 @kernel

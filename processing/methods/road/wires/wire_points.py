@@ -100,15 +100,9 @@ def wire_points(
         Above the ground; lower lines are no wires.
     """
     parts: list[tuple[Floats, Integers, Integers]] = []
-    intervals = [_pulse_interval(drive) for drive in drives]
+    intervals = [pulse_interval(drive) for drive in drives]
     for chunk in chunks_of(drives, plan.origin, monitor):
-        stop = chunk.start + len(chunk.local)
-        times = np.asarray(drives[chunk.drive].columns["time"][chunk.start : stop], np.float64)
-        interval = intervals[chunk.drive]
-        if interval == 0.0:
-            times, interval = np.arange(len(times), dtype=np.float64), 1.0
-        short = np.empty(len(chunk.local), np.bool_)
-        short_runs_kernel(chunk.local, times, _NEAR_M, _PULSES * interval, _LONGEST_M, short)
+        short = thin_points(drives[chunk.drive], intervals[chunk.drive], chunk.start, chunk.local)
         short &= ~chunk.is_noise
         high_kernel(chunk.local, plan.table, ground.reshape(-1), lowest_m, short)
         kept = np.flatnonzero(short)
@@ -118,10 +112,30 @@ def wire_points(
     which = np.concatenate([np.empty(0, np.int64), *(one[1] for one in parts)])
     numbers = np.concatenate([np.empty(0, np.int64), *(one[2] for one in parts)])
     monitor.check()
-    return _on_lines(local, which, numbers)
+    return points_on_lines(local, which, numbers)
 
 
-def _pulse_interval(drive: Drive) -> float:
+def thin_points(drive: Drive, interval_s: float, start: int, local: Floats) -> NDArray[np.bool_]:
+    """Which of a stretch of points lie in short runs along their scan line: (n,) bool.
+
+    Parameters
+    ----------
+    interval_s : float
+        As :func:`pulse_interval` told it.
+    start : int
+        Number of the first point.
+    local : (n, 3) float64
+        m about any origin.
+    """
+    times = np.asarray(drive.columns["time"][start : start + len(local)], np.float64)
+    if interval_s == 0.0:
+        times, interval_s = np.arange(len(local), dtype=np.float64), 1.0
+    short = np.empty(len(local), np.bool_)
+    short_runs_kernel(local, times, _NEAR_M, _PULSES * interval_s, _LONGEST_M, short)
+    return short
+
+
+def pulse_interval(drive: Drive) -> float:
     """Time between pulses, s; 0 for a recording without times."""
     if not drive.info.has_measured_times or drive.count < 3:
         return 0.0
@@ -131,7 +145,16 @@ def _pulse_interval(drive: Drive) -> float:
     return float(np.quantile(steps, _INTERVAL_SHARE)) if steps.size else 0.0
 
 
-def _on_lines(local: Floats, which: Integers, numbers: Integers) -> WirePoints:
+def points_on_lines(local: Floats, which: Integers, numbers: Integers) -> WirePoints:
+    """Those of points in short runs that lie on thin free lines, and on which together.
+
+    Parameters
+    ----------
+    local : (n, 3) float64
+        m about any origin.
+    which, numbers : (n,) int64
+        Of which drive each is, and its number there.
+    """
     order, _, starts, grid = _sorted(local)
     local, which, numbers = local[order], which[order], numbers[order]
     crowded = np.zeros(len(local), np.bool_)
