@@ -2,11 +2,11 @@
 
 ``python -m processing.laboratory.road_training.pole_training``.
 
-Simulates streets of ``--seeds``, half of them worn and less exactly driven, finds all shafts on
-them and fits the weights of `processing.methods.road.poles.pole_confidence` to which of them are
-poles, of low and of high ones apart; streets of ``--check`` are not learnt from. Prints the
-weights and how many shafts of each confidence are right: of streets learnt from by weights that
-were fitted without the street itself.
+Simulates streets of ``--seeds``, half of them worn and less exactly driven, and ``--avenues``,
+finds all shafts on them and fits the weights of
+`processing.methods.road.poles.pole_confidence` to which of them are poles, of low and of high ones
+apart; streets of ``--check`` are not learnt from. Prints the weights and how many shafts of each
+confidence are right: of streets learnt from by weights that were fitted without the street itself.
 """
 
 from __future__ import annotations
@@ -26,6 +26,7 @@ from processing.core.text import Text
 from processing.formats.vectors.mapped_shapes import read_mapped
 from processing.laboratory.accuracy.road.road_scenes import (
     RoadScene,
+    avenue_options_of,
     options_of,
     simulated_scenes,
     worn_options_of,
@@ -54,18 +55,20 @@ from processing.scoring.poles import POLES
 EXPECTED_LOW = WeightPrior(
     (
         0.0,
-        *PoleFacts(-3, 3, -5, 4, 3, 1.5, 1, -2, -8, -8, -4, -1, -0.5, 1, 0.1, 0.1, 0.1, -2, -8),
+        *PoleFacts(
+            -3, 3, -5, 4, 3, 1.5, 1, -2, -8, -8, -4, -1, -0.5, 1, -0.1, 0.1, 0.1, 0.1, -2, -8
+        ),
     ),
-    (4.0, *PoleFacts(3, 3, 5, 4, 4, 1.5, 3, 2, 6, 6, 3, 2, 1, 1, 0.1, 0.1, 0.1, 2, 8)),
+    (4.0, *PoleFacts(3, 3, 5, 4, 4, 1.5, 3, 2, 6, 6, 3, 2, 1, 1, 0.1, 0.1, 0.1, 0.1, 2, 8)),
 )
 EXPECTED_HIGH = WeightPrior(
-    (0.0, *PoleFacts(-3, 2, -4, 3, 3, 1, 1, -2, -1, -4, -2, -3, -1, 1, 2, 2, 3, -1, -5)),
-    (4.0, *PoleFacts(3, 2, 4, 3, 4, 1.5, 3, 2, 2, 5, 2, 4, 2, 2, 2, 2, 3, 2, 5)),
+    (0.0, *PoleFacts(-3, 2, -4, 3, 3, 1, 1, -2, -1, -4, -2, -1, -1, 1, -3, 2, 2, 3, -1, -5)),
+    (4.0, *PoleFacts(3, 2, 4, 3, 4, 1.5, 3, 2, 2, 5, 2, 2, 2, 2, 3, 2, 2, 3, 2, 5)),
 )
 """Tens of streets have few poles of each kind, so much is left to what reasoning expects."""
 
-_SEEDS, _CHECK = "900-917", "918-923"
-"""Streets that the poles' weights were learnt from, 70 m long each."""
+_SEEDS, _AVENUES, _CHECK = "900-917", "600-615", "918-923"
+"""Streets that the weights were learnt from, usual ones and avenues, and others to check with."""
 
 _NOISE_CODES = (7, 18)
 
@@ -161,7 +164,13 @@ def _scenes(seeds: Sequence[int], length_m: float) -> Iterator[RoadScene]:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """The command."""
-    asked = training_streets("pole_training", arguments, _scenes, seeds=(_SEEDS, _CHECK))
+    asked = training_streets(
+        "pole_training",
+        arguments,
+        _scenes,
+        (_SEEDS, _CHECK),
+        others={"avenues": (_AVENUES, avenue_options_of)},
+    )
     known, check = known_shafts(asked.learnt), known_shafts(asked.check)
     for low, expected in ((True, EXPECTED_LOW), (False, EXPECTED_HIGH)):
         sys.stdout.write(learn_weights(PoleFacts._fields, expected, known[low], check[low]))

@@ -2,17 +2,24 @@
 
 from __future__ import annotations
 
+import csv
 import math
+from datetime import UTC, datetime
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from processing.core.monitor import SilentMonitor
+from processing.formats.ledgers.ledger_columns import TableStyle
+from processing.formats.ledgers.ledger_csv import write_ledger
 from processing.laboratory.simulate.scene.mesh import TriangleShape, box, grid, tube
-from processing.tools.poles import PoleParameters
+from processing.map.catalogue_file import read_catalogue
+from processing.project.results.found_features import found_features
+from processing.tools.poles import POLES, PoleParameters
 from processing.tools.runner import RunRequest, run
 from processing.tools.tool import Candidate, CandidateResult
+from resources import path_of
 from tests.processing.methods.road.bad_recordings import (
     HEAD_45,
     ORIGIN,
@@ -210,6 +217,22 @@ def test_a_pole_tells_how_it_leans_and_tapers(told: RunOutcome) -> None:
 def test_trees_and_posts_of_fences_are_no_poles(told: RunOutcome) -> None:
     assert len(told.candidates) == len(HEIGHTS_M)
     assert all(one.kind == "pole" for one in told.candidates)
+
+
+def test_the_ledger_of_poles_is_true(told: RunOutcome, tmp_path: Path) -> None:
+    now, path = datetime.now(UTC), tmp_path / "ledger_pole.csv"
+    result = CandidateResult(told.candidates)
+    found = found_features(result, POLES, PoleParameters(), ("left",), started=now, finished=now)
+    catalogue = read_catalogue(path_of("catalogue/level500.toml"))
+    write_ledger(path, found.change.added, catalogue["pole"], TableStyle("en", crs="EPSG:6677"))
+    with path.open(encoding="utf-8-sig", newline="") as file:
+        rows = {row["Kind of pole"]: row for row in csv.DictReader(file)}
+    assert set(rows) == set(HEIGHTS_M)
+    for kind, row in rows.items():
+        assert float(row["Height [m]"]) == pytest.approx(HEIGHTS_M[kind], abs=0.25)
+        assert float(row["Diameter [m]"]) == pytest.approx(DIAMETERS_M[kind], abs=0.01)
+        for axis, name in enumerate(("Easting (Y) [m]", "Northing (X) [m]", "Height (H) [m]")):
+            assert float(row[name]) == pytest.approx((FEET[kind] + ORIGIN)[axis], abs=0.04)
 
 
 def test_a_street_without_poles_is_told(tmp_path: Path) -> None:

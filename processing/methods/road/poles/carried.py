@@ -93,17 +93,14 @@ yards less, and the error of it."""
 _SHORT_M = 1.35
 """Bollards and delineators are lower: 0.65 to 0.85 m (車止め), up to 1.2 m (視線誘導標設置基準)."""
 
-_THIN_POST_M = 0.07
+_THIN_POST_M, _REFLECTOR_POST_M = 0.07, 0.1
 """Diameter between posts of delineators, 34 to 60.5 mm, and of bollards, 76.3 mm and more
-(JIS G 3444); thicker delineators show by their reflectors."""
+(JIS G 3444). Up to the second one a reflector tells delineators, of 89.1 mm and of rubber (80 mm),
+from bollards, whose bands shine too (114.3 mm and more)."""
 
 _UTILITY_M, _UTILITY_HIGH_M = 0.2, 7.5
 """Diameter 1.2 m above the ground and height of a utility pole whose wires weren't seen: poles of
 concrete are 14 to 22 cm thick at the top and a 75th more each metre below (JIS A 5373)."""
-
-_BRIGHT = 2.5
-"""Intensity of retro-reflectors over that of the post: it is more than ten times where the scanner
-tells it in proportion, and half as much again on a logarithmic scale."""
 
 
 @dataclass(frozen=True)
@@ -322,18 +319,23 @@ def _bulges(patch: Floats) -> bool | None:
     return bool(is_sure and 1 / _MOST_RADIUS_M < 2 * bulge < 1 / _LEAST_RADIUS_M)
 
 
-def type_of(shaft: Shaft, carried: Carried, bright: float) -> str:
+def is_short(shaft: Shaft) -> bool:
+    """Whether a shaft is as low as bollards and delineators are."""
+    return shaft.top_m < _SHORT_M
+
+
+def type_of(shaft: Shaft, carried: Carried, *, is_reflecting: bool) -> str:
     """The contract's name of a pole's type.
 
     Parameters
     ----------
-    bright : float
-        Intensity of its brightest tenth over its median; 0 where the recording has none.
+    is_reflecting : bool
+        Whether it has a reflector, which is asked of low ones only.
     """
     diameter, high = 2 * shaft.radius_at(min(1.2, shaft.top_m / 2)), shaft.top_m
-    if high < _SHORT_M:
-        is_reflector = bright > _BRIGHT and diameter < 1.4 * _THIN_POST_M
-        return "delineator" if diameter < _THIN_POST_M or is_reflector else "bollard"
+    if is_short(shaft):
+        thickest = _REFLECTOR_POST_M if is_reflecting else _THIN_POST_M
+        return "delineator" if diameter < thickest else "bollard"
     has_plate = carried.plate_points >= _PLATE_FEWEST and carried.plate_m > _LEAST_PLATE_M
     plate = "mirror_pole" if carried.curved > _CURVED else "sign_pole"
     is_straight = high < _HIGH_M or shaft.taper < _CONCRETE_TAPER / 2

@@ -7,6 +7,7 @@ from typing import NamedTuple
 
 from processing.methods.road.logistic import chance_of_logit
 from processing.methods.road.poles.carried import Carried
+from processing.methods.road.poles.leaves import LeavesAbout
 from processing.methods.road.poles.shaft_kernels import ARC, FREE, INSIDE, POINTS, SLABS
 from processing.methods.road.poles.shafts import Shaft
 from processing.methods.road.poles.surroundings import Surroundings
@@ -32,6 +33,10 @@ _USUAL_M = 0.2
 
 _WIRED = 4.0
 """Half metres of wires on each side that make sure."""
+
+_POST_M, _THICKER_M = 0.045, 0.03
+"""Radius of usual posts of signs and mirrors (76.3 and 89.1 mm, JIS G 3444), and m beyond it to one
+that carries leaves if leaves are about it."""
 
 _PIPE_M = 0.07
 """Radius of the thickest posts of signs and mirrors, 101.6 mm and a wrap (JIS G 3444)."""
@@ -71,6 +76,9 @@ class PoleFacts(NamedTuple):
         Decimal logarithm of the cells that twigs fill, and one, up to 2.
     flat : float
         Share of the cells about the axis that are planes or lines.
+    trunk : float
+        How much it is thicker than a post and has twigs about it, 0 to 1: lamps that stand in
+        crowns are few, trunks are many.
     plate : float
         Share of the patches beside it that are smooth surfaces.
     wired : float
@@ -98,6 +106,7 @@ class PoleFacts(NamedTuple):
     crown: float
     leafy: float
     flat: float
+    trunk: float
     plate: float
     wired: float
     pipe: float
@@ -130,6 +139,7 @@ _LOW_WEIGHTS = PoleFacts(
     crown=-1.0,
     leafy=-0.5,
     flat=0.55,
+    trunk=0.0,
     plate=0.1,
     wired=0.1,
     pipe=0.1,
@@ -153,6 +163,7 @@ _HIGH_WEIGHTS = PoleFacts(
     crown=-1.0,
     leafy=0.0,
     flat=0.0,
+    trunk=-3.0,
     plate=0.46,
     wired=1.38,
     pipe=2.65,
@@ -189,12 +200,20 @@ def facts_of(
         crown=crown.sectors / 12 * (1 - min(crown.aside, 1.0)) if crown else 0.0,
         leafy=min(math.log10(1 + crown.cells), 2.0) if crown else 0.0,
         flat=crown.flat_share if crown else 1.0,
+        trunk=_trunk(shaft, crown) if crown else 0.0,
         plate=carried.smooth,
         wired=min(carried.wires / _WIRED, 1.0),
         pipe=_pipe(shaft, rough),
         tapered=min(taper / _USUAL_TAPER, 2.0),
         thick_m=max(0.0, shaft.radius_m - _USUAL_M),
     )
+
+
+def _trunk(shaft: Shaft, crown: LeavesAbout) -> float:
+    """How much a shaft is a thick thing amid twigs; each measure counts as far as others agree."""
+    leafy = min(math.log10(1 + crown.cells), 2.0) / 2
+    thick = (shaft.radius_m - _POST_M) / _THICKER_M
+    return leafy * (1 - crown.flat_share) * min(max(thick, 0.0), 1.0)
 
 
 def _pipe(shaft: Shaft, rough: float) -> float:

@@ -83,11 +83,27 @@ _APART_M = 0.06
 _SIDES = 16
 """Directions from the line in which the axis is looked for."""
 
+_FLANK_M, _LEFT_OUT = 0.1, 0.5
+"""What lies so near to the line along a shaft's surface is its flank: a circle that leaves it out
+may touch the shaft and the plate beside it and be neither. What such a point takes from a circle,
+of what one on it gives."""
+
 _MOST_OF_SLAB = 3.0
 """Points that a slab may say for a line."""
 
 _SECTORS = 24
 """Of 15 degrees, in which an arc is covered or not."""
+
+_ABOVE_M, _ONE_AXIS_M = 2.0, 0.06
+"""m above a sleeve in which the pole in it is looked for: half of it is sure to be clear of bands
+and boxes. How far both axes may differ: sleeves hang a little askew."""
+
+_SMOOTHER = 0.75
+"""Noise of the upper one over that of the lower, where a fit took a pole and its sleeve for one."""
+
+_STEP_M, _STEPS = 0.006, 14
+"""By which a pole may be thinner than its sleeve: plates against bills are 1 to 3 cm thick with
+their studs, sockets of lamps up to 8 cm wider in radius."""
 
 _FEWEST_CLEAR = 4
 """Slabs that tell a shaft by themselves."""
@@ -150,6 +166,7 @@ def shafts_kernel(points: Floats, starts: Integers, limits: ShaftLimits, shafts:
             _strike(part, line, is_left)
             shaft = shafts[column, number]
             if _touching_circle(part, drawn, limits, line, shaft) and _settled(part, limits, shaft):
+                _thinner_above(part, limits, shaft)
                 for point in range(len(part)):
                     if abs(_off(part, point, shaft)) < _APART_M:
                         is_left[point] = False
@@ -174,6 +191,58 @@ def _settled(points: Floats, limits: ShaftLimits, shaft: Floats) -> bool:
         reached = again
     _tell(points, shaft)
     return True
+
+
+@kernel
+def _thinner_above(points: Floats, limits: ShaftLimits, shaft: Floats) -> None:
+    """Put the shaft that goes on above in its place, where this one is a sleeve or half of one.
+
+    Both have one axis; the upper one is thinner, and goes higher or is smoother: it tells the
+    pole's own diameter.
+    """
+    low = min(shaft[TOP], limits.high_m)
+    high = low + _ABOVE_M
+    thinner = _swell(points, shaft, low, high)
+    if thinner > 0.0:
+        return
+    upper = shaft.copy()
+    upper[RADIUS] += thinner
+    upper[LOW], upper[TOP] = low, high
+    above = ShaftLimits(
+        limits.least_m,
+        limits.most_m,
+        limits.steepest,
+        low,
+        high,
+        limits.gap_m,
+        limits.noise_m,
+    )
+    if not _settled(points, above, upper):
+        return
+    is_longer = upper[TOP] > shaft[TOP] + _ABOVE_M / 2
+    is_smoother = upper[NOISE] < _SMOOTHER * shaft[NOISE] and upper[TOP] > shaft[TOP] - SLAB_M
+    apart = math.hypot(upper[EAST] - shaft[EAST], upper[NORTH] - shaft[NORTH])
+    if (is_longer or is_smoother) and apart < _ONE_AXIS_M and upper[RADIUS] < shaft[RADIUS]:
+        upper[LOW] = min(shaft[LOW], upper[LOW])
+        shaft[:] = upper
+        _tell(points, shaft)
+
+
+@kernel
+def _swell(points: Floats, shaft: Floats, low_m: float, high_m: float) -> float:
+    """How far off a shaft's surface most points between two heights lie inwards; 1 without any."""
+    counts = np.zeros(_STEPS, np.int64)
+    seen = np.zeros((_STEPS, _SLABS), np.bool_)
+    for point in range(len(points)):
+        up = points[point, 2]
+        step = int(-_off(points, point, shaft) / _STEP_M)
+        if low_m <= up < high_m and 0 < step < _STEPS:
+            counts[step] += 1
+            seen[step, min(int(up / SLAB_M), _SLABS - 1)] = True
+    best = int(counts.argmax())
+    if seen[best].sum() < _RISE * (high_m - low_m) / SLAB_M:
+        return 1.0
+    return -(best + 0.5) * _STEP_M
 
 
 @kernel
@@ -320,14 +389,21 @@ def _straighten(points: Floats, drawn: Integers, line: Floats) -> None:
 def _touching_circle(
     points: Floats, drawn: Integers, limits: ShaftLimits, line: Floats, shaft: Floats
 ) -> bool:
-    """The circle touching the line that has the most on it and the least in it."""
+    """The circle touching the line that has the most on it and the least in it.
+
+    Slabs count alike: in each it is the share of what lies near, for a plate on a post has more
+    points than all of the post, and a circle that touches both is neither.
+    """
     radius, best = limits.least_m, 0.0
-    scores = np.zeros(_SLABS)
+    near = np.ones(_SLABS)
+    for point in drawn:
+        if _beside_line(points, point, line) < BESIDE_M:
+            near[min(max(int(points[point, 2] / SLAB_M), 0), _SLABS - 1)] += 1.0
     while radius <= limits.most_m:
         for sector in range(_SIDES):
             angle = 2 * math.pi * sector / _SIDES
             east, north = line[0] + radius * math.cos(angle), line[1] + radius * math.sin(angle)
-            scores[:] = 0.0
+            score = 0.0
             for point in drawn:
                 up = points[point, 2]
                 off_east = points[point, 0] - east - line[2] * up
@@ -335,13 +411,11 @@ def _touching_circle(
                 off = math.sqrt(off_east * off_east + off_north * off_north) - radius
                 slab = min(max(int(up / SLAB_M), 0), _SLABS - 1)
                 if abs(off) < limits.noise_m:
-                    scores[slab] += 1.0 - abs(off) / limits.noise_m
+                    score += (1.0 - abs(off) / limits.noise_m) / near[slab]
                 elif off < 0:
-                    scores[slab] -= 1.0
-            score = 0.0
-            for slab in range(_SLABS):
-                # A plate on a post has more points than all of the post.
-                score += math.copysign(math.sqrt(abs(scores[slab])), scores[slab])
+                    score -= 1.0 / near[slab]
+                elif _beside_line(points, point, line) < _FLANK_M:
+                    score -= _LEFT_OUT / near[slab]
             if score > best:
                 best = score
                 shaft[EAST] = east + line[2] * LEVEL_M
@@ -350,6 +424,15 @@ def _touching_circle(
         radius *= 1.25
     shaft[LEAN_EAST], shaft[LEAN_NORTH] = line[2], line[3]
     return best > 0.0
+
+
+@kernel
+def _beside_line(points: Floats, point: int, line: Floats) -> float:
+    """How far a point lies from a line in plan."""
+    up = points[point, 2]
+    east = points[point, 0] - line[0] - line[2] * up
+    north = points[point, 1] - line[1] - line[3] * up
+    return float(math.hypot(east, north))
 
 
 @kernel

@@ -15,8 +15,9 @@ from processing.core.arrays import Floats, Integers
 from processing.core.monitor import Monitor, PartMonitor
 from processing.methods.road.objects.column_points import points_about
 from processing.methods.road.objects.survey import survey_columns
-from processing.methods.road.poles.carried import Carried, carried_of, type_of
+from processing.methods.road.poles.carried import Carried, carried_of, is_short, type_of
 from processing.methods.road.poles.pole_confidence import chance_of, facts_of, is_low
+from processing.methods.road.poles.reflectors import ReflectorSearch
 from processing.methods.road.poles.shaft_kernels import LEVEL_M, POINTS
 from processing.methods.road.poles.shafts import Shaft, find_shafts
 from processing.methods.road.poles.surroundings import surroundings_of
@@ -92,7 +93,7 @@ def street_poles(drives: Sequence[Drive], monitor: Monitor) -> tuple[StreetPole,
     1. Columns stand free at some heights (:mod:`processing.methods.road.objects.columns`); in
        each, straight cones are fitted and followed upwards, pass by pass.
     2. Rails, roofs and crowns about a shaft speak against a pole.
-    3. Wires, arms and plates tell its type.
+    3. Wires, arms, plates and reflectors tell its type.
     """
     below, columns = survey_columns(drives, PartMonitor(monitor, 0.0, 0.4))
     plan = below.plan
@@ -111,11 +112,14 @@ def street_poles(drives: Sequence[Drive], monitor: Monitor) -> tuple[StreetPole,
         chance = chance_of(facts, is_low=is_low(shaft))
         if chance >= _LEAST_CHANCE:
             sure.append((chance, number, carried))
+    reflectors = ReflectorSearch(drives, shafts, around, plan.origin)
     poles: list[StreetPole] = []
     for chance, number, carried in sorted(sure, key=lambda one: (-one[0], one[1])):
         shaft = shafts[number]
         if all(np.hypot(*(shaft.foot - one.shaft.foot)[:2]) >= _APART_M for one in poles):
-            poles.append(_pole(shaft, carried, chance, plan.origin))
+            is_reflecting = is_short(shaft) and reflectors.is_reflecting(number, shaft)
+            kind = type_of(shaft, carried, is_reflecting=is_reflecting)
+            poles.append(_pole(shaft, (carried, kind), chance, plan.origin))
     monitor.report(1.0)
     return tuple(poles)
 
@@ -143,13 +147,14 @@ def usual_noise_m(shafts: Sequence[Shaft]) -> float:
     return max(float(np.quantile(noise, _SMOOTH_SHARE)), _LEAST_NOISE_M)
 
 
-def _pole(shaft: Shaft, carried: Carried, chance: float, origin: Floats) -> StreetPole:
+def _pole(shaft: Shaft, told: tuple[Carried, str], chance: float, origin: Floats) -> StreetPole:
+    """The pole that a shaft is, by what it carries and its type."""
     level = min(LEVEL_M, shaft.top_m / 2)
     return StreetPole(
         foot=shaft.foot + origin,
         shaft=shaft,
-        carried=carried,
-        type=type_of(shaft, carried, 0.0),
+        carried=told[0],
+        type=told[1],
         height_m=shaft.top_m,
         diameter_m=2 * shaft.radius_at(level),
         diameter_within_m=1.96 * 2 * math.hypot(shaft.deviation_m, shaft.noise_m / 2),

@@ -1,0 +1,102 @@
+"""Which low shafts carry a reflector: bands and discs that shine back as the faces of signs do.
+
+Delineators have one by definition (視線誘導標設置基準), posts against parking mostly none. What is
+bright is told by what else the same head measured about shafts at that range
+(:mod:`processing.methods.road.signs.brightness`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.core.arrays import Floats, Integers
+from processing.methods.road.objects.column_points import ColumnPoints
+from processing.methods.road.poles.shafts import Shaft
+from processing.methods.road.signs.brightness import CLASSES, bright_bounds
+from processing.methods.road.signs.piece_kernels import range_class
+from processing.recording.drive import Drive
+
+_SAMPLE = 20_000
+"""Points of a drive from which its brightness follows: 400 and more in each class of ranges that
+matters."""
+
+_UPRIGHT_M, _LEAST_HIGH = 0.3, 0.1
+"""Above the foot of a shaft things stand; the ground, seen askew, is darker. Share of the points
+from which they tell what is bright; on open land, where fewer rise, the ground tells it too."""
+
+_NEAR_M, _ABOVE_M = 0.08, 0.1
+"""From a shaft's surface and above its top to a reflector's points: discs stand off by up to 3 cm
+and are 7 to 10 cm wide (視線誘導標設置基準)."""
+
+_FEWEST = 2
+"""Bright points that are a reflector: one may be a mixed return."""
+
+
+class ReflectorSearch:
+    """Tells which shafts carry a reflector.
+
+    Parameters
+    ----------
+    drives : sequence of Drive
+    shafts : sequence of Shaft
+    around : ColumnPoints
+        The points about each shaft.
+    origin : (3,) float64
+        Of the plan, m, project CRS.
+    """
+
+    def __init__(
+        self,
+        drives: Sequence[Drive],
+        shafts: Sequence[Shaft],
+        around: ColumnPoints,
+        origin: Floats,
+    ) -> None:
+        self._drives, self._around, self._origin = drives, around, origin
+        feet = np.array([one.foot[2] for one in shafts])
+        above = around.local[:, 2] - np.repeat(feet, np.diff(around.starts))
+        self._bounds = [self._bounds_of(number, above) for number in range(len(drives))]
+
+    def is_reflecting(self, number: int, shaft: Shaft) -> bool:
+        """Whether a reflector is on the upper half of a shaft, by its number."""
+        part = self._around.of(number)
+        local = self._around.local[part] - shaft.foot
+        up = local[:, 2]
+        beside = local[:, :2] - up[:, None] * shaft.lean
+        away = np.hypot(beside[:, 0], beside[:, 1]) - shaft.radius_m + shaft.taper * up
+        is_on = (away < _NEAR_M) & (up > shaft.top_m / 2) & (up < shaft.top_m + _ABOVE_M)
+        lines = part.start + np.flatnonzero(is_on)
+        bright = 0
+        for drive, bounds in enumerate(self._bounds):
+            mine = lines[self._around.drives[lines] == drive]
+            intensity = self._intensity(drive, mine)
+            bright += int(np.count_nonzero(intensity >= bounds[self._classes(drive, mine)]))
+        return bright >= _FEWEST
+
+    def _bounds_of(self, drive: int, above: Floats) -> Floats:
+        """The least intensity of a bright point of a drive, for each class of ranges."""
+        mine = np.flatnonzero(self._around.drives == drive)
+        high = mine[above[mine] > _UPRIGHT_M]
+        chosen = high if high.size >= _LEAST_HIGH * mine.size else mine
+        chosen = chosen[:: chosen.size // _SAMPLE + 1]
+        return bright_bounds(self._intensity(drive, chosen), self._classes(drive, chosen))
+
+    def _intensity(self, drive: int, lines: Integers) -> NDArray[np.uint16]:
+        column = self._drives[drive].columns["intensity"]
+        return np.asarray(column[self._around.points[lines]], np.uint16)
+
+    def _classes(self, drive: int, lines: Integers) -> Integers:
+        """(n,) range class of points; the vehicle's place is near enough to the head's."""
+        trajectory = self._drives[drive].trajectory
+        if trajectory is None or lines.size == 0:
+            return np.zeros(lines.size, np.int64)
+        times = np.asarray(self._drives[drive].columns["time"][self._around.points[lines]])
+        times = np.clip(np.nan_to_num(times), trajectory.time[0], trajectory.time[-1])
+        is_known = trajectory.covers(times)
+        times = np.where(is_known, times, trajectory.time[0])
+        off = self._around.local[lines] + self._origin - trajectory.positions_at(times)
+        ranges = np.where(is_known, np.linalg.norm(off, axis=1), 0.0)
+        return np.array([range_class(one, CLASSES) for one in ranges.tolist()], np.int64)
