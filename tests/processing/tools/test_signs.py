@@ -214,7 +214,7 @@ def test_what_a_sign_hangs_on_is_named(told: RunOutcome, plate: KnownPlate, form
 
 
 @pytest.mark.parametrize("plate", [CIRCLE, BUS_STOP], ids=["sign", "bus stop"])
-def test_diagnostics_lay_the_outline_on_a_plate_and_say_why_it_is_taken(
+def test_diagnostics_draw_the_outline_on_a_plate_and_say_why_it_is_taken(
     drives: tuple[Drive, ...], plate: KnownPlate
 ) -> None:
     place = plate.centroid + ORIGIN
