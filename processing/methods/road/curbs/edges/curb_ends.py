@@ -38,6 +38,10 @@ own streets, worn ones too, 1 % of the places on curbs do (4 % at most), and 60 
 verges that were taken for the end of a curb. A jump so speaks against stones 2.5 times as much as
 none speaks for them: logarithms of 75 : 1 and of 99 : 25, about."""
 
+_END_ERROR_M = 0.05
+"""A line goes no farther than its place is known to the 5 cm that curbs are asked for: beyond, it
+would lead straight on from where it was measured."""
+
 _LEAST_M = 2.0
 """What is shorter may be litter, a joint or a wheel."""
 
@@ -47,8 +51,8 @@ def own_part(edges: JointEdges, is_known: _Flags, span: tuple[int, int]) -> tupl
 
     A place is doubted where it jumps aside, where the top is much rougher than along the line, or
     the ground at the foot is while no point lies on the face. An end is cut where most of it is
-    doubted; places hardly known count neither way. Of faces that look away the ground before them
-    lies in their shadow: how rough it is says nothing.
+    doubted; places hardly known count neither way, and none of them ends a line. Of faces that
+    look away the ground before them lies in their shadow: how rough it is says nothing.
 
     Parameters
     ----------
@@ -79,12 +83,9 @@ def own_part(edges: JointEdges, is_known: _Flags, span: tuple[int, int]) -> tupl
         votes.append(np.where(doubted, 1.0, -1.0))
     before = max(_doubted_end(one) for one in votes)
     behind = max(_doubted_end(one[::-1]) for one in votes)
-    if before + behind >= at.size:
-        return first, first
-    return (
-        int(at[before]) if before else first,
-        int(at[-1 - behind]) + 1 if behind else stop,
-    )
+    left = at[before : at.size - behind]
+    left = left[edges.across_error[left] <= _END_ERROR_M]
+    return (int(left[0]), int(left[-1]) + 1) if left.size else (first, first)
 
 
 def _jumps(across_m: _Floats) -> _Flags:

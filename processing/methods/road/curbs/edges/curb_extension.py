@@ -116,8 +116,9 @@ _STEP_SHARE, _STEP_M, _USUAL_OF_END = 0.35, 0.03, 0.75
 """A step is of the curb if it is no higher than usual by more than this share and this much; usual
 is the latter quantile near the end, as parts may be lowered. By trial."""
 
-_ERROR_M = 0.03
-"""An edge across must be known so well: no better than scanlines tell it already. By trial."""
+_ERROR_M = 0.036
+"""An edge across must be known so well, which one without points on its face is in a gap of 10 cm:
+no better than scanlines tell it already. By trial."""
 
 
 def extend_lines(

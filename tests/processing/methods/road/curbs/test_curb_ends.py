@@ -10,6 +10,7 @@ from processing.methods.road.curbs.edges.curb_ends import own_part
 from processing.methods.road.curbs.edges.curb_joins import join_edges
 from processing.methods.road.curbs.edges.curb_lines import CurbLine, lines_of
 from processing.methods.road.curbs.edges.edge_measures import (
+    ERROR_ACROSS,
     FACE_POINTS,
     HIGH_OFF,
     LOW_OFF,
@@ -68,6 +69,13 @@ def test_a_curb_ends_where_its_edge_lies_now_here_now_there(is_turned: bool) -> 
     measures[END:, [LOWER_ACROSS, UPPER_ACROSS]] += aside[:, None]
     (line,) = lines(measures[:: -1 if is_turned else 1])
     assert line.is_seen.size == pytest.approx(END, abs=2)
+
+
+def test_a_curb_ends_where_its_place_is_no_longer_known() -> None:
+    measures = curb()
+    measures[END:, ERROR_ACROSS] = 0.08
+    measures[40:50, ERROR_ACROSS] = 0.08
+    assert [line.is_seen.size for line in lines(measures)] == [END]
 
 
 def test_stones_that_have_settled_and_places_without_a_face_end_no_curb() -> None:
