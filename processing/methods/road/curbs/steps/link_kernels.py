@@ -241,6 +241,9 @@ def _better(
     for k in range(active):
         if not taken[k] and state[k, _SIGN] == found[_STEP_SIGN]:
             gap = (here - counts[k, _LAST]) * spacing
+            off = abs(found[_STEP_AT] - state[k, _AT] - state[k, _DIRECTION] * gap)
+            if off >= _MOST_OFF_M / (_WORST + 1 / _SUM):
+                continue  # so far off its cost is more than the most
             cost = _cost(state[k], gap, counts[k, _AGE], found)
             if cost < best.cost:
                 best = _Pair(cost, step, k)
