@@ -39,9 +39,9 @@ _CRS = "EPSG:6677"
 _HEADING = "## Curbs to 5 cm"
 _ABOUT = """`python -m processing.laboratory.accuracy.road.curb_streets --samples FOLDER… \
 --markdown docs/accuracy.md`: both edges, 2 m sections within 5 cm, dropped curbs included. The \
-own streets are of seeds that nobody looked at, worn ones with settled, tilted and rounded stones, \
-a trajectory that drifts by 2 cm and heads mounted 0.02° off. Passes of one street are scored \
-alone with the truth of their own drift, and together with that of their mean.
+own streets are of seeds that nobody had looked at (7319 was, later), worn ones with settled, \
+tilted and rounded stones, a trajectory that drifts by 2 cm and heads mounted 0.02° off. Passes of \
+one street are scored alone with the truth of their own drift, and together with that of their mean.
 """
 
 
