@@ -8,11 +8,27 @@ a = 112 m, Irvine 1981, Cable Structures, 1.2).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from processing.core.arrays import Floats, Integers
+from processing.methods.road.wires.span_kernels import (
+    ASIDE,
+    BEND,
+    EAST,
+    END,
+    NOISE,
+    NORTH,
+    RISE,
+    SPAN_WIDTH,
+    START,
+    TURN,
+    WAY_EAST,
+    WAY_NORTH,
+    SpanLimits,
+    span_kernel,
+)
 
 _FEWEST, _LEAST_LONG_M = 6, 1.0
 """Points and length of a piece that tells a direction."""
@@ -25,6 +41,13 @@ _TURNS = 4
 _USUAL_BEND, _BEND_OFF = 0.004, 0.004
 """Half of the second derivative of usual wires, 1/m, and how far others are off: spans of 25 to
 35 m sag by 0.3 to 1.2 m, which is 4 · sag / length²."""
+
+_LEAST_NOISE_M = 0.003
+"""Of a wire by its own thickness."""
+
+_LIMITS = SpanLimits(
+    _FEWEST, _LEAST_LONG_M, _TRIM, _LEAST_TRIM_M, _TURNS, _USUAL_BEND, _BEND_OFF, _LEAST_NOISE_M
+)
 
 MOST_OFF_M = 0.03
 """Noise of a piece that is one wire: a cable's thickness, two passes and the scanner's own."""
@@ -116,45 +139,21 @@ def spans_of(local: Floats, group: Integers) -> list[WireSpan]:
 
 def _fit(local: Floats, lines: Integers) -> WireSpan | None:
     """A wire through points; None where they are too few or too short."""
-    points = local[lines]
-    middle = points[:, :2].mean(axis=0)
-    plan = points[:, :2] - middle
-    _, axes = np.linalg.eigh(plan.T @ plan)
-    way = axes[:, 1]
-    along = plan @ way
-    if np.ptp(along) < _LEAST_LONG_M:
+    told, kept = np.empty(SPAN_WIDTH), np.empty(lines.size, np.bool_)
+    if lines.size < _FEWEST or not span_kernel(local, lines, _LIMITS, told, kept):
         return None
-    left = plan @ np.array([-way[1], way[0]])
-    kept = np.ones(lines.size, np.bool_)
-    off = np.zeros(lines.size)
-    for _ in range(_TURNS):
-        if np.count_nonzero(kept) < _FEWEST or np.ptp(along[kept]) < _LEAST_LONG_M:
-            return None
-        noise = max(float(np.sqrt(np.mean(off[kept] ** 2))), 0.003)
-        level = np.column_stack([np.ones(lines.size), along])
-        aside = np.linalg.lstsq(level[kept], left[kept], rcond=None)[0]
-        bent = np.column_stack([level, along**2])
-        normal = bent[kept].T @ bent[kept]
-        right = bent[kept].T @ points[kept, 2]
-        weight = (noise / _BEND_OFF) ** 2
-        normal[2, 2] += weight
-        right[2] += weight * _USUAL_BEND
-        rise = np.linalg.solve(normal, right)
-        off = np.hypot(left - level @ aside, points[:, 2] - bent @ rise)
-        usual = 1.2 * float(np.median(off[kept]))
-        kept = off < max(_TRIM * usual, _LEAST_TRIM_M)
-    inside = np.flatnonzero(kept)
-    inside = inside[np.argsort(along[inside], kind="stable")]
-    return WireSpan(
-        middle,
-        way,
-        aside,
-        rise,
-        float(along[inside].min()),
-        float(along[inside].max()),
-        float(np.sqrt(np.mean(off[inside] ** 2))),
-        lines[inside],
+    span = WireSpan(
+        middle=told[EAST : NORTH + 1],
+        way=told[WAY_EAST : WAY_NORTH + 1],
+        aside=told[ASIDE : TURN + 1],
+        rise=told[RISE : BEND + 1],
+        start_m=float(told[START]),
+        end_m=float(told[END]),
+        noise_m=float(told[NOISE]),
+        lines=lines[kept],
     )
+    order = np.argsort(span.along(local[span.lines]), kind="stable")
+    return replace(span, lines=span.lines[order])
 
 
 def _pieces(local: Floats, lines: Integers) -> list[WireSpan]:
