@@ -41,11 +41,13 @@ from processing.laboratory.simulate.requests import StreetRequest
 from processing.methods.road.objects.column_points import points_about
 from processing.methods.road.objects.survey import survey_columns
 from processing.methods.road.poles.pole_confidence import PoleFacts, facts_of, is_low
+from processing.methods.road.poles.roofs import fellows_of
 from processing.methods.road.poles.shaft_kernels import FREE
 from processing.methods.road.poles.shafts import Shaft, find_shafts
 from processing.methods.road.poles.street_poles import (
     REACH_M,
     carried_if_likely,
+    own_points,
     usual_noise_m,
 )
 from processing.methods.road.poles.surroundings import surroundings_of
@@ -56,14 +58,14 @@ EXPECTED_LOW = WeightPrior(
     (
         0.0,
         *PoleFacts(
-            -3, 3, -5, 4, 3, 1.5, 1, -2, -8, -8, -4, -1, -0.5, 1, -0.1, 0.1, 0.1, 0.1, -2, -8
+            -3, 3, -5, 4, 3, 1.5, 1, -2, -8, -8, -4, -0.1, -1, -0.5, 1, -0.1, 0.1, 0.1, 0.1, -2, -8
         ),
     ),
-    (4.0, *PoleFacts(3, 3, 5, 4, 4, 1.5, 3, 2, 6, 6, 3, 2, 1, 1, 0.1, 0.1, 0.1, 0.1, 2, 8)),
+    (4.0, *PoleFacts(3, 3, 5, 4, 4, 1.5, 3, 2, 6, 6, 3, 0.1, 2, 1, 1, 0.1, 0.1, 0.1, 0.1, 2, 8)),
 )
 EXPECTED_HIGH = WeightPrior(
-    (0.0, *PoleFacts(-3, 2, -4, 3, 3, 1, 1, -2, -1, -4, -2, -1, -1, 1, -3, 2, 2, 3, -1, -5)),
-    (4.0, *PoleFacts(3, 2, 4, 3, 4, 1.5, 3, 2, 2, 5, 2, 2, 2, 2, 3, 2, 2, 3, 2, 5)),
+    (0.0, *PoleFacts(-3, 2, -4, 3, 3, 1, 1, -2, -1, -4, -2, -4, -1, -1, 1, -3, 2, 2, 3, -1, -5)),
+    (4.0, *PoleFacts(3, 2, 4, 3, 4, 1.5, 3, 2, 2, 5, 2, 3, 2, 2, 2, 3, 2, 2, 3, 2, 5)),
 )
 """Tens of streets have few poles of each kind, so much is left to what reasoning expects."""
 
@@ -132,7 +134,7 @@ def _judge_shafts(scene: RoadScene) -> Iterator[tuple[bool, PoleFacts, bool]]:
     truth = read_mapped(scene.truth("poles"))
     poles = truth.of_kinds(POLES, "point", Text("poles", "柱状物"))
     true = positions_of(poles)[:, :2] - plan.origin[:2]
-    usual_m = usual_noise_m(shafts)
+    usual_m, fellows = usual_noise_m(shafts), fellows_of(shafts)
     feet = np.array([one.foot[:2] for one in shafts])
     around = points_about(scene.drives, plan, feet, REACH_M, monitor)
     labels = label_shafts(shafts, true, usual_m)
@@ -140,8 +142,8 @@ def _judge_shafts(scene: RoadScene) -> Iterator[tuple[bool, PoleFacts, bool]]:
     for number, (shaft, label) in enumerate(zip(shafts, labels, strict=True)):
         if label is not None and not (label is False and _is_noise(shaft, codes)):
             local = around.local[around.of(number)] - shaft.foot
-            beside = surroundings_of(local, shaft, usual_m)
-            carried = carried_if_likely(local, shaft, usual_m)
+            beside = surroundings_of(local, shaft, usual_m, fellows[number])
+            carried = carried_if_likely(own_points(around, number, shaft), shaft, usual_m)
             yield is_low(shaft), facts_of(shaft, beside, carried, usual_m), label
 
 

@@ -45,7 +45,7 @@ def stretch_about(asked: RequestedPosition, along_m: float) -> tuple[int, int]:
     steps = np.hypot(*np.diff(trajectory.xyz[:, :2], axis=0).T)
     along = np.concatenate([[0.0], np.cumsum(steps)])
     passed = float(np.interp(np.median(times), trajectory.time, along))
-    first = np.searchsorted(along, passed - along_m)
+    first = int(np.searchsorted(along, passed - along_m))
     last = min(int(np.searchsorted(along, passed + along_m)), len(along) - 1)
     measured = asked.drive.columns["time"]
     start, stop = np.searchsorted(measured, trajectory.time[[first, last]])

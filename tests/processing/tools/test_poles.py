@@ -13,10 +13,13 @@ import pytest
 from processing.core.monitor import SilentMonitor
 from processing.formats.ledgers.ledger_columns import TableStyle
 from processing.formats.ledgers.ledger_csv import write_ledger
+from processing.image.scan_lines.scanlines import ScanlineSettings, scanline_through
 from processing.laboratory.simulate.scene.mesh import TriangleShape, box, grid, tube
 from processing.map.catalogue_file import read_catalogue
+from processing.methods.road.requested_position import RequestedPosition
 from processing.project.results.found_features import found_features
-from processing.tools.poles import POLES, PoleParameters
+from processing.recording.drive import Drive
+from processing.tools.poles import POLES, PoleParameters, diagnose_poles
 from processing.tools.runner import RunRequest, run
 from processing.tools.tool import Candidate, CandidateResult
 from resources import path_of
@@ -171,11 +174,15 @@ def street() -> tuple[TriangleShape, ...]:
 
 
 @pytest.fixture(scope="module")
-def told(tmp_path_factory: pytest.TempPathFactory) -> RunOutcome:
-    folder: Path = tmp_path_factory.mktemp("poles")
+def drives(tmp_path_factory: pytest.TempPathFactory) -> tuple[Drive, ...]:
     way = straight(LENGTH_M)
     driven = DrivenRecording(way, facing_along(way), street(), head=HEAD_45, pulses=3_000)
-    drives = recorded(folder, driven)
+    return recorded(tmp_path_factory.mktemp("poles"), driven)
+
+
+@pytest.fixture(scope="module")
+def told(drives: tuple[Drive, ...], tmp_path_factory: pytest.TempPathFactory) -> RunOutcome:
+    folder: Path = tmp_path_factory.mktemp("columns")
     # A thin post by itself is half as likely as not: the one of the sign has .49.
     parameters = PoleParameters(least_confidence=0.4)
     request = RunRequest("poles", drives[0], parameters, tuple(drives[1:]))
@@ -217,6 +224,20 @@ def test_a_pole_tells_how_it_leans_and_tapers(told: RunOutcome) -> None:
 def test_trees_and_posts_of_fences_are_no_poles(told: RunOutcome) -> None:
     assert len(told.candidates) == len(HEIGHTS_M)
     assert all(one.kind == "pole" for one in told.candidates)
+
+
+def test_the_circles_of_a_pole_are_told_where_they_are(drives: tuple[Drive, ...]) -> None:
+    place = FEET["mirror_pole"] + ORIGIN
+    scanlines = scanline_through(drives[0], place, ScanlineSettings())
+    assert scanlines is not None
+    asked = RequestedPosition(drives[0], place, scanlines)
+    taken = [one for one in diagnose_poles(asked, PoleParameters()) if one.is_taken]
+    circles = [one for one in taken if one.outcomes[0].name.en == "Diameter of the circle"]
+    assert len(taken) > len(circles) >= 6
+    for one in circles:
+        assert one.outcomes[0].value == pytest.approx(DIAMETERS_M["mirror_pole"], abs=0.015)
+        leant = LEAN * (one.xyz[2] - place[2])
+        assert math.dist(one.xyz[:2], (place[0] + leant, place[1])) < 0.03
 
 
 def test_the_ledger_of_poles_is_true(told: RunOutcome, tmp_path: Path) -> None:

@@ -7,8 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from processing.image.scan_lines.scanlines import ScanlineSettings, scanline_through
 from processing.laboratory.simulate.scene.mesh import TriangleShape, box, tube
+from processing.methods.road.requested_position import RequestedPosition
+from processing.recording.drive import Drive
 from processing.tools.tool import Candidate
+from processing.tools.wires import WireParameters, diagnose_wires
 from tests.processing.methods.road.bad_recordings import (
     HEAD_45,
     ORIGIN,
@@ -66,11 +70,15 @@ def street() -> tuple[TriangleShape, ...]:
 
 
 @pytest.fixture(scope="module")
-def told(tmp_path_factory: pytest.TempPathFactory) -> RunOutcome:
-    folder: Path = tmp_path_factory.mktemp("wires")
+def drives(tmp_path_factory: pytest.TempPathFactory) -> tuple[Drive, ...]:
     way = straight(LENGTH_M)
     driven = DrivenRecording(way, facing_along(way), street(), head=HEAD_45, pulses=3_000)
-    return told_by("wires", recorded(folder, driven), folder)
+    return recorded(tmp_path_factory.mktemp("wires"), driven)
+
+
+@pytest.fixture(scope="module")
+def told(drives: tuple[Drive, ...], tmp_path_factory: pytest.TempPathFactory) -> RunOutcome:
+    return told_by("wires", drives, tmp_path_factory.mktemp("columns"))
 
 
 def wire_along(told: RunOutcome, path: Floats) -> Candidate:
@@ -123,6 +131,22 @@ def test_a_wire_too_low_over_the_road_is_listed(told: RunOutcome) -> None:
     assert measure(wire, "road_clearance_m") == pytest.approx(low_m, abs=0.05)
     assert "lower than 5 m over the road: 1 (" in told.sentence
     assert f"{measure(wire, 'road_clearance_m'):.2f} m" in told.sentence
+
+
+def test_a_section_tells_its_wires_with_their_residuals(drives: tuple[Drive, ...]) -> None:
+    place = np.array([18.0, NORTH_M, WALK_M]) + ORIGIN
+    scanlines = scanline_through(drives[0], place, ScanlineSettings())
+    assert scanlines is not None
+    asked = RequestedPosition(drives[0], place, scanlines)
+    told = diagnose_wires(asked, WireParameters())
+    lines = [one for one in told if len(one.outcomes) > 1 and one.is_taken]
+    points = [one for one in told if len(one.outcomes) == 1]
+    for path in WIRES[: len(HIGHS_M)]:
+        true = np.interp(18.0, path[:, 0], path[:, 2]) + ORIGIN[2]
+        assert min(abs(one.xyz[2] - true) for one in lines) < 0.03
+    assert all(abs(one.xyz[0] - place[0]) < 0.1 for one in lines)
+    assert len(points) > 2 * len(lines)
+    assert sum(one.is_taken for one in points) > 0.8 * len(points)
 
 
 def test_a_street_without_wires_is_told(tmp_path: Path) -> None:

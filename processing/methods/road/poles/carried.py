@@ -103,6 +103,11 @@ _UTILITY_M, _UTILITY_HIGH_M = 0.2, 7.5
 concrete are 14 to 22 cm thick at the top and a 75th more each metre below (JIS A 5373)."""
 
 
+_CONCRETE_M = 0.27
+"""Diameter 1.2 m above the ground beyond that of steel pipes along roads (267.4 mm, JIS G 3444):
+what tapers besides is of concrete, whatever hides its upper part."""
+
+
 @dataclass(frozen=True)
 class Carried:
     """What a shaft carries; lengths in m.
@@ -342,6 +347,8 @@ def type_of(shaft: Shaft, carried: Carried, *, is_reflecting: bool) -> str:
     if high < _TALL_M and diameter < _TALL_DIAMETER_M and has_plate and is_straight:
         return plate
     if high > _WIRED_M and carried.wires >= _WIRED_CELLS:
+        return "utility_pole"
+    if diameter > _CONCRETE_M and high > _HIGH_M and shaft.taper > _CONCRETE_TAPER:
         return "utility_pole"
     if diameter > _UTILITY_M and high > _UTILITY_HIGH_M and shaft.taper > _CONCRETE_TAPER:
         return "utility_pole"

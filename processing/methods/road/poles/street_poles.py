@@ -13,11 +13,12 @@ import numpy as np
 
 from processing.core.arrays import Floats, Integers
 from processing.core.monitor import Monitor, PartMonitor
-from processing.methods.road.objects.column_points import points_about
+from processing.methods.road.objects.column_points import ColumnPoints, points_about
 from processing.methods.road.objects.survey import survey_columns
 from processing.methods.road.poles.carried import Carried, carried_of, is_short, type_of
 from processing.methods.road.poles.pole_confidence import chance_of, facts_of, is_low
 from processing.methods.road.poles.reflectors import ReflectorSearch
+from processing.methods.road.poles.roofs import fellows_of
 from processing.methods.road.poles.shaft_kernels import LEVEL_M, POINTS
 from processing.methods.road.poles.shafts import Shaft, find_shafts
 from processing.methods.road.poles.surroundings import surroundings_of
@@ -102,13 +103,14 @@ def street_poles(drives: Sequence[Drive], monitor: Monitor) -> tuple[StreetPole,
         return ()
     feet = np.array([one.foot[:2] for one in shafts])
     around = points_about(drives, plan, feet, REACH_M, PartMonitor(monitor, 0.7, 0.9))
-    usual_m = usual_noise_m(shafts)
+    usual_m, fellows = usual_noise_m(shafts), fellows_of(shafts)
     sure: list[tuple[float, int, Carried]] = []
     for number, shaft in enumerate(shafts):
         monitor.check()
         local = around.local[around.of(number)] - shaft.foot
-        carried = carried_if_likely(local, shaft, usual_m)
-        facts = facts_of(shaft, surroundings_of(local, shaft, usual_m), carried, usual_m)
+        carried = carried_if_likely(own_points(around, number, shaft), shaft, usual_m)
+        beside = surroundings_of(local, shaft, usual_m, fellows[number])
+        facts = facts_of(shaft, beside, carried, usual_m)
         chance = chance_of(facts, is_low=is_low(shaft))
         if chance >= _LEAST_CHANCE:
             sure.append((chance, number, carried))
@@ -122,6 +124,17 @@ def street_poles(drives: Sequence[Drive], monitor: Monitor) -> tuple[StreetPole,
             poles.append(_pole(shaft, (carried, kind), chance, plan.origin))
     monitor.report(1.0)
     return tuple(poles)
+
+
+def own_points(around: ColumnPoints, number: int, shaft: Shaft) -> Floats:
+    """Points about a shaft of the heads that measured it: (n, 3) m about its foot.
+
+    Passes lie centimetres apart, which would make two plates of one and no smooth surface.
+    """
+    part = around.of(number)
+    is_own = np.isin(around.drives[part], np.unique(shaft.drives))
+    local: Floats = around.local[part][is_own] - shaft.foot
+    return local
 
 
 def carried_if_likely(local: Floats, shaft: Shaft, usual_m: float) -> Carried:

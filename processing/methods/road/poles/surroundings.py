@@ -14,6 +14,7 @@ import numpy as np
 from processing.core.arrays import Floats
 from processing.core.kernels import kernel
 from processing.methods.road.poles.leaves import LeavesAbout, leaves_about
+from processing.methods.road.poles.roofs import roof_share
 from processing.methods.road.poles.shaft_kernels import FREE
 from processing.methods.road.poles.shafts import Shaft
 
@@ -60,6 +61,8 @@ class Surroundings:
         Share of the plan within 1.25 m about its top that something fills.
     over : float
         Share of the metre above its top that something fills near its axis.
+    roof : float
+        Share of the way to another post's top that something level fills.
     crown : LeavesAbout or None
         What could be a crown; None of low shafts, and of those too rough or hemmed in for a pole.
     """
@@ -67,10 +70,13 @@ class Surroundings:
     rails: float
     cover: float
     over: float
+    roof: float
     crown: LeavesAbout | None
 
 
-def surroundings_of(points: Floats, shaft: Shaft, usual_noise_m: float) -> Surroundings:
+def surroundings_of(
+    points: Floats, shaft: Shaft, usual_noise_m: float, fellows: Floats
+) -> Surroundings:
     """What stands about a shaft.
 
     Parameters
@@ -79,6 +85,8 @@ def surroundings_of(points: Floats, shaft: Shaft, usual_noise_m: float) -> Surro
         m about its foot; those that are nearer to no other shaft.
     usual_noise_m : float
         How far points lie off the smooth shafts of this recording.
+    fellows : (k, 2) float64
+        Other shafts that end as high, m from its top.
     """
     told = np.zeros(3)
     axis = np.array([*shaft.lean, shaft.radius_m, shaft.taper, shaft.low_m, shaft.top_m])
@@ -87,7 +95,8 @@ def surroundings_of(points: Floats, shaft: Shaft, usual_noise_m: float) -> Surro
     is_rough = shaft.noise_m > _ROUGH * usual_noise_m or shaft.told[FREE] < _LEAST_FREE
     if shaft.top_m > _LEAST_CROWN_M and len(points) and not is_rough:
         crown = leaves_about(points, shaft)
-    return Surroundings(float(told[RAILS]), float(told[COVER]), float(told[OVER]), crown)
+    roof = roof_share(points, shaft, fellows)
+    return Surroundings(float(told[RAILS]), float(told[COVER]), float(told[OVER]), roof, crown)
 
 
 @kernel
