@@ -119,10 +119,10 @@ class PoleFacts(NamedTuple):
 
 # Learnt by `processing.laboratory.road_training.pole_training` from 1,264 low and 2,400 high
 # shafts, 47 and 433 of them poles, of its 18 usual streets and 16 avenues, none of the scenes that
-# results are judged by. Left out one street at a time, 96 % of the high ones given 0.9 and more were poles,
-# 82 % of those from 0.7, 59 % of those from 0.5, 43 % of those from 0.3. Low poles count
-# threefold there, since streets with rows of bollards have more of them than those did; their
-# constant, -6.98, is lowered, so that 35 of the 43 low ones given 0.5 and more are poles.
+# results are judged by. Left out one street at a time, 96 % of the high ones given 0.9 and more
+# were poles, 82 % of those from 0.7, 59 % of those from 0.5, 43 % of those from 0.3. Low poles
+# count threefold there, since streets with rows of bollards have more of them than those did;
+# their constant, -6.98, is lowered, so that 35 of the 43 low ones given 0.5 and more are poles.
 _LOW_M = 1.5
 """Top below which shafts are judged as bollards and delineators are, among posts of fences and
 people; higher ones as posts, among trunks and edges of buildings."""

@@ -56,7 +56,7 @@ def span_kernel(
     """
     count = lines.size
     along, left, off = np.empty(count), np.empty(count), np.zeros(count)
-    _lay_along(local, lines, told, along, left)
+    _measure_along(local, lines, told, along, left)
     kept[:] = True
     if along.max() - along.min() < limits.long_m:
         return False
@@ -85,7 +85,9 @@ def span_kernel(
 
 
 @kernel
-def _lay_along(local: Floats, lines: Integers, told: Floats, along: Floats, left: Floats) -> None:
+def _measure_along(
+    local: Floats, lines: Integers, told: Floats, along: Floats, left: Floats
+) -> None:
     """Write the middle and the main way of points, and where they lie along and beside it."""
     east, north = 0.0, 0.0
     for line in lines:
