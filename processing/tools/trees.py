@@ -41,6 +41,7 @@ class TreeParameters:
             "What is wider 1.2 m above the ground is no trunk of a street tree.",
             "地上1.2 mでこれより太いものは、街路樹の幹とみなしません。",
         ),
+        picture="trunk/thickest",
     )
     least_confidence: float = least_confidence(
         0.5,

@@ -44,8 +44,8 @@ from processing.scoring.trees import LEAST_TRUNK_POINTS
 from processing.tools.trees import TreeParameters
 
 EXPECTED = WeightPrior(
-    (-3.0, *TreeFacts(1.5, -6.0, -3.0, -3.0, -3.0, 2.0, 0.3, -2.0, 1.0, -1.0, -1.0, 0.5)),
-    (3.0, *TreeFacts(1.5, 4.0, 3.0, 3.0, 3.0, 3.0, 0.5, 2.0, 1.0, 1.5, 1.0, 0.5)),
+    (-3.0, *TreeFacts(1.5, -6.0, -3.0, -3.0, -3.0, 2.0, 0.3, -2.0, 1.0, -1.0, -1.0, 0.5, 0.3)),
+    (3.0, *TreeFacts(1.5, 4.0, 3.0, 3.0, 3.0, 3.0, 0.5, 2.0, 1.0, 1.5, 1.0, 0.5, 0.3)),
 )
 """What reasoning expects; a hundred trees leave some of it open."""
 

@@ -13,6 +13,7 @@ from processing.laboratory.accuracy.filters.filter_tables import markdown_table
 from processing.laboratory.accuracy.road.road_tables import ALL, percent
 from processing.laboratory.accuracy.road.tree_scenes import ScoredTrees
 from processing.scoring.confusion_matrix import BinaryConfusionMatrix
+from processing.scoring.mapped_features import MappedFeature
 from processing.scoring.object_matches import ObjectMatch, shows_enough
 from processing.scoring.trees import LEAST_ARC_DEG
 
@@ -66,18 +67,54 @@ def streets_table(streets: Sequence[ScoredTrees]) -> str:
     return markdown_table(rows)
 
 
+def kinds_table(streets: Sequence[ScoredTrees]) -> str:
+    """Trees by species or, of deliveries, by what is special about them, and by their leaves."""
+    rows = [["trees", "found, missed", "R", "diameter RMS, greatest (cm)", "within"]]
+    for group_of in (_species_of, _leaves_of):
+        groups = sorted({group_of(tree) for one in streets for tree in _asked(one)} - {""})
+        for group in groups:
+            asked = [t for one in streets for t in _asked(one) if group_of(t) == group]
+            pairs = [
+                (one, match)
+                for one in streets
+                for match in one.matches.partners
+                if group_of(match.truth) == group
+            ]
+            counts = BinaryConfusionMatrix(len(pairs), 0, len(asked) - len(pairs), 0)
+            seen = _seen(pairs)
+            rows.append(
+                [
+                    group,
+                    f"{counts.hits}, {counts.misses}",
+                    percent(counts.recall),
+                    _errors(100 * _offs(seen, "dbh_m")),
+                    _within(seen),
+                ]
+            )
+    return markdown_table(rows)
+
+
+def _asked(street: ScoredTrees) -> list[MappedFeature]:
+    """Trees that points show, and those that were found all the same."""
+    return [*(match.truth for match in street.matches.partners), *street.missed()]
+
+
+def _species_of(tree: MappedFeature) -> str:
+    return str(tree.facts.get("growth") or tree.facts.get("variant") or "")
+
+
+def _leaves_of(tree: MappedFeature) -> str:
+    share = tree.facts.get("leaf_share")
+    if not isinstance(share, float | int):
+        return ""
+    return "*bare*" if share == 0 else "*in leaf*" if share == 1 else "*few leaves*"
+
+
 def _row(name: str, streets: Sequence[ScoredTrees]) -> list[str]:
     counts = sum((one.matches.counts for one in streets), BinaryConfusionMatrix(0, 0, 0, 0))
     pairs = [(one, match) for one in streets for match in one.matches.partners]
-    seen = [
-        (one, match)
-        for one, match in pairs
-        if shows_enough(one.scene.truth, match.truth, "arc_deg", LEAST_ARC_DEG)
-    ]
+    seen = _seen(pairs)
     staked = [(one, match) for one, match in seen if one.true(match, "stakes") > 0]
-    within = [
-        abs(_off(one, match, "dbh_m")) <= one.number(match, "dbh_within_m") for one, match in seen
-    ]
     feet = [float(np.hypot(*(match.result.xyz[0] - match.truth.xyz[0])[:2])) for _, match in pairs]
     return [
         name,
@@ -85,11 +122,30 @@ def _row(name: str, streets: Sequence[ScoredTrees]) -> list[str]:
         *(percent(one) for one in (counts.precision, counts.recall, counts.f_measure)),
         _errors(100 * _offs(seen, "dbh_m")),
         _errors(100 * _offs(staked, "dbh_m")),
-        percent(float(np.mean(within))) if within else "–",
+        _within(seen),
         _rms(100 * np.array(feet)),
         _rms(_offs(pairs, "height_m")),
         _rms(_offs(pairs, "crown_m")),
     ]
+
+
+def _seen(
+    pairs: Sequence[tuple[ScoredTrees, ObjectMatch]],
+) -> list[tuple[ScoredTrees, ObjectMatch]]:
+    """Those whose diameter can be asked for."""
+    return [
+        (one, match)
+        for one, match in pairs
+        if shows_enough(one.scene.truth, match.truth, "arc_deg", LEAST_ARC_DEG)
+    ]
+
+
+def _within(seen: Sequence[tuple[ScoredTrees, ObjectMatch]]) -> str:
+    """How many errors are no greater than was told."""
+    within = [
+        abs(_off(one, match, "dbh_m")) <= one.number(match, "dbh_within_m") for one, match in seen
+    ]
+    return percent(float(np.mean(within))) if within else "–"
 
 
 def _offs(pairs: Sequence[tuple[ScoredTrees, ObjectMatch]], name: str) -> Floats:

@@ -31,6 +31,7 @@ from processing.laboratory.accuracy.road.tree_tables import (
     MeasuredTrunk,
     failures_of,
     heads_table,
+    kinds_table,
     real_table,
     streets_table,
     ways_table,
@@ -46,6 +47,8 @@ over posts and lamps, and usual streets, all with the tool's own parameters. A t
 thesis has it, within 2 m, but one to one, if 20 points on its trunk show it. Diameters are those \
 of trunks of which 60° and more were seen, stakes included; “within” is the share whose error is \
 no greater than `dbh_within_m`, which should be 95 %.
+"""
+_ABOUT_KINDS = """The same trees; of deliveries by what is special about them, where they say so.
 """
 _ABOUT_WAYS = """The same trunks, with the points within 0.9 m of the true foot, measured in \
 other ways: RMS and greatest error of those that were measured at all.
@@ -103,6 +106,7 @@ def sections_of(
     judged = [pair for one in streets for pair in one.judged]
     sections = {
         "## Street trees": f"{_ABOUT}\n{streets_table(streets)}\n",
+        "### Trees by species and leaves": f"{_ABOUT_KINDS}\n{kinds_table(streets)}\n",
         "### Trunks measured otherwise": f"{_ABOUT_WAYS}\n{ways_table(trunks)}\n\n"
         f"{heads_table(trunks)}\n",
         "### Confidence of trees": "All candidates of these streets, unlikely ones included.\n\n"

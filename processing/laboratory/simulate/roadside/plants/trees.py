@@ -130,6 +130,7 @@ def add_tree(
                 "height_m": float(extent[:, 2].max()),
                 "crown_m": float(np.ptp(extent[:, :2], axis=0).mean()),
                 "growth": growth.name,
+                "leaf_share": leaf_share(section, growth),
             },
             instance,
             spot.chainage_m,
