@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import math
 from dataclasses import replace
 from pathlib import Path
@@ -9,20 +10,30 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from processing.core.errors import Cancelled
+from processing.core.monitor import SilentMonitor
+from processing.formats.ledgers.ledger_columns import TableStyle
+from processing.formats.ledgers.ledger_csv import write_ledger
 from processing.image.scan_lines.scanlines import ScanlineSettings, scanline_through
 from processing.laboratory.simulate.scene.mesh import TriangleShape, tube
+from processing.map.catalogue import Geometry
+from processing.map.catalogue_file import read_catalogue
+from processing.map.feature import Feature, Position, Vertex
 from processing.methods.road.requested_position import RequestedPosition
 from processing.recording.drive import Drive
 from processing.tools.tool import Candidate
-from processing.tools.trees import TreeParameters, diagnose_trees
+from processing.tools.trees import TreeParameters, diagnose_trees, find_trees
+from resources import path_of
 from tests.processing.methods.road.bad_recordings import (
     HEAD_45,
     ORIGIN,
+    WALLS,
     DrivenRecording,
     Floats,
     RunOutcome,
     delivered,
     facing_along,
+    mirrored,
     recorded,
     road_along,
     straight,
@@ -148,6 +159,67 @@ def test_height_crown_and_lean_are_those_of_the_tree(told: RunOutcome) -> None:
     assert measure(staked, "crown_m") == pytest.approx(2.7, abs=0.5)
     assert measure(staked, "lowest_branch_m") == pytest.approx(2.6, abs=0.4)
     assert measure(leaning, "lean_deg") == pytest.approx(math.degrees(math.atan(LEAN)), abs=0.7)
+
+
+def test_a_crown_over_the_walk_tells_how_high_it_hangs_there(told: RunOutcome) -> None:
+    assert measure(tree_at(told, STAKED), "walk_clearance_m") == pytest.approx(2.6, abs=0.4)
+
+
+def test_the_ledger_of_trees_says_what_is_true(told: RunOutcome, tmp_path: Path) -> None:
+    trees = [
+        Feature(f"{number}", one.kind, Geometry.POINT, (Vertex(_place_of(one)),), one.attributes)
+        for number, one in enumerate(told.candidates)
+    ]
+    catalogue = read_catalogue(path_of("catalogue/level500.toml"))
+    path = tmp_path / "ledger_street_tree.csv"
+    write_ledger(path, trees, catalogue["street_tree"], TableStyle(crs="EPSG:6677"))
+    with path.open(encoding="utf-8-sig", newline="") as file:
+        rows = list(csv.DictReader(file, strict=True))
+    true = {
+        tuple(STAKED): (math.pi * STAKED_DIAMETER_M, 5.5, 1),
+        tuple(STEMMED): (math.pi * 0.7 * sum(STEMS_M), 5.8, 3),
+        tuple(LEANING): (math.pi * LEANING_DIAMETER_M, 6.3, 1),
+    }
+    assert len(rows) == len(true)
+    for foot, (girth_m, height_m, stems) in true.items():
+        place = np.array(foot) + ORIGIN
+        row = min(rows, key=lambda one: math.dist(_plan_of(one), place[:2]))
+        assert math.dist(_plan_of(row), place[:2]) < 0.1
+        assert float(row["標高(H) [m]"]) == pytest.approx(place[2], abs=0.05)
+        assert float(row["幹周 [m]"]) == pytest.approx(girth_m, abs=0.06)
+        assert float(row["樹高 [m]"]) == pytest.approx(height_m, abs=0.4)
+        assert int(row["幹の数"]) == stems
+        assert float(row["枝下高 [m]"]) > 1.4
+        assert float(row["胸高直径の誤差範囲（95 %） [m]"]) < 0.08
+
+
+def _place_of(tree: Candidate) -> Position:
+    east, north, up = tree.xyz[0].tolist()
+    return east, north, up
+
+
+def _plan_of(row: dict[str, str]) -> tuple[float, float]:
+    return float(row["東距(Y) [m]"]), float(row["北距(X) [m]"])
+
+
+@pytest.mark.parametrize("what", ["walls", "standing"])
+def test_what_shows_no_tree_leaves_a_sentence(tmp_path: Path, what: str) -> None:
+    way = straight(8.0) if what == "walls" else np.tile([[4.0, 0.0]], (300, 1))
+    facing = facing_along(way) if what == "walls" else np.zeros(300)
+    walls = tuple(road_along(8.0, profile) for profile in (WALLS, mirrored(WALLS)))
+    scene = walls if what == "walls" else (road_along(8.0),)
+    told = told_by("trees", recorded(tmp_path, DrivenRecording(way, facing, scene)), tmp_path)
+    assert told.candidates == ()
+    assert told.sentence.endswith(".")
+
+
+def test_a_cancel_leaves_nothing(avenue_drives: tuple[Drive, ...]) -> None:
+    class Stopped(SilentMonitor):
+        def check(self) -> None:
+            raise Cancelled
+
+    with pytest.raises(Cancelled):
+        find_trees(avenue_drives, TreeParameters(), Stopped())
 
 
 def test_a_street_without_trees_is_told(tmp_path: Path) -> None:

@@ -51,7 +51,7 @@ class StreetSection(NamedTuple):
     start, towards : (2,) float64
         Where the path passes the tree, m about the plan's origin; a metre on from there.
     edge_m : float
-        Where the carriageway ends.
+        Where the carriageway ends, to half a metre.
     walk_end_m : float
         Where the walk ends; NaN without a curb.
     """
@@ -109,8 +109,8 @@ class StreetGround:
         heights = self._heights(start + places[:, None] * towards)
         ahead = round(GROUND_M / _STEP_M)
         rises = heights[ahead:] - heights[:-ahead]
-        # A step between two places shows over all that have it between their ends.
-        steps = places[:-ahead] + GROUND_M / 2
+        # A cell with a curb in it shows the lower side, so the step comes out behind it.
+        steps = places[:-ahead] + _STEP_M / 2
         curbs = steps[(rises >= _CURB_M) & (steps <= away)]
         if not curbs.size:
             return StreetSection(start, towards, min(_HALF_LANE_M, away - _BESIDE_M), np.nan)

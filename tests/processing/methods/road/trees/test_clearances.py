@@ -39,7 +39,7 @@ def crown(*hangs: tuple[float, float]) -> Floats:
 
 def test_what_hangs_over_the_road_and_over_the_walk_is_told_apart() -> None:
     told = street().clearances(
-        FOOT, crown((3.0, 4.6), (4.2, 4.2), (5.6, 2.8), (6.9, 2.4), (9.0, 2))
+        FOOT, crown((3.0, 4.6), (4.0, 4.2), (5.6, 2.8), (6.9, 2.4), (9.0, 2))
     )
     assert told.road_m == pytest.approx(4.2, abs=0.01)
     assert told.walk_m == pytest.approx(2.4 - CURB_M, abs=0.01)
