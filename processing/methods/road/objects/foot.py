@@ -52,7 +52,8 @@ def ground_seen(heights: Floats, coarse_m: float) -> float:
     """
     layers = round((_HIGHEST_M + _LEAST_RISE_M) / _LAYER_M)
     lowest = coarse_m - _LEAST_RISE_M
-    counts = np.histogram(heights, layers, (lowest, lowest + layers * _LAYER_M))[0]
+    layer = np.floor((heights - lowest) / _LAYER_M)
+    counts = np.bincount(layer[(layer >= 0) & (layer < layers)].astype(np.int64))
     filled = np.flatnonzero(counts > _MIRRORED * counts.max(initial=0))
     if not filled.size:
         return coarse_m
