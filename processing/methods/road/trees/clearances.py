@@ -43,7 +43,7 @@ class Clearances(NamedTuple):
     walk_m: float
 
 
-class StreetSection(NamedTuple):
+class SectionAtTree(NamedTuple):
     """A section through a street at a tree, m from the vehicle's path towards the tree.
 
     Attributes
@@ -62,7 +62,7 @@ class StreetSection(NamedTuple):
     walk_end_m: float
 
 
-class StreetGround:
+class GroundBelowCrowns:
     """The ground of a street, and where vehicles drove on it.
 
     Parameters
@@ -96,7 +96,7 @@ class StreetGround:
         is_walk = (along > section.edge_m) & (along < section.walk_end_m)
         return Clearances(_least(over[is_road]), _least(over[is_walk]))
 
-    def _section_at(self, foot: Floats) -> StreetSection | None:
+    def _section_at(self, foot: Floats) -> SectionAtTree | None:
         """None too far from the path, or without one."""
         if self._tree is None:
             return None
@@ -113,10 +113,10 @@ class StreetGround:
         steps = places[:-ahead] + _STEP_M / 2
         curbs = steps[(rises >= _CURB_M) & (steps <= away)]
         if not curbs.size:
-            return StreetSection(start, towards, min(_HALF_LANE_M, away - _BESIDE_M), np.nan)
+            return SectionAtTree(start, towards, min(_HALF_LANE_M, away - _BESIDE_M), np.nan)
         edge = float(curbs[0])
         ends = steps[(np.abs(rises) >= _CURB_M) & (steps > edge + 2 * GROUND_M)]
-        return StreetSection(start, towards, edge, min([edge + _WALK_M, *ends.tolist()]))
+        return SectionAtTree(start, towards, edge, min([edge + _WALK_M, *ends.tolist()]))
 
     def _heights(self, places: Floats) -> Floats:
         return np.array([height_of(self._ground, self._plan, *one) for one in places.tolist()])

@@ -21,7 +21,7 @@ from processing.methods.road.objects.driven_path import driven_places
 from processing.methods.road.objects.foot import foot_height, ground_seen
 from processing.methods.road.objects.sparse_plan import SparsePlan
 from processing.methods.road.objects.survey import survey_columns
-from processing.methods.road.trees.clearances import Clearances, StreetGround
+from processing.methods.road.trees.clearances import Clearances, GroundBelowCrowns
 from processing.methods.road.trees.crown_cells import StandingStems, crown_cells
 from processing.methods.road.trees.crowns import CROWN_M, Crown, CrownShares, UprightTrunk
 from processing.methods.road.trees.drive_shifts import without_shifts
@@ -158,7 +158,7 @@ def upright_things(
     )
     if not trunks:
         return ()
-    street = StreetGround(plan, ground, driven_places(drives, plan))
+    street = GroundBelowCrowns(plan, ground, driven_places(drives, plan))
     standing = [one.standing for one in trunks]
     crowns = _crowns(drives, plan, standing, PartMonitor(monitor, 0.8, 1.0))
     return tuple(

@@ -10,7 +10,7 @@ import pytest
 from processing.core.arrays import Floats
 from processing.methods.road.objects.ground_heights import GROUND_CELLS, GROUND_M
 from processing.methods.road.objects.sparse_plan import SparsePlan
-from processing.methods.road.trees.clearances import Clearances, StreetGround
+from processing.methods.road.trees.clearances import Clearances, GroundBelowCrowns
 
 CURB_M, EDGE_M, WALL_M = 0.15, 4.8, 8.0
 PATH = np.column_stack([np.arange(0.0, 24.0, 0.5), np.full(48, 4.0)])
@@ -19,7 +19,7 @@ PATH = np.column_stack([np.arange(0.0, 24.0, 0.5), np.full(48, 4.0)])
 FOOT = np.array([12.0, 4.0 + 5.6, CURB_M])
 
 
-def street(curb_m: float = CURB_M, driven: Floats = PATH) -> StreetGround:
+def street(curb_m: float = CURB_M, driven: Floats = PATH) -> GroundBelowCrowns:
     """A road, from 4.8 m beside the path a walk, from 8 m a bank."""
     plan = SparsePlan(np.zeros(3), np.array([25.0, 25.0, 1.0]))
     places = np.stack(np.meshgrid([1.0, 13.0], [1.0, 13.0]), axis=-1).reshape(-1, 2)
@@ -29,7 +29,7 @@ def street(curb_m: float = CURB_M, driven: Floats = PATH) -> StreetGround:
         north = plan.middles(tile, np.zeros((1, 2), np.int64))[0, 1] - 0.1
         beside = north + (np.arange(GROUND_CELLS) + 0.5) * GROUND_M - PATH[0, 1]
         ground[tile] = np.where(beside < EDGE_M, 0.0, curb_m) + np.where(beside < WALL_M, 0.0, 0.9)
-    return StreetGround(plan, ground, driven)
+    return GroundBelowCrowns(plan, ground, driven)
 
 
 def crown(*hangs: tuple[float, float]) -> Floats:
