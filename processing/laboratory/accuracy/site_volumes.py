@@ -62,7 +62,7 @@ _ABOUT = (
     "the site, what was hidden filled in, against the exact truth, what was left out included. "
     "Hidden ground: by how much the filled ground of each date lies too high in the mean. Inside: "
     "whether cut, fill and net lie within the stated uncertainty. Development seeds, which chose "
-    "what was to be chosen, are others (2301 to 2314)."
+    "what was to be chosen, are others (2301 to 2314, 2401 to 2414)."
 )
 _HEAD = (
     "site", "moved (m³)", "area (m²)", "not measured", "left out (m²)", "measured cut",

@@ -216,12 +216,13 @@ def _lonely_strays(counts: NDArray[np.int32], sums: Floats, size_m: float) -> ND
     point between them, over ground that nobody saw. A filled hole would hang from it.
     """
     known = counts > 0
-    others = np.full(counts.shape, _MOST_ABOUT, np.int32)
-    if known.any():
-        reach = max(1, round(_ABOUT_M / size_m))
-        _others_kernel(_mean_heights(known, counts, sums), reach, size_m, others)
-        known &= others < np.quantile(others[known], _LONELY_SHARE)
-    return known
+    others = np.full(counts.shape, _MOST_ABOUT, np.int8)
+    reach = max(1, round(_ABOUT_M / size_m))
+    _others_kernel(_mean_heights(known, counts, sums), reach, size_m, others)
+    fewest = np.cumsum(np.bincount(others[known], minlength=_MOST_ABOUT + 1))
+    needed = int(np.searchsorted(fewest, _LONELY_SHARE * fewest[-1], side="right"))
+    lonely: NDArray[np.bool_] = known & (others < needed)
+    return lonely
 
 
 def _mean_heights(wanted: NDArray[np.bool_], counts: NDArray[np.int32], sums: Floats) -> Floats:
@@ -290,7 +291,7 @@ def _stray_kernel(
 
 
 @kernel
-def _others_kernel(heights: Floats, reach: int, size_m: float, others: NDArray[np.int32]) -> None:
+def _others_kernel(heights: Floats, reach: int, size_m: float, others: NDArray[np.int8]) -> None:
     """How many cells about each (NaN: passed over) are of its ground, up to ``_MOST_ABOUT``."""
     rows, columns = heights.shape
     for row in range(rows):
@@ -300,14 +301,17 @@ def _others_kernel(heights: Floats, reach: int, size_m: float, others: NDArray[n
             count = -1  # itself
             for at in range(max(0, row - reach), min(rows, row + reach + 1)):
                 for beside in range(max(0, column - reach), min(columns, column + reach + 1)):
-                    away_m = size_m * np.hypot(at - row, beside - column)
+                    # NaN fails both tests; the second is asked where ground isn't level.
                     apart_m = abs(heights[at, beside] - heights[row, column])
-                    # NaN fails the test.
-                    if apart_m <= _LEVEL_M + _STEEP * away_m:
+                    if apart_m <= _LEVEL_M or apart_m <= _LEVEL_M + _STEEP * size_m * np.hypot(
+                        at - row, beside - column
+                    ):
                         count += 1
-                if count >= _MOST_ABOUT:
+                        if count == _MOST_ABOUT:
+                            break
+                if count == _MOST_ABOUT:
                     break
-            others[row, column] = min(count, _MOST_ABOUT)
+            others[row, column] = max(count, 0)
 
 
 @kernel
@@ -352,4 +356,4 @@ def warm_up() -> None:
     counts, sums = np.zeros((1, 1), np.int32), np.zeros((1, 1, 3))
     _sum_kernel(np.zeros((1, 3)), np.zeros(3), 1.0, counts, sums)
     _stray_kernel(np.zeros((2, 2)), 1, _StrayLimits(1, 1.0), np.zeros((2, 2), np.bool_))
-    _others_kernel(np.zeros((2, 2)), 1, 1.0, np.zeros((2, 2), np.int32))
+    _others_kernel(np.zeros((2, 2)), 1, 1.0, np.zeros((2, 2), np.int8))
