@@ -21,7 +21,12 @@ from processing.methods.road.signs.plate_groups import plate_groups
 from processing.methods.road.signs.plate_lines import empty_lines, lines_of
 from processing.methods.road.signs.plates import Plate, plates_of
 from processing.methods.road.signs.scan_pieces import ScanPieces, scan_pieces
-from processing.methods.road.signs.sign_confidence import SignFacts, chance_of, facts_of
+from processing.methods.road.signs.sign_confidence import (
+    SignFacts,
+    chance_of,
+    facts_of,
+    facts_with_post,
+)
 from processing.methods.road.signs.sign_posts import PostForm, posts_of
 from processing.methods.road.signs.sign_shapes import SignShape, looked_for
 from processing.recording.drive import Drive
@@ -40,7 +45,8 @@ _EVERY = 20
 """Records of a trajectory of which one is kept: a tenth of a second."""
 
 _LIKELY = 0.1
-"""Chance from which it is looked for what a plate hangs on: what is less likely is hardly shown."""
+"""Chance from which it is looked for what a plate hangs on: what is less likely is hardly shown,
+and nothing that holds it makes it likelier."""
 
 
 @dataclass(frozen=True)
@@ -131,8 +137,14 @@ def road_signs(
     others = [one for one in signs if one.confidence < _LIKELY]
     plates = [(one.plate, one.ground_m - float(plan.origin[2])) for one in likely]
     forms = posts_of(drives, plan, plates, PartMonitor(monitor, 0.9, 1.0))
-    held = [replace(one, post=form) for one, form in zip(likely, forms, strict=True)]
-    return (*held, *others)
+    held = [_with_post(one, form) for one, form in zip(likely, forms, strict=True)]
+    held += [_with_post(one, None) for one in others]
+    return tuple(sorted(held, key=lambda one: -one.confidence))
+
+
+def _with_post(sign: RoadSign, post: PostForm | None) -> RoadSign:
+    facts = facts_with_post(sign.facts, post)
+    return replace(sign, facts=facts, confidence=chance_of(facts), post=post)
 
 
 class DriveWays:
