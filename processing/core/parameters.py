@@ -169,9 +169,9 @@ def switch(*, default: bool, name: Text, explanation: Text = _NONE, picture: str
     return _declare_field(Parameter("", "switch", default, name, explanation, picture=picture))
 
 
-def file(*, name: Text, explanation: Text = _NONE) -> Any:
+def file(*, name: Text, explanation: Text = _NONE, picture: str = "") -> Any:
     """A path to a file; empty means none."""
-    return _declare_field(Parameter("", "file", "", name, explanation))
+    return _declare_field(Parameter("", "file", "", name, explanation, picture=picture))
 
 
 def text(*, name: Text, explanation: Text = _NONE) -> Any:

@@ -56,6 +56,7 @@ class SignParameters:
             "概略位置のCSVファイル（easting_m, northing_m、分かればheight_m, shape, size_m）。"
             "指定すると、その標識だけを計測します。指定しない場合は全ての標識を探します。",
         ),
+        picture="sign/positions",
     )
     # The middle of 0.6 to 0.75, where the F-measure of streets that weren't learnt from is level
     # (97.7 %); higher limits lose backs of signs, which nobody asks for there.

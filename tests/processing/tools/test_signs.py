@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import math
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -12,6 +13,8 @@ import pytest
 
 from processing.core.errors import BadFile
 from processing.core.monitor import SilentMonitor
+from processing.formats.ledgers.ledger_columns import TableStyle
+from processing.formats.ledgers.ledger_csv import write_ledger
 from processing.image.scan_lines.scanlines import ScanlineSettings, scanline_through
 from processing.laboratory.simulate.roadside.sign_plates import (
     PlateMounting,
@@ -22,11 +25,15 @@ from processing.laboratory.simulate.roadside.sign_plates import (
     outline,
 )
 from processing.laboratory.simulate.scene.mesh import TriangleShape, box, tube
+from processing.map.catalogue import Geometry
+from processing.map.catalogue_file import read_catalogue
+from processing.map.feature import Feature, Vertex
 from processing.methods.road.requested_position import RequestedPosition
 from processing.recording.drive import Drive
 from processing.tools.runner import RunRequest, run
 from processing.tools.signs import SignParameters, diagnose_signs
 from processing.tools.tool import Candidate, CandidateResult
+from resources import path_of
 from tests.processing.methods.road.bad_recordings import (
     HEAD_45,
     ORIGIN,
@@ -211,6 +218,40 @@ def test_a_plate_below_a_sign_is_its_supplement(told: RunOutcome) -> None:
 @pytest.mark.parametrize(("plate", "form"), POSTS, ids=[form for _, form in POSTS])
 def test_what_a_sign_hangs_on_is_named(told: RunOutcome, plate: KnownPlate, form: str) -> None:
     assert sign_at(told, plate).attributes["post"] == form
+
+
+FORMS = {"single": "単柱", "double": "複柱", "cantilever": "片持", "attached": "添架"}
+
+
+def test_the_ledger_of_signs_says_what_is_true(told: RunOutcome, tmp_path: Path) -> None:
+    catalogue = read_catalogue(path_of("catalogue/level500.toml"))
+    features = [
+        Feature(f"s{number}", "sign", Geometry.POINT, (Vertex((x, y, z)),), {**one.attributes})
+        for number, one in enumerate(told.candidates)
+        for x, y, z in one.xyz.tolist()
+    ]
+    path = tmp_path / "ledger_sign.csv"
+    write_ledger(path, features, catalogue["sign"], TableStyle(crs="EPSG:6677"))
+    with path.open(encoding="utf-8-sig", newline="") as file:
+        rows = list(csv.DictReader(file, strict=True))
+    assert len(rows) == len(PLATES)
+    names = {one.name.ja: one for one in catalogue["sign"].attributes}
+    shapes = names["板形状"]
+    for plate, form in POSTS:
+        place = plate.centroid + ORIGIN
+        (row,) = (
+            row
+            for row in rows
+            if abs(float(row["東距(Y) [m]"]) - place[0]) < 0.05
+            and abs(float(row["北距(X) [m]"]) - place[1]) < 0.05
+            and abs(float(row["標高(H) [m]"]) - place[2]) < 0.05
+        )
+        assert row["板形状"] == shapes.name_of_choice(plate.plate.shape).ja
+        assert float(row["板寸法 [m]"]) == pytest.approx(plate.plate.size_m, rel=0.1)
+        assert row["支柱形式"] == FORMS[form]
+        assert row["板枚数"] == ("2" if plate is CIRCLE else "1")
+        off = float(row["向き（北から時計回り） [°]"]) - plate.facing_deg
+        assert abs((off + 180) % 360 - 180) < 3.0
 
 
 @pytest.mark.parametrize("plate", [CIRCLE, BUS_STOP], ids=["sign", "bus stop"])
