@@ -1,0 +1,44 @@
+"""What is bright to a scanner: faces of signs are, whatever else stands at their range."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.methods.road.signs.brightness import CLASSES, bright_bounds
+
+NEAR, MIDDLE, FAR = 1, 3, 5
+FACE = 65_535
+
+
+def diffuse(count: int, level: float, seed: int) -> NDArray[np.uint16]:
+    """Intensities of things with reflectances from 0.1 to 0.6 (m = 0.35)."""
+    random = np.random.default_rng(seed)
+    return (level * random.uniform(0.1, 0.6, count) / 0.35).astype(np.uint16)
+
+
+def test_a_range_at_which_signs_are_most_of_what_stands_has_bright_faces() -> None:
+    faces = np.full(2_000, FACE, np.uint16)
+    intensity = np.concatenate([diffuse(9_000, 8_000, 1), diffuse(500, 7_000, 2), faces])
+    classes = np.repeat([MIDDLE, FAR, FAR], [9_000, 500, 2_000])
+    bounds = bright_bounds(intensity, classes)
+    assert 14_000 < bounds[FAR] < FACE
+    assert (bounds[MIDDLE] > 14_000).all()
+
+
+def test_white_plastic_among_dark_hedges_is_not_bright() -> None:
+    hedge = (diffuse(9_000, 6_000, 3) * 0.5 + 2_500).astype(np.uint16)
+    bounds = bright_bounds(hedge, np.full(9_000, MIDDLE))
+    assert bounds[MIDDLE] > 6_000 * 0.6 / 0.35 * 0.75
+
+
+def test_a_range_with_few_points_takes_the_limit_of_the_one_beside_it() -> None:
+    intensity = np.concatenate([diffuse(9_000, 8_000, 4), np.full(400, 900, np.uint16)])
+    bounds = bright_bounds(intensity, np.repeat([MIDDLE, NEAR], [9_000, 400]))
+    assert bounds[NEAR] == bounds[MIDDLE]
+
+
+def test_without_intensity_nothing_is_bright() -> None:
+    none = np.zeros(5_000, np.uint16)
+    assert np.isinf(bright_bounds(none, np.full(5_000, MIDDLE))).all()
+    assert len(bright_bounds(none, np.full(5_000, MIDDLE))) == CLASSES
