@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import QPointF
-from PySide6.QtGui import QImage
+from PySide6.QtGui import QImage, QPainter
 from pytestqt.qtbot import QtBot
 
 from processing.core.text import Text
@@ -88,4 +88,28 @@ def test_the_mark_at_the_mouse_tells_its_tests(qtbot: QtBot, tmp_path: Path) -> 
     assert marks.hover(reported, viewport, _point(spots[1] + 40.0))
     assert marks.hovered is None
     assert not marks.hover(None, viewport, _point(spots[1]))
+    user.view.close()
+
+
+def test_the_outline_that_was_laid_on_a_plate_is_drawn_about_its_mark(
+    qtbot: QtBot, tmp_path: Path
+) -> None:
+    user = shown(qtbot, OpenMap((imported_drive(tmp_path / "street"),)))
+    picture, viewport = user.pane.picture, user.pane.viewport
+    assert picture is not None
+    cut = picture.request.cut
+    middle = np.array([2.0, cut.middle[2] + 2.0, 0.0])
+    ring = middle + 0.5 * np.array([[-1.0, -1.0, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]])
+    looked_at = Diagnostic(cut.to_space(middle[None])[0], (), is_taken=True)
+    shown_one = ShownDiagnostic("signs", looked_at, middle, ring)
+    reported = replace(picture, diagnostics=(SectionDiagnostics("street", (), (shown_one,)),))
+    image = QImage(int(viewport.width), int(viewport.height), QImage.Format.Format_RGBA8888)
+    image.fill(0)
+    with QPainter(image) as painter:
+        DiagnosticMarks("en").paint(painter, reported, viewport)
+    sides = np.vstack([ring[:1] / 2 + ring[1:2] / 2, ring[1:2] / 2 + ring[2:3] / 2])
+    spots = viewport.to_screen(SectionProjection(cut).on_plane(sides)).round().astype(int)
+    for x, y in spots.tolist():
+        near = [image.pixelColor(x + i, y + j).green() for i in (-1, 0, 1) for j in (-1, 0, 1)]
+        assert max(near) > 200
     user.view.close()
