@@ -255,7 +255,7 @@ def test_the_ledger_of_signs_says_what_is_true(told: RunOutcome, tmp_path: Path)
 
 
 @pytest.mark.parametrize("plate", [CIRCLE, BUS_STOP], ids=["sign", "bus stop"])
-def test_diagnostics_draw_the_outline_on_a_plate_and_say_why_it_is_taken(
+def test_diagnostics_draw_an_outline_on_a_plate_and_say_what_speaks_for_it(
     drives: tuple[Drive, ...], plate: KnownPlate
 ) -> None:
     place = plate.centroid + ORIGIN

@@ -34,11 +34,6 @@ reaches. Reflectances beside a road run from 0.1 to 0.6 about 0.35: white is
 about two steps above the middle, a sign's face of the least class at a thirtieth of its design
 value (JIS Z 9117: 70 cd/lx/m² against 0.3 of a white wall) twenty and more."""
 
-_DULLEST = 0.05
-_WHITE = 1.5
-"""Where all things are much alike (one façade, one hedge) their spread says little: paint and white
-plastic are above the middle by as much and a half as the dullest twentieth is below it."""
-
 
 def bright_bounds(intensity: NDArray[np.uint16], classes: NDArray[np.int64]) -> Floats:
     """The least intensity of a bright point, for each class of ranges.
@@ -60,10 +55,8 @@ def bright_bounds(intensity: NDArray[np.uint16], classes: NDArray[np.int64]) -> 
         return bounds
     middles = _middles(intensity, classes)
     # One spread for all: far away a single wall may be all that there is.
-    low, high = np.quantile(intensity / middles[classes], (_DULLEST, _SHARE)).tolist()
-    step = (high - 1.0) / _STEPS_OF_SHARE
-    above = max(_SPREADS * step, _WHITE * (1.0 - low))
-    return np.asarray(middles * (1.0 + above)) if step > 0 else bounds
+    step = (float(np.quantile(intensity / middles[classes], _SHARE)) - 1.0) / _STEPS_OF_SHARE
+    return np.asarray(middles * (1.0 + _SPREADS * step)) if step > 0 else bounds
 
 
 def _middles(intensity: NDArray[np.uint16], classes: NDArray[np.int64]) -> Floats:
