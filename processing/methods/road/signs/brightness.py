@@ -65,9 +65,11 @@ def _middles(intensity: NDArray[np.uint16], classes: NDArray[np.int64]) -> Float
     From the class with the most points on, each next one is as bright as it can be beside it.
     """
     counts = np.bincount(classes, minlength=CLASSES)[:CLASSES]
-    middles = np.full(CLASSES, float(np.median(intensity)))  # where no class has enough points
+    middles: Floats = np.full(
+        CLASSES, float(np.median(intensity))
+    )  # where no class has enough points
     known = counts >= _LEAST_POINTS
-    for number in np.flatnonzero(known):
+    for number in np.flatnonzero(known).tolist():
         middles[number] = float(np.median(intensity[classes == number]))
     middles = np.maximum(middles, 1.0)
     most = int(counts.argmax())

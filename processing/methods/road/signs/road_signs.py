@@ -135,8 +135,8 @@ def road_signs(
     signs = [found[number] for number in kept]
     likely = [one for one in signs if one.confidence >= _LIKELY]
     others = [one for one in signs if one.confidence < _LIKELY]
-    plates = [(one.plate, one.ground_m - float(plan.origin[2])) for one in likely]
-    forms = posts_of(drives, plan, plates, PartMonitor(monitor, 0.9, 1.0))
+    grounded = [(one.plate, one.ground_m - float(plan.origin[2])) for one in likely]
+    forms = posts_of(drives, plan, grounded, PartMonitor(monitor, 0.9, 1.0))
     held = [_with_post(one, form) for one, form in zip(likely, forms, strict=True)]
     held += [_with_post(one, None) for one in others]
     return tuple(sorted(held, key=lambda one: -one.confidence))

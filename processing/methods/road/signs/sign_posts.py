@@ -110,7 +110,7 @@ def _form_of(plate: Plate, about: Floats, span: Floats) -> PostForm | None:
     aside = np.abs(beam[:, 0]) - half
     beam = beam[(aside >= _BEAM_M[0]) & (aside <= _BEAM_M[1])]
     sides = sum(int((beam[:, 0] * side > 0).sum() >= _FEWEST_ON_BEAM) for side in (-1, 1))
-    return (None, "cantilever", "gantry")[sides]  # type: ignore[return-value]  # one of the three
+    return (None, "cantilever", "gantry")[sides]
 
 
 def _upright_things(behind: Floats, low_m: float, high_m: float) -> list[Floats]:
