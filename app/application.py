@@ -12,6 +12,7 @@ from platformdirs import user_documents_path
 from PySide6.QtCore import QTimer
 from PySide6.QtWidgets import QApplication
 
+from app.classes.class_learning import ClassLearning
 from app.classes.truth_evaluations import TruthEvaluations
 from app.cli.window_request import WindowRequest
 from app.document.document import Document
@@ -156,6 +157,7 @@ def _make_lasting(settings: Settings) -> LastingParts:
         Review(document, document),
         SourceWatch(document, document),
         TruthEvaluations(document, jobs, document),
+        ClassLearning(document, jobs, document),
         Earthwork(document, jobs, document),
     )
     return LastingParts(

@@ -124,6 +124,10 @@ def _add_working_commands(commands: _Commands[_Parser]) -> None:
         help="where labels of points come from: an extra dimension, or the delivered classes",
     )
     importing.set_defaults(module="import_drives")
+    learning = commands.add_parser("learn", help="a model of classes from what was painted")
+    learning.add_argument("project", type=Path, metavar="PROJECT")
+    learning.add_argument("--json", action="store_true")
+    learning.set_defaults(module="learn")
     studying = commands.add_parser("study", help="a tool with many settings, judged by a truth")
     studying.add_argument("tool", metavar="TOOL")
     _add_inputs(studying)

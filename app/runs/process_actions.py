@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
+from app.classes.class_learning import ClassLearning
 from app.window.action import Action
 from app.window.window_parts import WindowParts
 from processing.core.text import Text
+from processing.operations.learn import LEARN
 from processing.tools.registry import TOOLS, extractors
 from processing.tools.tool import ToolButton
 from processing.tools.volume import VOLUME
@@ -78,6 +80,7 @@ def process_actions(parts: WindowParts) -> tuple[Action, ...]:
         _find_all_action(parts),
         *(running(tool, button) for tool, button in one_click_buttons().items()),
         *(showing(tool) for tool in TOOLS),
+        _learning_action(parts),
         *_volume_actions(parts),
         cancel,
     )
@@ -104,6 +107,23 @@ def _find_all_action(parts: WindowParts) -> Action:
                 "道路沿いで抽出できる地物を、種類ごとに順に抽出します。",
             ),
             way=_WAY,
+        ),
+        needs_project=True,
+    )
+
+
+def _learning_action(parts: WindowParts) -> Action:
+    """What was painted becomes a model of classes."""
+    return Action(
+        "learn-classes",
+        LEARN,
+        parts.of(ClassLearning).learn,
+        "process",
+        hint=Text(
+            "Makes a model for “Classes” of the labels that were painted by hand in this project, "
+            "and says how much it helps.",
+            "このプロジェクトで手動で塗ったラベルから「点群の分類」のモデルを学習し、"
+            "改善の程度を示します。",
         ),
         needs_project=True,
     )

@@ -15,12 +15,17 @@ from processing.methods.ground.stored_surface import FILE_NAME as SURFACE
 from processing.methods.ground.stored_surface import StoredSurface, copy_surface
 from processing.project.results.found_classes import found_classes
 from processing.project.results.found_features import FoundFeatures, found_features
-from processing.project.results.run_findings import adopt_finding, write_finding
+from processing.project.results.run_findings import adopt_finding, write_finding, write_given
 from processing.project.results.surface_files import delivered_files, surface_file_of, write_surface
 from processing.project.store.exchanged_files import NewStepFiles
+from processing.recording.columns.columns import column_path
 from processing.recording.drive import Drive
 from processing.tools.runner import RunRequest, drives_of, run, run_together, tool_of
 from processing.tools.tool import CandidateResult, FinishedColumns
+
+_CLASS = "classification"
+_BESIDE = "+"
+"""Between a drive's id and the name of a column that it is to have."""
 
 
 @dataclass(frozen=True)
@@ -45,12 +50,12 @@ class FinishedRun:
     drive: str = ""
 
     def keep_with(self, drive_of: Callable[[str], Drive], files: NewStepFiles) -> None:
-        """Keep with its drives what the run said of their points, and the surface it found.
+        """Keep with its drives what the run said of their points, columns, the surface it found.
 
         Parameters
         ----------
         files : NewStepFiles
-            Gets the surface, which takes the place of an older one.
+            Gets the surface and the columns, which take the places of older ones.
 
         Raises
         ------
@@ -63,7 +68,10 @@ class FinishedRun:
             for drive in (drive_of(id_) for id_ in self.found.run.drives):
                 said = self.kept / drive.id
                 if said.is_file():
-                    adopt_finding(drive, self.found.run.tool, self.found.run.id, said)
+                    adopt_finding(drive, self.found.tool, self.found.run.id, said)
+                for column in sorted(self.kept.glob(f"{drive.id}{_BESIDE}*")):
+                    name = column.name.removeprefix(f"{drive.id}{_BESIDE}")
+                    files.give(column, name, drive.id)
                 if surface.is_file():
                     copy_surface(surface, files.expect(SURFACE, drive.id))
         finally:
@@ -146,6 +154,10 @@ def _classes(
                 StoredSurface(kept / SURFACE), surface_file, delivered_files(drives), monitor
             )
         labels.begin()
+        if tool.asked is None:
+            for drive, result in results:
+                write_given(drive, result, kept / drive.id)
+                _keep_columns(drive, result, kept)
         found = found_classes(
             results,
             tool,
@@ -162,3 +174,11 @@ def _classes(
     finally:
         remove_folder(into)
     return FinishedRun(found=found, kept=kept)
+
+
+def _keep_columns(drive: Drive, result: FinishedColumns, kept: Path) -> None:
+    """Keep what a tool says of points beside their classes, for the drive to have as columns."""
+    for name in result.names:
+        if name != _CLASS:
+            file = column_path(result.folder, name)
+            file.replace(kept / f"{drive.id}{_BESIDE}{file.name}")

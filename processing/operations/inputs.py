@@ -72,6 +72,8 @@ class OpenedInputs:
         The project's own, or the one that comes with the program.
     work : WorkStore or None
         What a project has for its papers; None without one.
+    project : Path or None
+        Its folder; None for delivered files.
     """
 
     drives: tuple[Drive, ...]
@@ -79,6 +81,7 @@ class OpenedInputs:
     crs: str
     catalogue: Catalogue
     work: WorkStore | None = None
+    project: Path | None = None
 
     @property
     def beside(self) -> tuple[Drive, ...]:
@@ -193,4 +196,6 @@ def inputs_in(
                 use_one_of(known),
             )
     chosen = tuple(known[id_] for id_ in ids) or project.drives
-    return OpenedInputs(project.drives, chosen, project.crs, project.catalogue, work)
+    return OpenedInputs(
+        project.drives, chosen, project.crs, project.catalogue, work, project.folder
+    )

@@ -18,6 +18,7 @@ from processing.core.safe_write import write_safely
 from processing.core.text import Text
 from processing.operations.extraction import ExtractOperation, extract
 from processing.operations.import_files import ImportOperation, import_files
+from processing.operations.learn import LearnOperation, learn_in_project
 from processing.operations.project_export import ExportOperation, export_project
 from processing.operations.project_volumes import KeepVolumeOperation, keep_volume
 from processing.operations.run import RunOperation, run_operation
@@ -63,6 +64,7 @@ OPERATIONS: Kinds = {
         OperationKind("import", ImportOperation, import_files),
         OperationKind("run", RunOperation, run_operation),
         OperationKind("extract", ExtractOperation, extract),
+        OperationKind("learn", LearnOperation, learn_in_project),
         OperationKind("undo", UndoOperation, undo_step),
         OperationKind("export", ExportOperation, export_project),
         OperationKind("score", ScoreOperation, score_result),

@@ -27,6 +27,7 @@ from processing.operations.inputs import (
 )
 from processing.operations.run_files import write_run
 from processing.operations.store import StoredRun, accept_above, store_run
+from processing.project.own_models import with_own_model
 from processing.project.project import Project
 from processing.project.results.surface_files import surface_beside, surface_file_of
 from processing.recording.drive import Drive
@@ -201,7 +202,7 @@ def run_to_file(
     UserError, Cancelled
         Nothing was written.
     """
-    tool, parameters = _what(operation)
+    tool, parameters = _what(operation, opened)
     _check_needs(tool, opened.chosen)
     return RunOutcome(paths=write_run(tool, parameters, opened, output, monitor))
 
@@ -252,7 +253,7 @@ def finish_runs(
     UserError, Cancelled
         Nothing is left.
     """
-    tool, parameters = _what(operation)
+    tool, parameters = _what(operation, opened)
     _check_needs(tool, opened.chosen)
     shares = [*run_shares(tool.id, opened.chosen, parameters, monitor, beside=opened.beside)]
     done: list[FinishedRun] = []
@@ -305,9 +306,10 @@ def _stored(operation: RunOperation, monitor: Monitor) -> RunOutcome:
         return run_in_project(operation, project, monitor)
 
 
-def _what(operation: RunOperation) -> tuple[Tool, object]:
+def _what(operation: RunOperation, opened: OpenedInputs) -> tuple[Tool, object]:
     tool = tool_of(operation.tool)
-    return tool, fill_parameters(tool.parameters, operation.parameters)
+    parameters = fill_parameters(tool.parameters, operation.parameters)
+    return tool, with_own_model(parameters, opened.project)
 
 
 def _check_needs(tool: Tool, drives: Sequence[Drive]) -> None:

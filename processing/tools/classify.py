@@ -7,13 +7,15 @@ from pathlib import Path
 
 import numpy as np
 
-from processing.core.errors import report_as_user_error
+from processing.core.errors import UserError, report_as_user_error
 from processing.core.monitor import Monitor, PartMonitor
 from processing.core.owned_files import remove_folder
-from processing.core.parameters import ratio
+from processing.core.parameters import ParameterChoice, choice, file, ratio
 from processing.core.scratch_arrays import scratch_array
 from processing.core.text import Text
+from processing.methods.classes.class_models import ClassModels, shipped_models
 from processing.methods.classes.drive_classes import FoundClasses, classify_drive
+from processing.methods.classes.own_model import ModelFacts, read_own_model
 from processing.recording.columns.columns import ColumnWriter
 from processing.recording.columns.ordering import chunk_ranges, read_chunk
 from processing.recording.drive import Drive
@@ -28,9 +30,21 @@ CLASSES = (2, 3, 4, 5, 6, 11, 14, 64, 65, 66, 67)
 """Ground, grass, low plants, crowns, buildings, roads, wires, what moves, signs, poles, curbs."""
 
 
+OWN, SHIPPED = "own", "shipped"
+
+_NO_NOTE = Text("", "")
+_LEARNT = Text("model learnt on {date}, {points} points", "{date}学習のモデル、{points}点")
+_SHIPPED = Text("the program's own model", "付属のモデル")
+_WORSE = Text(
+    "the program's own model; what was learnt on {date} is no better",
+    "付属のモデル。{date}の学習結果は改善していません",
+)
+_UNREADABLE = Text("the program's own model: {why}", "付属のモデル: {why}")
+
+
 @dataclass(frozen=True)
 class ClassifyParameters:
-    """How sure a class must be."""
+    """How sure a class must be, and who says so."""
 
     least_confidence: float = ratio(
         0.0,
@@ -40,6 +54,28 @@ class ClassifyParameters:
         explanation=Text(
             "Points whose class is less likely than this become “other” (1).",
             "クラスの信頼度がこの値より低い点は「その他」（1）とします。",
+        ),
+    )
+    model: str = choice(
+        OWN,
+        choices=(
+            ParameterChoice(OWN, Text("Learnt here, if there is one", "学習したモデルを優先")),
+            ParameterChoice(SHIPPED, Text("The program's own", "付属のモデル")),
+        ),
+        name=Text("Model", "モデル"),
+        explanation=Text(
+            "What was learnt from your corrections is used where it did no worse on them than the "
+            "model that comes with the program.",
+            "修正から学習したモデルを使います。付属のモデルより悪い場合は付属のモデルを使います。",
+        ),
+    )
+    model_folder: str = file(
+        name=Text("Folder of a learnt model", "学習したモデルのフォルダ"),
+        explanation=Text(
+            "Empty: the newest that this project learnt. Those of a project are in its folder "
+            "models/classes.",
+            "空欄の場合は、このプロジェクトで最後に学習したモデルです。"
+            "モデルはプロジェクトの models/classes フォルダにあります。",
         ),
     )
 
@@ -67,12 +103,40 @@ def mark_classes(
         scratch.mkdir()
         codes = scratch_array(scratch / "codes", np.uint8, drive.count)
         sure = scratch_array(scratch / "confidence", np.float32, drive.count)
+        models, note = models_of(parameters)
         if drive.count:
-            classify_drive(drive, codes, sure, scratch, PartMonitor(monitor, 0.0, _FINDING))
+            finding = PartMonitor(monitor, 0.0, _FINDING)
+            classify_drive(drive, codes, sure, scratch, finding, models=models)
         found = FoundClasses(codes, sure)
         _write(drive, found, parameters.least_confidence, into, monitor)
         remove_folder(scratch)
-    return FinishedColumns(into, (_CLASS, _CONFIDENCE), drive.count)
+    return FinishedColumns(into, (_CLASS, _CONFIDENCE), drive.count, note)
+
+
+def models_of(parameters: ClassifyParameters) -> tuple[ClassModels, Text]:
+    """The models that parameters ask for, and which they are.
+
+    A model that can't be read is named, and the one that comes with the program takes its place: a
+    project is to be classified on the day after an update, too.
+    """
+    if parameters.model == SHIPPED or not parameters.model_folder:
+        chosen = _SHIPPED if parameters.model == SHIPPED else _NO_NOTE
+        return shipped_models(), chosen
+    try:
+        facts, models = read_own_model(Path(parameters.model_folder))
+    except UserError as error:
+        return shipped_models(), _UNREADABLE.filled(why=_without_stop(error.what))
+    if not facts.gain.helps:
+        return shipped_models(), _WORSE.filled(date=_date_of(facts))
+    return models, _LEARNT.filled(date=_date_of(facts), points=f"{facts.points:,}")
+
+
+def _date_of(facts: ModelFacts) -> str:
+    return f"{facts.made.astimezone():%Y-%m-%d %H:%M}"
+
+
+def _without_stop(sentence: Text) -> Text:
+    return Text(sentence.en.rstrip("."), sentence.ja.rstrip("。"))
 
 
 def _write(drive: Drive, classes: FoundClasses, least: float, into: Path, monitor: Monitor) -> None:

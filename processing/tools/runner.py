@@ -158,7 +158,9 @@ def run_together(
     """
     if not isinstance(tool_of(request.tool).method, Together):
         result = run(request, monitor, into=into, points_per_block=points_per_block)
-        return TogetherResult((result,) if isinstance(result, FinishedColumns) else ())
+        if isinstance(result, FinishedColumns):
+            return TogetherResult((result,), note=result.note)
+        return TogetherResult(())
     found = _result_of(request, monitor, _Columns(into, points_per_block))
     return found if isinstance(found, TogetherResult) else TogetherResult(())
 
@@ -280,7 +282,7 @@ def _result_of(
                     request.drive, parameters, columns.into, columns.points_at_once, monitor
                 )
                 monitor.check()
-            return TogetherResult((marked,))
+            return TogetherResult((marked,), note=marked.note)
         case Together(mark_together):
             drives = _checked_together(tool, request, monitor)
             with _removed_on_failure(columns.into):

@@ -95,11 +95,14 @@ class FinishedColumns:
     names : tuple of str
     count : int
         Points of the drive.
+    note : Text
+        What the data chose, for the run's summary.
     """
 
     folder: Path
     names: tuple[str, ...]
     count: int
+    note: Text = Text("", "")
 
     def read(self, name: str, start: int, stop: int) -> NDArray[Any]:
         """Values of the points ``start … stop − 1``: (k,) or (k, width), of the column's dtype."""

@@ -18,6 +18,7 @@ from processing.image.attributes.colour_maps import (
     EMPTY_COLOUR,
     UNKNOWN_COLOUR,
     class_colours,
+    confidence_ramp,
     error_map_colours,
     grey_ramp,
     height_ramp,
@@ -40,6 +41,9 @@ if TYPE_CHECKING:  # Drive makes its images, so importing it here would be a cir
 SHOWN_RADIUS_M = 0.2
 """Neighbourhood of normals and shapes that are made for the screen: wider than rows are apart,
 narrower than a kerb is wide."""
+
+CONFIDENCE = "confidence"
+"""The column that the tool “Classes” makes beside the classes."""
 
 _UNLABELLED_GREYS = 64, 191
 """The darkest and the brightest point without a label: black and white are left to classes."""
@@ -88,6 +92,15 @@ ATTRIBUTES: Mapping[str, Attribute] = {
             ("intensity",),
         ),
         Attribute("class", Text("Class", "クラス"), ("classification",)),
+        Attribute(
+            CONFIDENCE,
+            Text("Confidence of the class", "クラスの信頼度"),
+            (CONFIDENCE,),
+            Text(
+                "Run the tool “Classes” on this drive first.",
+                "先にこの走行データで「点群の分類」を実行してください。",
+            ),
+        ),
         Attribute(
             "judged",
             Text("Right and wrong", "正誤"),
@@ -348,6 +361,14 @@ def _colour_judged(drive: Drive, points: _Points) -> Colours:
     return np.asarray(error_map_colours()[drive.columns[ERROR_MAP][points]])
 
 
+def _confidence(drive: Drive, points: _Points) -> Colours:
+    """How sure the class is; grey where no class was asked for, as for noise."""
+    confidence = np.asarray(drive.columns[CONFIDENCE][points], np.float32)
+    shown = np.array(confidence_ramp()[stretch_values(confidence, 0.0, 1.0)])
+    shown[confidence <= 0.0] = UNKNOWN_COLOUR
+    return shown
+
+
 def _class(drive: Drive, points: _Points) -> Colours:
     """What counts: labels, by hand or by a tool, over the delivered classes."""
     return np.asarray(class_colours()[class_columns(drive.columns).codes_of(points)])
@@ -364,5 +385,6 @@ _PLAIN: Mapping[str, Callable[[Drive, _Points], Colours]] = {
     "segment": _segment,
     "color": _color,
     "class": _class,
+    CONFIDENCE: _confidence,
     "judged": _colour_judged,
 }

@@ -47,6 +47,10 @@ _WALL, _SLOPE, _FLOOR = (70, 140, 255), (225, 225, 225), (225, 60, 30)
 """By how upright a surface stands: blue to red, which colour-blind eyes tell apart, through
 grey."""
 
+_DOUBT, _HALF, _SURE = (213, 94, 0), (222, 156, 112), (228, 228, 228)
+"""By confidence: the orange of Okabe and Ito (2008) for what should be looked at, fading to a
+light grey as lightness rises."""
+
 _GOLDEN = 0.6180339887498949
 """The golden section: hues so many turns apart never fall together."""
 
@@ -71,6 +75,12 @@ def height_ramp() -> Colours:
 def normal_ramp() -> Colours:
     """(256, 3) from horizontal normals (walls, blue) to vertical ones (floors, red)."""
     return _between((_WALL, _SLOPE, _FLOOR), 256)
+
+
+@lru_cache(maxsize=1)
+def confidence_ramp() -> Colours:
+    """(256, 3) from doubtful (orange) to sure (light grey)."""
+    return _between((_DOUBT, _HALF, _SURE), 256)
 
 
 @lru_cache(maxsize=1)

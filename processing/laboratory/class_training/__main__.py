@@ -4,7 +4,9 @@
 
 Needs the extra ``train``. Streets of ``--seeds`` and, recorded by heads of any height, tilt and
 rate, of ``--mounted`` are learnt from, each head thinned, shaken and brightened in ``--variants``
-ways; those of ``--check`` are not. ``--deliveries`` are folders with truths that are only scored.
+ways; those of ``--check`` are not. Of ``--kept`` and ``--kept-mounted``, which aren't either, a
+sample is shipped for learning from corrections; ``--sample-only`` makes nothing else.
+``--deliveries`` are folders with truths that are only scored.
 ``--score-only`` leaves the models as they are. The same seeds give the same models.
 """
 
@@ -34,8 +36,11 @@ from processing.laboratory.class_training.examples import (
     labels_of_drive,
 )
 from processing.laboratory.class_training.fitting import ForestSize, fit_forest
+from processing.laboratory.class_training.sample import kept_sample
+from processing.methods.classes.class_models import AGAIN, ALONE, MODELS, SAMPLE, shipped_models
 from processing.methods.classes.class_trees import class_shares
-from processing.methods.classes.drive_classes import AGAIN, ALONE, MODELS, classify_drive
+from processing.methods.classes.drive_classes import classify_drive
+from processing.methods.classes.example_file import write_examples
 from processing.methods.noise.tree_files import Forest, write_forest
 from processing.scoring.class_scores import class_score
 from processing.scoring.confusion_matrix import ConfusionMatrix
@@ -52,8 +57,10 @@ _FOLDS = 2
 def main(arguments: Sequence[str] | None = None) -> int:
     """Make the models, or only score those that are there."""
     options = _parser().parse_args(arguments)
-    if not options.score_only:
+    if not (options.score_only or options.sample_only):
         _make(options)
+    if not options.score_only:
+        _keep_sample(options)
     checked = simulated_scenes(_seeds(options.check), options.length)
     for scene in itertools.chain(checked, given_scenes(options.deliveries)):
         _say(_score_line(scene))
@@ -65,11 +72,14 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--seeds", default="3000-3011", help="streets that are learnt from")
     parser.add_argument("--worn", default="3030-3033", help="worn ones, by drifting trajectories")
     parser.add_argument("--mounted", default="3040-3049", help="those by heads of any mounting")
+    parser.add_argument("--kept", default="3200-3205", help="those a sample is shipped of")
+    parser.add_argument("--kept-mounted", default="3240-3243")
     parser.add_argument("--check", default="3100-3103", help="streets that are only scored")
     parser.add_argument("--length", type=float, default=60.0, help="m of each")
     parser.add_argument("--variants", type=int, default=2, help="of each head")
     parser.add_argument("--deliveries", type=Path, nargs="*", default=[])
     parser.add_argument("--score-only", action="store_true")
+    parser.add_argument("--sample-only", action="store_true")
     return parser
 
 
@@ -100,6 +110,16 @@ def _make(options: argparse.Namespace) -> None:
             rows = one.cells.with_neighbours(_in_order(shares, judge, own))[chosen]
             again.append((rows, one.codes[chosen], stands))
     _write(_fit(again, _AGAIN_SIZE), AGAIN, again[0][0].shape[1])
+
+
+def _keep_sample(options: argparse.Namespace) -> None:
+    scenes = itertools.chain(
+        simulated_scenes(_seeds(options.kept), options.length),
+        mounted_scenes(_seeds(options.kept_mounted), options.length),
+    )
+    path = path_of("models") / Path(MODELS).name / SAMPLE
+    write_examples(kept_sample(scenes, shipped_models()), path)
+    _say(f"{path.name}: {path.stat().st_size / 1e3:,.0f} kB")
 
 
 def _learnt(options: argparse.Namespace) -> Iterator[RoadScene]:
@@ -142,7 +162,7 @@ def _score_line(scene: RoadScene) -> str:
         codes, confidence = np.zeros(drive.count, np.uint8), np.zeros(drive.count, np.float32)
         scratch = drive.folder / "classes"
         scratch.mkdir()
-        classify_drive(drive, codes, confidence, scratch, SilentMonitor())
+        classify_drive(drive, codes, confidence, scratch, SilentMonitor(), models=shipped_models())
         said.append(codes)
         true.append(labels_of_drive(drive, scene.delivery / "truth"))
     score = class_score(ConfusionMatrix.of(np.concatenate(true), np.concatenate(said)))

@@ -8,8 +8,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -18,19 +18,15 @@ from numpy.typing import NDArray
 from processing.core.arrays import Floats, Integers
 from processing.core.kernels import kernel
 from processing.core.monitor import Monitor, PartMonitor
+from processing.methods.classes.class_models import ClassModels
 from processing.methods.classes.class_trees import class_shares
 from processing.methods.classes.features import REACH_M, ClassCells, class_cells
 from processing.methods.noise.tiles_of_space import TiledCloud
-from processing.methods.noise.tree_files import Forest, read_forest
 from processing.methods.road.objects.ground_heights import GROUND_CELLS
 from processing.methods.road.objects.sparse_plan import SparsePlan, cell_of
 from processing.methods.road.objects.survey import survey_ground
 from processing.recording.columns.counted_classes import class_columns
 from processing.recording.drive import Drive
-from resources import path_of
-
-MODELS = "models/classes"
-ALONE, AGAIN = "alone.onnx", "again.onnx"
 
 _TILE_M = 4.0
 """Side of a tile: about as wide as what is looked at around a point."""
@@ -114,12 +110,35 @@ class FoundClasses:
     confidence: NDArray[np.float32]
 
 
+@dataclass(frozen=True)
+class PartCells:
+    """The cells of a part of a drive, with what is around it.
+
+    Attributes
+    ----------
+    points : (n,) int64
+        Those that the cells are of: first some of the part's own, then some around.
+    own : int
+        How many of them are the part's own.
+    xyz : (n, 3) float64
+        m, project CRS.
+    cells : ClassCells
+    """
+
+    points: Integers
+    own: int
+    xyz: Floats
+    cells: ClassCells
+
+
 def classify_drive(
     drive: Drive,
     codes: NDArray[np.uint8],
     confidence: NDArray[np.float32],
     scratch: Path,
     monitor: Monitor,
+    *,
+    models: ClassModels,
 ) -> None:
     """Find the class of every point that isn't known to be noise.
 
@@ -131,6 +150,38 @@ def classify_drive(
         Zero; gets how sure they are.
     scratch : Path
         A folder for files meanwhile; the caller deletes it.
+    models : ClassModels
+        What says how likely each class is.
+
+    Raises
+    ------
+    NoSpace, Cancelled
+    """
+    for one in cells_of_drive(drive, scratch, monitor, most=_POINTS_PER_PART):
+        found = classes_of_cells(one.cells, models, monitor)
+        asked = one.points[: one.own]
+        codes[asked] = found.codes[: one.own]
+        confidence[asked] = found.confidence[: one.own]
+
+
+def cells_of_drive(
+    drive: Drive,
+    scratch: Path,
+    monitor: Monitor,
+    *,
+    most: int,
+    wanted: NDArray[np.bool_] | None = None,
+) -> Iterator[PartCells]:
+    """The cells of a drive, a part of space at a time; noise is in none.
+
+    Parameters
+    ----------
+    scratch : Path
+        A folder for files meanwhile; the caller deletes it.
+    most : int
+        Points of a part, with those around it.
+    wanted : (n,) bool, optional
+        Parts without such points are left out.
 
     Raises
     ------
@@ -146,7 +197,7 @@ def classify_drive(
     sorting = PartMonitor(monitor, _GROUND, _SORTED)
     cloud = TiledCloud(read, drive.count, scratch / "order", _TILE_M, monitor=sorting)
     rest, done = PartMonitor(monitor, _SORTED, 1.0), 0
-    for part in cloud.parts(REACH_M, _POINTS_PER_PART):
+    for part in cloud.parts(REACH_M, most, wanted):
         rest.check()
         rest.report(done / cloud.count)
         points = np.concatenate([part.own, part.around])
@@ -154,23 +205,26 @@ def classify_drive(
         is_asked = ~classes.are_noise(points) & np.isfinite(xyz).all(axis=1)
         if is_asked.any():
             intensity = np.asarray(drive.columns["intensity"][points[is_asked]])
-            local = xyz[is_asked] - around.plan.origin
-            found = classes_of_cells(around.cells_of(local, intensity, rest), rest)
-            own = is_asked[: part.own.size]
-            asked = part.own[own]
-            codes[asked] = found.codes[: asked.size]
-            confidence[asked] = found.confidence[: asked.size]
+            asked = xyz[is_asked]
+            cells = around.cells_of(asked - around.plan.origin, intensity, rest)
+            own = int(np.count_nonzero(is_asked[: part.own.size]))
+            yield PartCells(points[is_asked], own, asked, cells)
         done += part.own.size
 
 
-def classes_of_cells(cells: ClassCells, monitor: Monitor) -> FoundClasses:
-    """The classes of the points of cells, by the models that come with the program."""
-    alone, again = _forest(ALONE), _forest(AGAIN)
-    shares = class_shares(alone, cells.rows, monitor)
-    shares = class_shares(again, cells.with_neighbours(shares), monitor)
+def classes_of_cells(cells: ClassCells, models: ClassModels, monitor: Monitor) -> FoundClasses:
+    """The classes of the points of cells."""
+    shares = class_shares(models.again, rows_seen_again(cells, models, monitor), monitor)
     best = shares.argmax(axis=1)
     sure = np.take_along_axis(shares, best[:, None], axis=1)[:, 0]
-    return FoundClasses(again.codes[best][cells.cell_of], sure[cells.cell_of])
+    return FoundClasses(models.again.codes[best][cells.cell_of], sure[cells.cell_of])
+
+
+def rows_seen_again(
+    cells: ClassCells, models: ClassModels, monitor: Monitor
+) -> NDArray[np.float32]:
+    """(c, f + 3 k) what the second trees are asked: features, and what the first said around."""
+    return cells.with_neighbours(class_shares(models.alone, cells.rows, monitor))
 
 
 @kernel
@@ -182,11 +236,6 @@ def heights_kernel(
         cell = cell_of(local[point, 0], local[point, 1], table, GROUND_CELLS)
         height = local[point, 2] - ground[cell] if cell >= 0 else np.nan
         heights[point] = height if np.isfinite(height) else 0.0
-
-
-@cache
-def _forest(name: str) -> Forest:
-    return read_forest(path_of(f"{MODELS}/{name}"))
 
 
 def warm_up() -> None:

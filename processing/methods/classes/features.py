@@ -59,6 +59,9 @@ _PLAN_LEVELS = (1, 3)
 """Columns of 0.2 and 0.8 m, nine of which are looked at: 0.6 m across a curb, 2.4 m across a
 person's or a plate's surroundings."""
 
+FEATURES = SHAPES * len(_SHAPE_LEVELS) + COLUMN * len(_COLUMN_LEVELS) + 2 * len(_PLAN_LEVELS) + 3
+"""Numbers in a row: shapes, columns, heights in plan; height, intensity and its spread."""
+
 _AGREE_LEVELS = (1, 3)
 """Sizes of cells within which neighbours are asked what they are: 0.6 and 2.4 m around."""
 

@@ -22,11 +22,10 @@ from processing.core.text import Text
 from processing.image.search.clip import Clip
 from processing.labels.label_column import LABEL
 from processing.project.evaluation.truth_store import TRUTH
-from processing.project.results.run_findings import labelled_by_runs
+from processing.project.results.run_findings import set_by_hand
 from processing.recording.columns.columns import ColumnWriter
 from processing.recording.columns.ordering import read_chunk
 from processing.recording.drive import Drive
-from processing.tools.registry import TOOLS
 
 OTHER = 1
 """The code of a point that is known to be none of the classes asked for."""
@@ -165,9 +164,5 @@ def classes_as_they_stand(drive: Drive, start: int, stop: int) -> NDArray[np.uin
 def _is_by_hand(drive: Drive, start: int, stop: int) -> NDArray[np.bool_]:
     if not drive.columns.has(LABEL):
         return np.zeros(stop - start, np.bool_)
-    points, labels = np.arange(start, stop), np.asarray(drive.columns[LABEL][start:stop])
-    is_by_hand = labels > 0
-    for tool in TOOLS.values():
-        if tool.asked is not None:
-            is_by_hand &= ~labelled_by_runs(drive, tool, points, labels)
-    return is_by_hand
+    labels = np.asarray(drive.columns[LABEL][start:stop])
+    return set_by_hand(drive, np.arange(start, stop), labels)

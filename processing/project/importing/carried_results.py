@@ -18,9 +18,9 @@ from processing.recording.columns.error_map import ERROR_MAP
 from processing.recording.columns.ordering import chunk_ranges
 from processing.recording.drive import Drive
 
-_COLUMNS = ("label", ERROR_MAP, "seen_color", "is_seen", "height_above_ground")
+_COLUMNS = ("label", ERROR_MAP, "seen_color", "is_seen", "height_above_ground", "confidence")
 _WHOLE = ("camera_offsets.json", "ground_surface.tiles")
-_TRUTHS, _FINDINGS = "truths/*/truth.bin", "runs/*/*.bits"
+_TRUTHS, _FINDINGS, _GIVEN = "truths/*/truth.bin", "runs/*/*.bits", "runs/*/*.codes"
 _BYTE = 8
 
 
@@ -65,13 +65,16 @@ def _files(drive: Drive) -> list[Path]:
     named = [column_path(drive.folder, name) for name in _COLUMNS]
     named += [drive.folder / name for name in _WHOLE]
     found = [
-        path for pattern in (_TRUTHS, _FINDINGS) for path in sorted(drive.folder.glob(pattern))
+        path
+        for pattern in (_TRUTHS, _FINDINGS, _GIVEN)
+        for path in sorted(drive.folder.glob(pattern))
     ]
     return [*(path for path in named if path.is_file()), *found]
 
 
 def _carry_column(path: Path, target: Path, before: NDArray[np.int64]) -> None:
-    dtype, width = COLUMN_TYPES[path.stem]
+    is_given = path.suffix == Path(_GIVEN).suffix
+    dtype, width = COLUMN_TYPES["label" if is_given else path.stem]
     shape = (before.size,) if width == 1 else (before.size, width)
     values = np.memmap(path, dtype, "r", shape=shape)
     with target.open("wb") as file:

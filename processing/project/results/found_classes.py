@@ -15,14 +15,12 @@ from processing.core.text import Text
 from processing.labels.label_column import labels_of
 from processing.map.label_change import MOST_POINTS, LabelChange
 from processing.project.results.found_features import FoundFeatures, parameter_values
-from processing.project.results.run_findings import labelled_by_runs
+from processing.project.results.run_findings import labelled_by_runs, new_labels, set_by_hand
 from processing.project.store.label_filing import labels_as_change
 from processing.project.store.runs import Run, new_run_id
-from processing.recording.columns.ordering import read_chunk
 from processing.recording.drive import Drive
 from processing.tools.tool import FinishedColumns, Tool
 
-_CLASS = "classification"
 _FOUND = Text("{tool}: {count} points classified", "{tool}: {count}点を分類")
 _NOTHING = Text("{tool}: no point gets another class", "{tool}: クラスの変わる点はありません")
 _NO_NOTE = Text("", "")
@@ -109,10 +107,7 @@ def _labels_within(
 ) -> LabelChange | None:
     """The labels of a stretch."""
     stop = min(start + MOST_POINTS, drive.count)
-    found = result.read(_CLASS, start, stop)
-    after = np.where(found != _read_delivered_classes(drive, start, stop), found, 0).astype(
-        np.uint8
-    )
+    after = new_labels(drive, result, start, stop)
     return relabel_points(drive, np.arange(start, stop), after, tool)
 
 
@@ -148,20 +143,13 @@ def relabel_points(
         0 where the tool says what was delivered.
     """
     before = labels_of(drive, points)
-    # Where it isn't kept what runs said, a label of the tool's own may be an earlier run's.
-    is_own = (
-        labelled_by_runs(drive, tool, points, before)
-        if tool.asked is not None
-        else np.isin(before, tool.gives_classes)
-    )
+    is_own = labelled_by_runs(drive, tool, points, before)
+    if tool.asked is None:
+        # It tells all classes apart: what a question with two answers gave was less.
+        is_other = np.isin(before, tool.gives_classes) & ~set_by_hand(drive, points, before)
+        is_own |= is_other
     is_free = (before == 0) | is_own
     changed = is_free & (before != after)
     if not changed.any():
         return None
     return LabelChange.of(drive.id, points[changed], before[changed], after[changed])
-
-
-def _read_delivered_classes(drive: Drive, start: int, stop: int) -> NDArray[np.uint8]:
-    if not drive.columns.has(_CLASS):
-        return np.zeros(stop - start, np.uint8)
-    return np.asarray(read_chunk(drive.folder, _CLASS, start, stop))

@@ -57,7 +57,7 @@ def lightness(rgb: NDArray[np.uint8]) -> NDArray[np.float64]:
 
 def test_the_eight_attributes_of_the_contract_are_there_and_what_an_evaluation_shows() -> None:
     wanted = ["intensity", "height", "normal", "shape", "segment", "color", "label", "class"]
-    assert list(ATTRIBUTES) == [*wanted, "judged"]
+    assert list(ATTRIBUTES) == [*wanted, "confidence", "judged"]
     for attribute in ATTRIBUTES.values():
         assert attribute.title.en
         assert attribute.title.ja

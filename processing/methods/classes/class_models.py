@@ -1,0 +1,56 @@
+"""The models of classes: those that come with the program, and one that a project learnt."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from functools import cache
+
+from processing.methods.classes.boosting import Examples
+from processing.methods.classes.example_file import read_examples
+from processing.methods.classes.features import FEATURES
+from processing.methods.noise.tree_files import Forest, read_forest
+from resources import path_of
+
+MODELS = "models/classes"
+ALONE, AGAIN, SAMPLE = "alone.onnx", "again.onnx", "sample.npz"
+
+
+@dataclass(frozen=True)
+class ClassModels:
+    """Trees that look at a cell alone, and trees that also see what those said around it.
+
+    Attributes
+    ----------
+    alone, again : Forest
+    """
+
+    alone: Forest
+    again: Forest
+
+    @property
+    def again_columns(self) -> int:
+        """Features that the second trees are asked about, and three times the first's classes."""
+        return FEATURES + 3 * self.alone.codes.size
+
+
+@cache
+def shipped_models() -> ClassModels:
+    """The models that come with the program."""
+    alone, again = (read_forest(path_of(f"{MODELS}/{name}")) for name in (ALONE, AGAIN))
+    return ClassModels(alone, again)
+
+
+def shipped_sample() -> Examples:
+    """Examples that the models that come with the program didn't learn from."""
+    return read_examples(path_of(f"{MODELS}/{SAMPLE}"))
+
+
+@cache
+def shipped_version() -> str:
+    """What tells these shipped models from those of another version.
+
+    A model that was learnt on top of others asks for what these may not say.
+    """
+    sums = (hashlib.sha256(path_of(f"{MODELS}/{name}").read_bytes()) for name in (ALONE, AGAIN))
+    return "-".join(one.hexdigest()[:16] for one in sums)
