@@ -8,7 +8,6 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from processing.core.errors import Unsuitable, report_as_user_error
 from processing.core.monitor import Monitor, PartMonitor, parts_of
@@ -20,7 +19,11 @@ from processing.map.change import Change
 from processing.methods.classes.class_models import shipped_models, shipped_sample
 from processing.methods.classes.learning import Gain, gain_of, learnt_forest
 from processing.methods.classes.own_model import ModelFacts, write_own_model
-from processing.methods.classes.painted_cells import PaintedCells, painted_cells
+from processing.methods.classes.painted_cells import (
+    PaintedCells,
+    PaintedLabels,
+    painted_cells,
+)
 from processing.operations.inputs import opened_project
 from processing.project.own_models import model_id, model_name
 from processing.project.project import Project
@@ -166,28 +169,31 @@ def _painted(drives: Sequence[Drive], into: Path, monitor: Monitor) -> tuple[int
         drive, scratch = painted[number], into / "scratch"
         with report_as_user_error(scratch):
             scratch.mkdir()
-        by_hand = scratch_array(scratch / "by_hand", np.uint8, drive.count)
-        count = _read_by_hand(drive, by_hand, part)
+        labels = PaintedLabels(
+            *(scratch_array(scratch / name, np.uint8, drive.count) for name in ("hand", "runs"))
+        )
+        count = _read_labels(drive, labels, part)
         if count:
             points += count
-            found += painted_cells(drive, by_hand, scratch, part, models=shipped_models())
-        del by_hand
+            found += painted_cells(drive, labels, scratch, part, models=shipped_models())
+        del labels
         remove_folder(scratch)
     if not found:
         raise _too_little(drives)
     return points, PaintedCells.joined(found)
 
 
-def _read_by_hand(drive: Drive, by_hand: NDArray[np.uint8], monitor: Monitor) -> int:
-    """Labels that no run gave; how many they are."""
+def _read_labels(drive: Drive, into: PaintedLabels, monitor: Monitor) -> int:
+    """Labels by where they come from; how many no run gave."""
     count = 0
     for start in range(0, drive.count, _AT_ONCE):
         monitor.check()
         points = np.arange(start, min(start + _AT_ONCE, drive.count))
         labels = np.array(drive.columns[LABEL][points], np.uint8)
-        labels[~set_by_hand(drive, points, labels)] = 0
-        by_hand[start : start + points.size] = labels
-        count += int(np.count_nonzero(labels))
+        is_by_hand = set_by_hand(drive, points, labels)
+        into.by_hand[points] = np.where(is_by_hand, labels, 0)
+        into.by_runs[points] = np.where(is_by_hand, 0, labels)
+        count += int(np.count_nonzero(is_by_hand))
     return count
 
 

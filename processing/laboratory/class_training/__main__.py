@@ -4,8 +4,8 @@
 
 Needs the extra ``train``. Streets of ``--seeds`` and, recorded by heads of any height, tilt and
 rate, of ``--mounted`` are learnt from, each head thinned, shaken and brightened in ``--variants``
-ways; those of ``--check`` are not. Of ``--kept`` and ``--kept-mounted``, which aren't either, a
-sample is shipped for learning from corrections; ``--sample-only`` makes nothing else.
+ways; those of ``--check`` are not. Of the avenues ``--kept``, which aren't either, a sample is
+shipped for learning from corrections; ``--sample-only`` makes nothing else.
 ``--deliveries`` are folders with truths that are only scored.
 ``--score-only`` leaves the models as they are. The same seeds give the same models.
 """
@@ -25,6 +25,7 @@ from processing.core.monitor import SilentMonitor
 from processing.core.output_streams import write_every_character
 from processing.laboratory.accuracy.road.road_scenes import (
     RoadScene,
+    avenue_scenes,
     given_scenes,
     mounted_scenes,
     simulated_scenes,
@@ -72,8 +73,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--seeds", default="3000-3011", help="streets that are learnt from")
     parser.add_argument("--worn", default="3030-3033", help="worn ones, by drifting trajectories")
     parser.add_argument("--mounted", default="3040-3049", help="those by heads of any mounting")
-    parser.add_argument("--kept", default="3200-3205", help="those a sample is shipped of")
-    parser.add_argument("--kept-mounted", default="3240-3243")
+    parser.add_argument("--kept", default="600-609", help="avenues a sample is shipped of")
     parser.add_argument("--check", default="3100-3103", help="streets that are only scored")
     parser.add_argument("--length", type=float, default=60.0, help="m of each")
     parser.add_argument("--variants", type=int, default=2, help="of each head")
@@ -113,10 +113,7 @@ def _make(options: argparse.Namespace) -> None:
 
 
 def _keep_sample(options: argparse.Namespace) -> None:
-    scenes = itertools.chain(
-        simulated_scenes(_seeds(options.kept), options.length),
-        mounted_scenes(_seeds(options.kept_mounted), options.length),
-    )
+    scenes = avenue_scenes(_seeds(options.kept), options.length)
     path = path_of("models") / Path(MODELS).name / SAMPLE
     write_examples(kept_sample(scenes, shipped_models()), path)
     _say(f"{path.name}: {path.stat().st_size / 1e3:,.0f} kB")

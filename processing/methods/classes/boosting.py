@@ -27,6 +27,9 @@ from processing.methods.noise.trees import Trees
 _BINS = 64
 """Of each feature's values."""
 
+AS_SAID = 0
+"""The code of an example that is to stay as likely of each class as a forest says."""
+
 _BALANCE = 0.5
 """Power of a class's share by which it counts."""
 
@@ -45,12 +48,13 @@ class BoostingLimits:
 
 @dataclass(frozen=True)
 class Examples:
-    """Rows of features whose class is known.
+    """Rows of features whose class is known, or is to stay what a forest says.
 
     Attributes
     ----------
     rows : (n, f) float32
     codes : (n,) uint8
+        :data:`AS_SAID` where a forest is held to what it says.
     weights : (n,) float64
         How much each counts.
     """
@@ -80,6 +84,10 @@ class Examples:
             np.concatenate([one.weights for one in parts]),
         )
 
+    def as_said(self) -> Examples:
+        """The same, each to stay as likely of each class as a forest says."""
+        return Examples(self.rows, np.full_like(self.codes, AS_SAID), self.weights)
+
     def weighed(self, total: float) -> Examples:
         """The same, with weights of so much in all; a class counts by the root of its share.
 
@@ -103,19 +111,19 @@ def boosted_further(
     ------
     Cancelled
     """
-    codes = np.union1d(forest.codes, examples.codes).astype(np.uint8)
+    codes = np.setdiff1d(np.union1d(forest.codes, examples.codes), [AS_SAID]).astype(np.uint8)
     known = np.searchsorted(codes, forest.codes)
     shares = np.zeros((len(examples), codes.size))
     shares[:, known] = class_shares(forest, examples.rows, monitor)
     said = np.log(np.maximum(shares, _LEAST_SHARE))
-    is_of = examples.codes[:, None] == codes
+    wanted = np.where(examples.codes[:, None] == AS_SAID, shares, examples.codes[:, None] == codes)
     weights = examples.weights * (len(examples) / examples.weights.sum())
     edges = _edges_of(examples)
     bins = _bins_of(examples.rows, edges)
     grown: list[GrownTree] = []
     for done in range(limits.rounds):
         monitor.report(done / limits.rounds)
-        grown += _round(bins, said, is_of, weights, limits.tree, monitor=monitor)
+        grown += _round(bins, said, wanted, weights, limits.tree, monitor=monitor)
     bases = np.full(codes.size, _base_of_unmet(forest))
     bases[known] = forest.bases
     return _with_trees(forest, codes, bases, grown, edges)
@@ -124,13 +132,13 @@ def boosted_further(
 def _round(
     bins: NDArray[np.uint8],
     said: Floats,
-    is_of: NDArray[np.bool_],
+    wanted: Floats,
     weights: Floats,
     limits: GrowthLimits,
     *,
     monitor: Monitor,
 ) -> list[GrownTree]:
-    """A tree for each class; ``said`` (n, k) gets what they add."""
+    """A tree for each class; ``said`` (n, k) gets what they add to come nearer to it."""
     likely = np.exp(said - said.max(axis=1, keepdims=True))
     likely /= likely.sum(axis=1, keepdims=True)
     found: dict[int, GrownTree] = {}
@@ -138,7 +146,7 @@ def _round(
     def grow(start: int, stop: int) -> None:
         for which in range(start, stop):
             share = likely[:, which]
-            gradients = weights * (share - is_of[:, which])
+            gradients = weights * (share - wanted[:, which])
             curvatures = weights * share * (1.0 - share)
             found[which], added = grow_tree(bins, gradients, curvatures, limits)
             said[:, which] += added

@@ -1,8 +1,10 @@
 """What somebody painted, as rows of features that trees can learn from.
 
-What was left as it was says something too: whoever corrects a street looks at what is around. Where
-the trees were sure and nobody painted, they are held to what they said, so that a correction of
-some things doesn't change others.
+What was left as it was says something too: whoever corrects a street looks at what is around. A
+brush changes nothing where the class is right already, so cells beside the paint that a run gave a
+class count as confirmed: from mistakes alone trees would learn that nothing is right. Where they
+were sure and nobody painted near by, they are held to what they said, so that a correction of some
+things doesn't change others.
 """
 
 from __future__ import annotations
@@ -34,11 +36,28 @@ _SURE = 0.8
 """From which confidence on it counts what was said and left as it is: four of five such cells of
 unseen streets are right, which is the worst that may be taught where nobody painted."""
 
-_LEFT_CELLS = 150
-"""Of each class and part that were left as they are; enough to hold the trees to what they said,
-few beside what was painted."""
+_PAINTED_CELLS, _LEFT_CELLS = 300, 150
+"""Of each class that are learnt from, at a place and in a part: a wall that is labelled by one
+click has thousands that say the same, and what was left should not be more than the paint."""
+
+_BESIDE_LEVEL = 3
+"""Cells of 0.8 m: within one of them a stroke of the usual brush (0.3 m) is seen as a whole."""
 
 _CODES = 256
+
+
+@dataclass(frozen=True)
+class PaintedLabels:
+    """The labels of a drive's points, by where they come from.
+
+    Attributes
+    ----------
+    by_hand, by_runs : (n,) uint8
+        Each 0 where it has none.
+    """
+
+    by_hand: NDArray[np.uint8]
+    by_runs: NDArray[np.uint8]
 
 
 @dataclass(frozen=True)
@@ -48,7 +67,7 @@ class PaintedCells:
     Attributes
     ----------
     painted, left : Examples
-        With weights of 1.
+        With weights of 1. What was confirmed beside the paint counts as painted.
     painted_places, left_places : (n,) int64
         The place of each, by a number that is the same for no two places.
     """
@@ -71,7 +90,7 @@ class PaintedCells:
 
 def painted_cells(
     drive: Drive,
-    by_hand: NDArray[np.uint8],
+    labels: PaintedLabels,
     scratch: Path,
     monitor: Monitor,
     *,
@@ -81,8 +100,7 @@ def painted_cells(
 
     Parameters
     ----------
-    by_hand : (n,) uint8
-        Labels set by hand; 0 elsewhere.
+    labels : PaintedLabels
     scratch : Path
         A folder for files meanwhile; the caller deletes it.
 
@@ -91,27 +109,37 @@ def painted_cells(
     NoSpace, Cancelled
     """
     rng = np.random.default_rng(0)
-    is_wanted = by_hand > 0
+    is_wanted = labels.by_hand > 0
     parts = cells_of_drive(drive, scratch, monitor, most=_POINTS_PER_PART, wanted=is_wanted)
     for one in parts:
-        labels = by_hand[one.points]
-        # What is around a part is another part's own.
-        labels[one.own :] = 0
         rows = rows_seen_again(one.cells, models, monitor)
-        codes = _codes_of_cells(one.cells.cell_of, labels, len(rows))
+        codes = _told_codes(one, labels)
         shares = class_shares(models.again, rows, monitor)
         is_own = np.zeros(len(rows), np.bool_)
         is_own[one.cells.cell_of[: one.own]] = True
         said = np.where(shares.max(axis=1) >= _SURE, models.again.codes[shares.argmax(axis=1)], 0)
         said[(codes > 0) | ~is_own] = 0
-        chosen, places = codes > 0, _places_of(one)
-        left = _some_of_each(said, rng)
+        places = _places_of(one)
+        chosen = _some_at_each_place(codes, places, rng)
+        left = _some_of_each(said, rng, _LEFT_CELLS)
         yield PaintedCells(
             Examples.alike(rows[chosen], codes[chosen]),
             Examples.alike(rows[left], said[left].astype(np.uint8)),
             places[chosen],
             places[left],
         )
+
+
+def _told_codes(part: PartCells, labels: PaintedLabels) -> NDArray[np.uint8]:
+    """(c,) the class of each of a part's own cells that was painted, or confirmed beside paint."""
+    own, count = part.points[: part.own], len(part.cells.rows)
+    cell_of = part.cells.cell_of[: part.own]
+    codes = _codes_of_cells(cell_of, np.asarray(labels.by_hand[own]), count)
+    stands = _codes_of_cells(cell_of, np.asarray(labels.by_runs[own]), count)
+    around = part.cells.held_by[_BESIDE_LEVEL]
+    is_beside = np.isin(around, np.unique(around[codes > 0])) & (codes == 0)
+    codes[is_beside] = stands[is_beside]
+    return codes
 
 
 def _codes_of_cells(
@@ -134,11 +162,21 @@ def _places_of(part: PartCells) -> Integers:
     return places
 
 
-def _some_of_each(codes: NDArray[np.integer], rng: Generator) -> Integers:
+def _some_at_each_place(codes: NDArray[np.uint8], places: Integers, rng: Generator) -> Integers:
+    """Some of each class's at each place, rising."""
+    painted = np.flatnonzero(codes)
+    chosen = [np.empty(0, np.int64)]
+    for place in np.unique(places[painted]):
+        here = painted[places[painted] == place]
+        chosen.append(here[_some_of_each(codes[here], rng, _PAINTED_CELLS)])
+    return np.sort(np.concatenate(chosen))
+
+
+def _some_of_each(codes: NDArray[np.integer], rng: Generator, most: int) -> Integers:
     """Some of each class's, rising."""
     chosen = [np.empty(0, np.int64)]
     for code in np.unique(codes[codes > 0]):
         of_class = np.flatnonzero(codes == code)
-        few = min(of_class.size, _LEFT_CELLS)
+        few = min(of_class.size, most)
         chosen.append(rng.choice(of_class, few, replace=False))
     return np.sort(np.concatenate(chosen))

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from processing.core.monitor import SilentMonitor
-from processing.methods.classes.class_trees import class_shares
 from processing.methods.classes.class_models import AGAIN, ALONE, MODELS
+from processing.methods.classes.class_trees import class_shares
 from processing.methods.noise.tree_files import Forest, read_forest, write_forest
 from processing.methods.noise.trees import Trees
 from processing.tools.classify import CLASSES
