@@ -40,6 +40,6 @@ def _described(learnt: LearntModel) -> dict[str, object]:
             for code, count in zip(
                 facts.gain.before.codes, facts.gain.before.true_counts.tolist(), strict=True
             )
-            if count
+            if code in facts.gain.classes
         },
     }

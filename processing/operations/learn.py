@@ -201,7 +201,7 @@ def _check(cells: PaintedCells, drives: Sequence[Drive]) -> None:
     places = np.unique(cells.painted_places).size
     if len(cells.painted) < _LEAST_CELLS or places < _LEAST_PLACES:
         raise _too_little(drives)
-    if np.unique(cells.painted.codes).size < _LEAST_CLASSES:
+    if len(cells.classes) < _LEAST_CLASSES:
         raise Unsuitable(
             Text("Only one class was painted.", "塗られたクラスが1種類しかありません。"),
             _where(drives),
@@ -241,7 +241,7 @@ def _class_lines(gain: Gain) -> list[Text]:
             after=_percent(gain.after.against_rest((code,)).f_measure),
         )
         for code, count in true.items()
-        if count
+        if code in gain.classes
     ]
 
 

@@ -20,6 +20,10 @@ from processing.scoring.reliability import share_of
 _OTHER = 1
 """What belongs to no class: the thesis leaves it out of its evaluation (section 4.2)."""
 
+_DRAWN = 1_000_000
+"""Points of each class in balanced sampling, as the thesis' areas have (Takahashi 2022, table 4-3);
+so many that rounding is no matter."""
+
 NOT_KNOWN = 0
 """Points whose true class nobody gave; what a tool calls them is neither right nor wrong."""
 
@@ -29,7 +33,8 @@ def class_score(counts: ConfusionMatrix) -> PointScore:
 
     The mean is over the classes that the truth has, without noise, which another tool finds, and
     without “other”.
-    Ground and road surface are also counted as one class, as the thesis has them.
+    Ground and road surface are also counted as one class, as the thesis has them. “Balanced” is the
+    mean for as many points of each of these classes and none of others.
 
     References
     ----------
@@ -73,6 +78,11 @@ def class_score(counts: ConfusionMatrix) -> PointScore:
                 "mean_f_ground_joined",
                 Text("mean F, ground and road as one", "F値のクラス平均（地面・路面は1クラス）"),
                 float(np.mean(joined)) if joined else float("nan"),
+            ),
+            NamedFigure(
+                "mean_f_balanced",
+                Text("mean F, as many points of each class", "F値のクラス平均（各クラス同数の点）"),
+                known.balanced(judged, _DRAWN).mean_f,
             ),
             NamedFigure("kappa", Text("kappa", "カッパ係数"), known.kappa),
         ),

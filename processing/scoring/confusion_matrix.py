@@ -240,6 +240,22 @@ class ConfusionMatrix:
         counts[np.isin(self.codes, sorted(codes))] = 0
         return _of_classes_met(np.array(self.codes, np.int64), counts)
 
+    def balanced(self, codes: Collection[int], each: int) -> ConfusionMatrix:
+        """The same for as many points of each of some true classes, those of others left out.
+
+        As if so many had been drawn of each: precision no longer follows from how frequent a class
+        is on the street at hand.
+
+        Parameters
+        ----------
+        each : int
+            Points of a class.
+        """
+        kept = self.counts * np.isin(self.codes, sorted(codes))[:, None]
+        total = kept.sum(axis=1, keepdims=True)
+        drawn = np.rint(kept * (each / np.maximum(total, 1))).astype(np.int64)
+        return _of_classes_met(np.array(self.codes, np.int64), drawn)
+
     def pairs(self, truth: Collection[int], result: Collection[int]) -> int:
         """Points whose true code is one of some, and the result's one of others."""
         is_true, is_found = (np.isin(self.codes, sorted(codes)) for codes in (truth, result))

@@ -32,6 +32,7 @@ from processing.laboratory.accuracy.road.road_scenes import (
     worn_options_of,
 )
 from processing.laboratory.class_training.examples import (
+    NOISE,
     LabelledCells,
     labelled_cells,
     labels_of_drive,
@@ -45,6 +46,7 @@ from processing.methods.classes.example_file import write_examples
 from processing.methods.noise.tree_files import Forest, write_forest
 from processing.scoring.class_scores import class_score
 from processing.scoring.confusion_matrix import ConfusionMatrix
+from processing.scoring.reliability import Reliability, reliability_of
 from resources import path_of
 
 _ALONE_SIZE = ForestSize(rounds=24, leaves=20, rate=0.25)
@@ -154,18 +156,34 @@ def _write(forest: Forest, name: str, columns: int) -> None:
 
 
 def _score_line(scene: RoadScene) -> str:
-    said, true = [], []
+    said, true, sure = [], [], []
     for drive in scene.drives:
         codes, confidence = np.zeros(drive.count, np.uint8), np.zeros(drive.count, np.float32)
         scratch = drive.folder / "classes"
         scratch.mkdir()
         classify_drive(drive, codes, confidence, scratch, SilentMonitor(), models=shipped_models())
         said.append(codes)
+        sure.append(confidence)
         true.append(labels_of_drive(drive, scene.delivery / "truth"))
-    score = class_score(ConfusionMatrix.of(np.concatenate(true), np.concatenate(said)))
+    truth, found = np.concatenate(true), np.concatenate(said)
+    score = class_score(ConfusionMatrix.of(truth, found))
     figures = " ".join(f"{one.id} {one.value:.3f}" for one in score.figures)
     classes = " ".join(f"{one.id} {one.counts.f_measure:.2f}" for one in score.classes)
-    return f"{scene.name}: {figures}; F {classes}"
+    is_asked = (found > 0) & (truth > 0) & ~np.isin(truth, NOISE)
+    reliability = reliability_of(
+        np.concatenate(sure)[is_asked].astype(np.float64), (found == truth)[is_asked]
+    )
+    return f"{scene.name}: {figures}; F {classes}; {_reliability_words(reliability)}"
+
+
+def _reliability_words(reliability: Reliability) -> str:
+    """How often what was said with about the same confidence was right, of every point."""
+    bins = " ".join(
+        f"{one.mean_confidence:.2f}>{one.accepted.value:.2f}"
+        for one in reliability.bins
+        if one.accepted.of
+    )
+    return f"calibration error {reliability.calibration_error:.3f}, {bins}"
 
 
 def _seeds(text: str) -> range:

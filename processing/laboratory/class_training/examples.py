@@ -19,7 +19,9 @@ from processing.methods.classes.features import ClassCells
 from processing.recording.columns.source_order import sources_of
 from processing.recording.drive import Drive
 
-_NOISE = (7, 18)
+NOISE = (7, 18)
+"""What another tool finds: no class is asked of it."""
+
 _CODES = 256
 _MOST_POINTS = 1_500_000
 """Of a variant: what the features of one take is then some 2 GB."""
@@ -94,7 +96,7 @@ def codes_of_cells(cells: ClassCells, labels: NDArray[np.uint8]) -> NDArray[np.u
     count = cells.rows.shape[0]
     votes = np.bincount(cells.cell_of.astype(np.int64) * _CODES + labels, minlength=count * _CODES)
     codes: NDArray[np.uint8] = votes.reshape(count, _CODES).argmax(axis=1).astype(np.uint8)
-    codes[np.isin(codes, _NOISE)] = 0
+    codes[np.isin(codes, NOISE)] = 0
     return codes
 
 

@@ -48,16 +48,19 @@ class Gain:
         Painted cells by the models that come with the program, and by what was learnt.
     places : int
         So many were painted.
+    classes : frozenset of int
+        Those that were painted by hand; others are there as far as they were confirmed.
     """
 
     before: ConfusionMatrix
     after: ConfusionMatrix
     places: int
+    classes: frozenset[int]
 
     @property
     def mean_f(self) -> tuple[float, float]:
         """Mean F of the painted classes, before and after."""
-        return self.before.mean_f, self.after.mean_f
+        return self.before.mean_f_of(self.classes), self.after.mean_f_of(self.classes)
 
     @property
     def helps(self) -> bool:
@@ -101,13 +104,15 @@ def gain_of(cells: PaintedCells, sample: Examples, models: ClassModels, monitor:
             cells.left.of(left != fold),
             cells.painted_places[painted != fold],
             cells.left_places[left != fold],
+            cells.classes,
         )
         forest = learnt_forest(others, sample, models, part)
         asked = painted == fold
         found[asked] = _said(forest, cells.painted.rows[asked], part)
     first = _said(models.again, cells.painted.rows, monitor)
     true = cells.painted.codes
-    return Gain(ConfusionMatrix.of(true, first), ConfusionMatrix.of(true, found), places.size)
+    before, after = (ConfusionMatrix.of(true, one) for one in (first, found))
+    return Gain(before, after, places.size, cells.classes)
 
 
 def _folds_of(of: Integers, places: Integers, folds: Integers) -> Integers:

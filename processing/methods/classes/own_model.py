@@ -67,6 +67,7 @@ def write_own_model(facts: ModelFacts, forest: Forest, folder: Path) -> None:
             "made": facts.made.isoformat(),
             "points": facts.points,
             "places": facts.gain.places,
+            "classes": sorted(facts.gain.classes),
             "before": _table_of(facts.gain.before),
             "after": _table_of(facts.gain.after),
         }
@@ -126,7 +127,9 @@ def _read_table(folder: Path) -> dict[str, Any]:
 
 def _facts_of(table: dict[str, Any], folder: Path) -> ModelFacts:
     try:
-        gain = Gain(_matrix_of(table["before"]), _matrix_of(table["after"]), int(table["places"]))
+        before, after = (_matrix_of(table[name]) for name in ("before", "after"))
+        classes = frozenset(int(code) for code in table["classes"])
+        gain = Gain(before, after, int(table["places"]), classes)
         made = datetime.fromisoformat(table["made"])
         return ModelFacts(folder.name, made, int(table["points"]), gain)
     except (KeyError, TypeError, ValueError) as error:

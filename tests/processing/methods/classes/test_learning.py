@@ -45,7 +45,8 @@ def corrected(sample: Examples) -> PaintedCells:
     painted = Examples.alike(sample.rows[is_building], codes[is_building])
     places = np.arange(len(painted)) % 12
     none = painted.of(np.zeros(len(painted), np.bool_))
-    return PaintedCells(painted, none, places, np.empty(0, np.int64))
+    classes = frozenset({GRASS, BUILDING})
+    return PaintedCells(painted, none, places, np.empty(0, np.int64), classes)
 
 
 def test_more_trees_learn_a_class_that_the_forest_never_met_and_keep_the_others() -> None:
