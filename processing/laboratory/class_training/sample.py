@@ -13,7 +13,7 @@ import numpy as np
 from processing.core.monitor import SilentMonitor
 from processing.laboratory.accuracy.road.road_scenes import RoadScene
 from processing.laboratory.class_training.examples import labelled_cells
-from processing.methods.classes.boosting import Examples
+from processing.methods.classes.boosting import ClassExamples
 from processing.methods.classes.class_models import ClassModels
 from processing.methods.classes.drive_classes import rows_seen_again
 
@@ -21,7 +21,7 @@ _CELLS = 45
 """Of each class and head: some 10,000 in all, a megabyte on the disk."""
 
 
-def kept_sample(scenes: Iterable[RoadScene], models: ClassModels) -> Examples:
+def kept_sample(scenes: Iterable[RoadScene], models: ClassModels) -> ClassExamples:
     """Some cells of each class of each head of streets, as the second trees see them."""
     rng = np.random.default_rng(0)
     parts = []
@@ -29,5 +29,5 @@ def kept_sample(scenes: Iterable[RoadScene], models: ClassModels) -> Examples:
         for one in labelled_cells(scene, 1, number):
             chosen, stands_for = one.sample(_CELLS, rng)
             rows = rows_seen_again(one.cells, models, SilentMonitor())[chosen]
-            parts.append(Examples(rows, one.codes[chosen], stands_for))
-    return Examples.joined(parts)
+            parts.append(ClassExamples(rows, one.codes[chosen], stands_for))
+    return ClassExamples.joined(parts)

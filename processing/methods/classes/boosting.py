@@ -47,7 +47,7 @@ class BoostingLimits:
 
 
 @dataclass(frozen=True)
-class Examples:
+class ClassExamples:
     """Rows of features whose class is known, or is to stay what a forest says.
 
     Attributes
@@ -66,29 +66,29 @@ class Examples:
     def __len__(self) -> int:
         return self.codes.size
 
-    def of(self, chosen: NDArray[np.bool_]) -> Examples:
+    def of(self, chosen: NDArray[np.bool_]) -> ClassExamples:
         """Some of them."""
-        return Examples(self.rows[chosen], self.codes[chosen], self.weights[chosen])
+        return ClassExamples(self.rows[chosen], self.codes[chosen], self.weights[chosen])
 
     @staticmethod
-    def alike(rows: NDArray[np.float32], codes: NDArray[np.uint8]) -> Examples:
+    def alike(rows: NDArray[np.float32], codes: NDArray[np.uint8]) -> ClassExamples:
         """Examples that all count the same."""
-        return Examples(rows, codes, np.ones(codes.size))
+        return ClassExamples(rows, codes, np.ones(codes.size))
 
     @staticmethod
-    def joined(parts: Sequence[Examples]) -> Examples:
+    def joined(parts: Sequence[ClassExamples]) -> ClassExamples:
         """Several together, one at least."""
-        return Examples(
+        return ClassExamples(
             np.concatenate([one.rows for one in parts]),
             np.concatenate([one.codes for one in parts]),
             np.concatenate([one.weights for one in parts]),
         )
 
-    def as_said(self) -> Examples:
+    def as_said(self) -> ClassExamples:
         """The same, each to stay as likely of each class as a forest says."""
-        return Examples(self.rows, np.full_like(self.codes, AS_SAID), self.weights)
+        return ClassExamples(self.rows, np.full_like(self.codes, AS_SAID), self.weights)
 
-    def weighed(self, total: float) -> Examples:
+    def weighed(self, total: float) -> ClassExamples:
         """The same, with weights of so much in all; a class counts by the root of its share.
 
         Between as frequent as it is and all alike, as the shipped models were made.
@@ -97,11 +97,13 @@ class Examples:
         for code in np.unique(self.codes):
             own = self.codes == code
             weights[own] *= weights[own].sum() ** -_BALANCE
-        return Examples(self.rows, self.codes, weights * (total / max(weights.sum(), _LEAST_SHARE)))
+        return ClassExamples(
+            self.rows, self.codes, weights * (total / max(weights.sum(), _LEAST_SHARE))
+        )
 
 
 def boosted_further(
-    forest: Forest, examples: Examples, limits: BoostingLimits, monitor: Monitor
+    forest: Forest, examples: ClassExamples, limits: BoostingLimits, monitor: Monitor
 ) -> Forest:
     """A forest with more trees, which correct what it says of examples.
 
@@ -155,7 +157,7 @@ def _round(
     return [found[which] for which in range(said.shape[1])]
 
 
-def _edges_of(examples: Examples) -> list[NDArray[np.float32]]:
+def _edges_of(examples: ClassExamples) -> list[NDArray[np.float32]]:
     """Where each feature's bins end: as much weight of examples in each, as far as they differ."""
     order_of = np.argsort(examples.rows, axis=0, kind="stable")
     edges = []

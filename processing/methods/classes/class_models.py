@@ -6,7 +6,7 @@ import hashlib
 from dataclasses import dataclass
 from functools import cache
 
-from processing.methods.classes.boosting import Examples
+from processing.methods.classes.boosting import ClassExamples
 from processing.methods.classes.example_file import read_examples
 from processing.methods.classes.features import FEATURES
 from processing.methods.noise.tree_files import Forest, read_forest
@@ -41,7 +41,7 @@ def shipped_models() -> ClassModels:
     return ClassModels(alone, again)
 
 
-def shipped_sample() -> Examples:
+def shipped_sample() -> ClassExamples:
     """Examples that the models that come with the program didn't learn from."""
     return read_examples(path_of(f"{MODELS}/{SAMPLE}"))
 

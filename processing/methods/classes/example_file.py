@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.methods.classes.boosting import Examples
+from processing.methods.classes.boosting import ClassExamples
 
 _LEVELS = 256
 """More than trees divide a feature's values into."""
 
 
-def write_examples(examples: Examples, path: Path) -> None:
+def write_examples(examples: ClassExamples, path: Path) -> None:
     """Write examples; their values are rounded to the nearest of 256 that each feature has."""
     shares = np.linspace(0.0, 1.0, _LEVELS)
     levels = np.quantile(examples.rows, shares, axis=0, method="nearest").T.astype(np.float32)
@@ -25,7 +25,7 @@ def write_examples(examples: Examples, path: Path) -> None:
     np.savez_compressed(path, levels=levels, places=places, codes=examples.codes, weights=weights)
 
 
-def read_examples(path: Path) -> Examples:
+def read_examples(path: Path) -> ClassExamples:
     """Read examples.
 
     Raises
@@ -36,4 +36,4 @@ def read_examples(path: Path) -> Examples:
     with np.load(path, allow_pickle=False) as file:
         levels: NDArray[np.float32] = file["levels"]
         rows = np.take_along_axis(levels.T, file["places"].astype(np.intp), axis=0)
-        return Examples(rows, file["codes"], file["weights"].astype(np.float64))
+        return ClassExamples(rows, file["codes"], file["weights"].astype(np.float64))

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from processing.core.arrays import Integers
 from processing.core.monitor import Monitor, parts_of
-from processing.methods.classes.boosting import BoostingLimits, Examples, boosted_further
+from processing.methods.classes.boosting import BoostingLimits, ClassExamples, boosted_further
 from processing.methods.classes.class_models import ClassModels
 from processing.methods.classes.class_trees import class_shares
 from processing.methods.classes.painted_cells import PaintedCells
@@ -70,16 +70,16 @@ class Gain:
 
 
 def learnt_forest(
-    cells: PaintedCells, sample: Examples, models: ClassModels, monitor: Monitor
+    cells: PaintedCells, sample: ClassExamples, models: ClassModels, monitor: Monitor
 ) -> Forest:
     """The second trees with more of them, for what was painted.
 
     Parameters
     ----------
-    sample : Examples
+    sample : ClassExamples
         That comes with the program.
     """
-    examples = Examples.joined(
+    examples = ClassExamples.joined(
         [
             cells.painted.weighed(PAINTED_SHARE),
             cells.left.weighed(LEFT_SHARE).as_said(),
@@ -89,7 +89,9 @@ def learnt_forest(
     return boosted_further(models.again, examples, LIMITS, monitor)
 
 
-def gain_of(cells: PaintedCells, sample: Examples, models: ClassModels, monitor: Monitor) -> Gain:
+def gain_of(
+    cells: PaintedCells, sample: ClassExamples, models: ClassModels, monitor: Monitor
+) -> Gain:
     """How much learning helps at places that are left out, in turn."""
     places = np.unique(cells.painted_places)
     folds = np.random.default_rng(0).permutation(places.size) % min(_FOLDS, places.size)

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from processing.core.arrays import Integers
 from processing.core.monitor import Monitor
-from processing.methods.classes.boosting import Examples
+from processing.methods.classes.boosting import ClassExamples
 from processing.methods.classes.class_models import ClassModels
 from processing.methods.classes.class_trees import class_shares
 from processing.methods.classes.drive_classes import PartCells, cells_of_drive, rows_seen_again
@@ -67,7 +67,7 @@ class PaintedCells:
 
     Attributes
     ----------
-    painted, left : Examples
+    painted, left : ClassExamples
         With weights of 1. What was confirmed beside the paint counts as painted.
     painted_places, left_places : (n,) int64
         The place of each, by a number that is the same for no two places.
@@ -75,8 +75,8 @@ class PaintedCells:
         Those that were painted by hand.
     """
 
-    painted: Examples
-    left: Examples
+    painted: ClassExamples
+    left: ClassExamples
     painted_places: Integers
     left_places: Integers
     classes: frozenset[int]
@@ -85,8 +85,8 @@ class PaintedCells:
     def joined(parts: Sequence[PaintedCells]) -> PaintedCells:
         """Those of several parts or drives, of one at least."""
         return PaintedCells(
-            Examples.joined([one.painted for one in parts]),
-            Examples.joined([one.left for one in parts]),
+            ClassExamples.joined([one.painted for one in parts]),
+            ClassExamples.joined([one.left for one in parts]),
             np.concatenate([one.painted_places for one in parts]),
             np.concatenate([one.left_places for one in parts]),
             frozenset[int]().union(*(one.classes for one in parts)),
@@ -128,8 +128,8 @@ def painted_cells(
         chosen = _some_at_each_place(codes, places, rng)
         left = _some_of_each(said, rng, _LEFT_CELLS)
         yield PaintedCells(
-            Examples.alike(rows[chosen], codes[chosen]),
-            Examples.alike(rows[left], said[left].astype(np.uint8)),
+            ClassExamples.alike(rows[chosen], codes[chosen]),
+            ClassExamples.alike(rows[left], said[left].astype(np.uint8)),
             places[chosen],
             places[left],
             frozenset(np.unique(labels.by_hand[one.points[: one.own]]).tolist()) - {0},

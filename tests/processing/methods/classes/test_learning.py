@@ -11,7 +11,7 @@ import pytest
 
 from processing.core.errors import BadFile, Unsuitable
 from processing.core.monitor import SilentMonitor
-from processing.methods.classes.boosting import BoostingLimits, Examples, boosted_further
+from processing.methods.classes.boosting import BoostingLimits, ClassExamples, boosted_further
 from processing.methods.classes.class_models import shipped_models, shipped_sample
 from processing.methods.classes.class_trees import class_shares
 from processing.methods.classes.example_file import read_examples, write_examples
@@ -26,23 +26,23 @@ LIMITS = BoostingLimits(8, GrowthLimits(leaves=4, ridge=1.0, least=5, rate=0.5))
 GRASS, BUILDING, OFFICE_CLASS = 3, 6, 70
 
 
-def said(forest: Forest, examples: Examples) -> np.ndarray:
+def said(forest: Forest, examples: ClassExamples) -> np.ndarray:
     return forest.codes[class_shares(forest, examples.rows, M).argmax(axis=1)]
 
 
-def some_of_the_sample(count: int = 1500) -> Examples:
+def some_of_the_sample(count: int = 1500) -> ClassExamples:
     sample = shipped_sample()
     chosen = np.zeros(len(sample), np.bool_)
     chosen[np.random.default_rng(2).permutation(len(sample))[:count]] = True
     return sample.of(chosen)
 
 
-def corrected(sample: Examples) -> PaintedCells:
+def corrected(sample: ClassExamples) -> PaintedCells:
     """A world in which what is called a building is grass where its first feature is high."""
     is_building = said(shipped_models().again, sample) == BUILDING
     is_high = sample.rows[:, 0] > np.median(sample.rows[is_building, 0])
     codes = np.where(is_high, GRASS, BUILDING).astype(np.uint8)
-    painted = Examples.alike(sample.rows[is_building], codes[is_building])
+    painted = ClassExamples.alike(sample.rows[is_building], codes[is_building])
     places = np.arange(len(painted)) % 12
     none = painted.of(np.zeros(len(painted), np.bool_))
     classes = frozenset({GRASS, BUILDING})
@@ -54,7 +54,9 @@ def test_more_trees_learn_a_class_that_the_forest_never_met_and_keep_the_others(
     forest = shipped_models().again
     before = said(forest, sample)
     is_new = sample.rows[:, 1] > np.quantile(sample.rows[:, 1], 0.8)
-    taught = Examples.alike(sample.rows, np.where(is_new, OFFICE_CLASS, before).astype(np.uint8))
+    taught = ClassExamples.alike(
+        sample.rows, np.where(is_new, OFFICE_CLASS, before).astype(np.uint8)
+    )
     after = said(boosted_further(forest, taught, LIMITS, M), taught)
     assert (after[is_new] == OFFICE_CLASS).mean() > 0.95
     assert (after[~is_new] == before[~is_new]).mean() > 0.95
@@ -96,7 +98,7 @@ def test_examples_are_kept_in_a_byte_a_feature(tmp_path: Path) -> None:
     rng = np.random.default_rng(3)
     rows = rng.normal(size=(2000, 4)).astype(np.float32)
     codes = rng.integers(1, 5, 2000).astype(np.uint8)
-    write_examples(Examples(rows, codes, rng.random(2000)), tmp_path / "some.npz")
+    write_examples(ClassExamples(rows, codes, rng.random(2000)), tmp_path / "some.npz")
     read = read_examples(tmp_path / "some.npz")
     np.testing.assert_array_equal(read.codes, codes)
     assert np.quantile(np.abs(read.rows - rows), 0.98) < 0.06

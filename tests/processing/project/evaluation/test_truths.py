@@ -33,6 +33,7 @@ from processing.project.store.runs import Run
 from processing.recording.columns.columns import ColumnWriter
 from processing.recording.columns.error_map import ERROR_MAP, ErrorMapValue
 from processing.recording.drive import Drive
+from processing.tools.registry import TOOLS
 from processing.tools.tool import FinishedColumns
 from tests.builders import simulated_drive, write_laz, write_trajectory_csv
 from tests.monitors import CancelledAfter
@@ -88,7 +89,7 @@ def run_that_says(project: Project, run: str, is_noise: NDArray[np.bool_]) -> Ru
         writer.append({"classification": np.where(is_noise, HIGH, 1).astype(np.uint8)})
     result = FinishedColumns(into, ("classification",), drive.count)
     write_finding(result, {LOW, HIGH}, into / "said")
-    adopt_finding(drive, "noise", run, into / "said")
+    adopt_finding(drive, TOOLS["noise"], run, into / "said")
     return Run(run, "noise", 1, {"method": "radius"}, (drive.id,), NOW, NOW, NAME)
 
 
