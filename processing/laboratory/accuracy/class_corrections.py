@@ -91,7 +91,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 def _row_of(scene: RoadScene, street: StreetPoints, seed: int) -> str:
     shipped = shipped_models()
     painted = painted_codes(street, np.random.default_rng(seed))
-    cells, start = [], 0
+    cells, start = list[PaintedCells](), 0
     for drive in scene.drives:
         own = slice(start, start + drive.count)
         labels = PaintedLabels(

@@ -147,7 +147,7 @@ def _told_codes(part: PartCells, labels: PaintedLabels, rng: Generator) -> NDArr
     stands = _codes_of_cells(cell_of, np.asarray(labels.by_runs[own]), count)
     around = part.cells.held_by[_BESIDE_LEVEL]
     is_beside = np.isin(around, np.unique(around[codes > 0])) & (codes == 0) & (stands > 0)
-    beside, painted = np.flatnonzero(is_beside), np.count_nonzero(codes)
+    beside, painted = np.flatnonzero(is_beside), int(np.count_nonzero(codes))
     some = rng.choice(beside, min(beside.size, painted), replace=False)
     codes[some] = stands[some]
     return codes
@@ -160,7 +160,8 @@ def _codes_of_cells(
     is_painted = labels > 0
     places = cell_of[is_painted].astype(np.int64) * _CODES + labels[is_painted]
     votes = np.bincount(places, minlength=count * _CODES).reshape(count, _CODES)
-    return votes.argmax(axis=1).astype(np.uint8)
+    codes: NDArray[np.uint8] = votes.argmax(axis=1).astype(np.uint8)
+    return codes
 
 
 def _places_of(part: PartCells) -> Integers:

@@ -72,6 +72,19 @@ def test_empty_pixels_are_deep_blue_and_no_point_is(drive: Drive, attribute: str
     assert not (pixels[points >= 0] == EMPTY_COLOUR).all(axis=1).any()
 
 
+def test_doubt_is_orange_what_is_sure_light_and_what_nobody_asked_grey(drive: Drive) -> None:
+    with pytest.raises(Unsuitable, match="Confidence of the class"):
+        shown(drive, "confidence")
+    drive.columns.add("confidence", np.linspace(0.0, 1.0, drive.count, dtype=np.float32))
+    points, pixels = shown(drive, "confidence")
+    sure = drive.columns["confidence"][points[points >= 0]]
+    found = pixels[points >= 0].astype(int)
+    assert (found[sure == 0] == UNKNOWN_COLOUR).all()
+    assert (np.diff(lightness(found[np.argsort(sure)][1:])) > -1.5).all()
+    assert (found[sure > 0.98] > 220).all()
+    assert np.ptp(found[(sure > 0) & (sure < 0.1)], axis=1).min() > 150
+
+
 def test_intensity_is_grey_between_its_percentiles(drive: Drive) -> None:
     points, pixels = shown(drive, "intensity")
     grey = pixels[points >= 0]

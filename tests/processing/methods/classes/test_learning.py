@@ -38,11 +38,12 @@ def some_of_the_sample(count: int = 1500) -> ClassExamples:
 
 
 def corrected(sample: ClassExamples) -> PaintedCells:
-    """A world in which what is called a building is grass where its first feature is high."""
+    """A world in which what looks like a building, but is rougher than any known, is grass."""
     is_building = said(shipped_models().again, sample) == BUILDING
-    is_high = sample.rows[:, 0] > np.median(sample.rows[is_building, 0])
-    codes = np.where(is_high, GRASS, BUILDING).astype(np.uint8)
-    painted = ClassExamples.alike(sample.rows[is_building], codes[is_building])
+    rows = sample.rows[is_building]
+    is_grass = np.arange(len(rows)) % 2 == 1
+    rows[is_grass, :4] += 3.0
+    painted = ClassExamples.alike(rows, np.where(is_grass, GRASS, BUILDING).astype(np.uint8))
     places = np.arange(len(painted)) % 12
     none = painted.of(np.zeros(len(painted), np.bool_))
     classes = frozenset({GRASS, BUILDING})
