@@ -1,6 +1,6 @@
 """How much five minutes of painting help in a strange city.
 
-``python -m processing.laboratory.accuracy.class_corrections FOLDER… --markdown FILE``
+``python -m processing.laboratory.class_training.class_corrections FOLDER… --markdown FILE``
 
 A street is classified, somebody corrects its first half, the program learns, and the other half is
 classified again. The painter is made of the truth: fifty times, six seconds each, a class is chosen
