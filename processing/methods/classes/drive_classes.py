@@ -69,8 +69,8 @@ class DriveSurroundings:
     @classmethod
     def of(cls, drive: Drive, monitor: Monitor) -> DriveSurroundings:
         """Find the ground of a drive and how bright it is."""
-        plan, heights = survey_ground([drive], monitor)
-        ground = heights.reshape(-1)
+        plan, cells = survey_ground([drive], monitor)
+        ground = cells.reshape(-1)
         bare = cls(drive, plan, ground, 0.0)
         points = np.arange(0, drive.count, max(1, drive.count // _SAMPLE))
         heights = bare.heights_of(drive.xyz(points) - plan.origin)

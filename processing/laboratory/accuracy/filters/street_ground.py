@@ -12,6 +12,7 @@ import argparse
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
@@ -116,7 +117,7 @@ def _streets(data: Path, labels: StreetLabels) -> Iterator[StreetGround]:
         blocks = [block.xyz for block in read_result(cloud).blocks() if block.xyz is not None]
         with np.load(cloud.parent / "truth" / f"{cloud.stem}.npz") as truth:
             label = truth["label"].astype(np.int64)
-        surface = find_ground(lambda points=blocks: points, GroundAssumptions(), SilentMonitor())
+        surface = find_ground(partial(list, blocks), GroundAssumptions(), SilentMonitor())
         found = np.concatenate([surface.is_ground(xyz) for xyz in blocks])
         yield StreetGround(cloud.stem, label, found, surface.grid.size_m)
 

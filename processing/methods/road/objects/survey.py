@@ -112,5 +112,7 @@ def _known_noise(drive: Drive) -> int:
     checksum = 0
     if classes.delivered.size or classes.labels.size:
         for start, stop in chunk_ranges(drive.count, _CODES_AT_ONCE):
-            checksum = zlib.crc32(np.packbits(classes.noise_between(start, stop)), checksum)
+            checksum = zlib.crc32(
+                np.packbits(classes.noise_between(start, stop)).tobytes(), checksum
+            )
     return checksum

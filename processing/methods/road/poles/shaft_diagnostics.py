@@ -109,7 +109,7 @@ def _circles(points: Floats, shaft: Floats, ground: Floats, *, is_shaft: bool) -
             continue
         swell = float(np.median(on))
         number = int(np.count_nonzero(np.abs(on) < tolerance))
-        others = np.count_nonzero(is_here & (off >= tolerance) & (off < BESIDE_M))
+        others = int(np.count_nonzero(is_here & (off >= tolerance) & (off < BESIDE_M)))
         diameter = 2 * float(shaft[RADIUS] - shaft[TAPER] * (low + _SLICE_M / 2 - LEVEL_M) + swell)
         tests = (
             DiagnosticTest(_DIAMETER, diameter, MOST_DIAMETER_M, "m", diameter <= MOST_DIAMETER_M),
