@@ -358,7 +358,7 @@ def _own_cost(lines: Floats, pose: Floats, sides: Floats) -> float:
     """What the ends on a rectangle say against it, each; much of one that holds hardly any."""
     shape = SignShape(RECTANGLE, float(sides[0]), float(sides[1]))
     rest, blocked = np.empty((2 * len(lines), LINE)), np.empty((2 * len(lines), LINE))
-    cost, ends, *_ = explain_kernel(outline_of(shape), lines, pose, rest, blocked)
+    cost, ends, *_ = explain_kernel(sharp_outline_of(shape), lines, pose, rest, blocked)
     return float((cost + CAP) / max(ends, 1))
 
 
