@@ -55,7 +55,7 @@ class StreetLabels:
         return frozenset[int]().union(*self.low.values())
 
 
-class FoundGround(NamedTuple):
+class JudgedStreet(NamedTuple):
     """A street's ground as the program finds it.
 
     Attributes
@@ -75,7 +75,7 @@ class FoundGround(NamedTuple):
     size_m: float
 
 
-_LabelledStreets = tuple[StreetLabels, Sequence[FoundGround]]
+_LabelledStreets = tuple[StreetLabels, Sequence[JudgedStreet]]
 
 DATA_SETS = (
     StreetLabels(
@@ -112,14 +112,14 @@ def main(arguments: list[str]) -> int:
     return 0
 
 
-def _streets(data: Path, labels: StreetLabels) -> Iterator[FoundGround]:
+def _streets(data: Path, labels: StreetLabels) -> Iterator[JudgedStreet]:
     for cloud in sorted(data.glob(f"**/{labels.folder}/*.laz")):
         blocks = [block.xyz for block in read_result(cloud).blocks() if block.xyz is not None]
         with np.load(cloud.parent / "truth" / f"{cloud.stem}.npz") as truth:
             label = truth["label"].astype(np.int64)
         surface = find_ground(partial(list, blocks), GroundAssumptions(), SilentMonitor())
         found = np.concatenate([surface.is_ground(xyz) for xyz in blocks])
-        yield FoundGround(cloud.stem, label, found, surface.grid.size_m)
+        yield JudgedStreet(cloud.stem, label, found, surface.grid.size_m)
 
 
 def _street_rows(streets: Sequence[_LabelledStreets]) -> Iterator[list[str]]:
@@ -148,7 +148,7 @@ def _kind_rows(streets: Sequence[_LabelledStreets]) -> Iterator[list[str]]:
                 yield [f"{labels.folder}, {kind}", f"{points:,}", f"{left / points:.3f}"]
 
 
-def _counts(street: FoundGround, labels: StreetLabels) -> NDArray[np.int64]:
+def _counts(street: JudgedStreet, labels: StreetLabels) -> NDArray[np.int64]:
     """Ground found, ground, things taken for ground, and of low and of high ones both numbers."""
     found = street.found
     ground, uncounted, low, high = (

@@ -28,6 +28,7 @@ from processing.tools.tool import Candidate, CandidateResult
 LENGTH_M = 120.0
 BOTH = "both"
 _CRS = "EPSG:6677"
+_TIMES = "time_s,"
 _STYLES = ("urban", "rural", "urban", "rural", "urban", "highway")
 _COUNTRY_STYLES = ("rural", "rural", "highway")
 _SENSORS = ("vq250", "vq450", "zf9012", "vmx2ha", "lynx")
@@ -217,12 +218,22 @@ def opened_scene(name: str, delivery: Path) -> Iterator[RoadScene]:
     """
     request = ImportRequest(
         tuple(sorted(delivery.glob("*.laz"))),
-        tuple(sorted(delivery.glob("trajectory*.csv"))),
+        trajectories_in(delivery),
         crs=_CRS,
     )
     with TemporaryDirectory(prefix="zuka-") as position:
         folders = import_drives(request, Path(position) / "drives", SilentMonitor())
         yield RoadScene(name, delivery, tuple(Drive(folder) for folder in folders))
+
+
+def trajectories_in(delivery: Path) -> tuple[Path, ...]:
+    """The CSV files of a delivery that begin with a column of times, whatever their names."""
+    found = []
+    for path in sorted(delivery.glob("*.csv")):
+        with path.open(encoding="utf-8") as lines:
+            if lines.readline().startswith(_TIMES):
+                found.append(path)
+    return tuple(found)
 
 
 def cloud_of(delivery: Path) -> StreetCloud:
