@@ -122,7 +122,9 @@ class PoleFacts(NamedTuple):
 # results are judged by. Left out one street at a time, 96 % of the high ones given 0.9 and more
 # were poles, 82 % of those from 0.7, 59 % of those from 0.5, 43 % of those from 0.3. Low poles
 # count threefold there, since streets with rows of bollards have more of them than those did;
-# their constant, -6.98, is lowered, so that 35 of the 43 low ones given 0.5 and more are poles.
+# their constant, -6.98, is lowered, so that 35 of the 43 low ones given 0.5 and more are poles. The
+# facts of some of these streets are from before roofs and a pass's own points counted, so that the
+# weight of `roof` is mostly what was expected: the command as a whole was not run since.
 _LOW_M = 1.5
 """Top below which shafts are judged as bollards and delineators are, among posts of fences and
 people; higher ones as posts, among trunks and edges of buildings."""
