@@ -10,6 +10,7 @@ peers. Scenes are found as :mod:`processing.laboratory.accuracy.filters.filter_s
 from __future__ import annotations
 
 import argparse
+import re
 import sys
 import tempfile
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -43,6 +44,8 @@ from processing.laboratory.accuracy.filters.street_noise import street_rows
 from processing.scoring.coded_points import CodedPoints, CodePairs
 from processing.scoring.point_scores import PointScorer
 from processing.scoring.scorers import GROUND_SCORER, NOISE_SCORER
+
+_NEXT_HEADING = re.compile(r"\n#{2,3} ")
 
 HEADINGS = {
     "noise": "## Noise",
@@ -87,9 +90,10 @@ def replace_section(page: str, heading: str, section: str) -> str:
     before, found, after = page.partition(f"{heading}\n")
     if not found:
         return f"{page.rstrip()}\n\n{section.rstrip()}\n"
-    rest = after.partition("\n## ")
-    following = f"\n## {rest[2]}" if rest[1] else ""
-    return f"{before}{section.rstrip()}\n{following}"
+    # Sections below it are made under headings of their own.
+    following = _NEXT_HEADING.search(after)
+    rest = after[following.start() :] if following else ""
+    return f"{before}{section.rstrip()}\n{rest}"
 
 
 def write_sections(page: Path | None, sections: Mapping[str, str]) -> None:

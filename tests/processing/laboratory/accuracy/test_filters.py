@@ -111,7 +111,9 @@ def test_the_command_replaces_its_own_section_and_paints_errors(data: Path, tmp_
 def test_a_section_that_is_not_there_yet_comes_to_the_end() -> None:
     assert replace_section("# A\n\nx\n", "## B", "## B\n\ny\n") == "# A\n\nx\n\n## B\n\ny\n"
     page = "# A\n\n## B\n\nold\n\n### deeper\n\nold\n"
-    assert replace_section(page, "## B", "## B\n\ny\n") == "# A\n\n## B\n\ny\n"
+    # What stands below it has a heading of its own and is replaced by that.
+    deeper = "\n### deeper\n\nold\n"
+    assert replace_section(page, "## B", "## B\n\ny\n") == f"# A\n\n## B\n\ny\n{deeper}"
 
 
 def test_peers_that_are_not_installed_are_named_in_their_rows(
