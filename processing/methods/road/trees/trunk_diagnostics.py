@@ -6,20 +6,16 @@ import numpy as np
 
 from processing.core.arrays import Floats
 from processing.core.text import Text
-from processing.image.scan_lines.scanlines import ScanlineSettings, scanlines_about
+from processing.methods.road.asked_points import points_beside
 from processing.methods.road.diagnostics import Diagnostic, DiagnosticTest
 from processing.methods.road.objects.foot import foot_height
 from processing.methods.road.requested_position import RequestedPosition
 from processing.methods.road.trees.circle_kernels import ARC, EAST, INLIERS, NORTH, RADIUS
 from processing.methods.road.trees.stems import BREAST_M, FittedStem, slab_circles, stems_of
 from processing.methods.road.trees.trunks import Trunk, trunk_of
-from processing.recording.drive import Drive
 
 _TRUNK_M = 0.9
 """Points so near to the place in plan are looked at, as those of a column are."""
-
-_ABOUT_M = 1.5
-"""Scan lines so far along the path to either side hold them, tilted heads included."""
 
 _SAME_M = 0.03
 """A circle whose middle and radius are no farther off is the trunk's."""
@@ -43,7 +39,7 @@ def trunk_diagnostics(asked: RequestedPosition, most_diameter_m: float) -> tuple
     MissingInput
         The drive has no trajectory.
     """
-    local = _points_about(asked.drive, asked.xyz)
+    local = points_beside(asked, _TRUNK_M)
     if not len(local):
         return ()
     foot = foot_height(local, np.zeros(2), float(np.quantile(local[:, 2], _LOWEST_SHARE)))
@@ -56,17 +52,6 @@ def trunk_diagnostics(asked: RequestedPosition, most_diameter_m: float) -> tuple
             place = asked.xyz + np.array([circle[EAST], circle[NORTH], foot + height])
             found.append(_diagnostic_of(circle, height, place, trunk, most_diameter_m))
     return tuple(found)
-
-
-def _points_about(drive: Drive, xyz: Floats) -> Floats:
-    """Points near a place in plan: (n, 3) m about it."""
-    about = scanlines_about(drive, xyz, _ABOUT_M, ScanlineSettings())
-    numbers = np.concatenate([np.empty(0, np.int64), *(one.point for one in about)])
-    if numbers.size == 0:
-        return np.empty((0, 3))
-    local = drive.coordinates.chunk_about(int(numbers.min()), int(numbers.max()) + 1, xyz)
-    near: Floats = local[np.hypot(local[:, 0], local[:, 1]) < _TRUNK_M]
-    return near
 
 
 def _diagnostic_of(

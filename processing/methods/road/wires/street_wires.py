@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from processing.core.arrays import Floats, Integers
 from processing.core.monitor import Monitor, PartMonitor
 from processing.methods.road.objects.drive_passes import passes_of
+from processing.methods.road.objects.driven_path import driven_places
 from processing.methods.road.objects.ground_heights import height_of
 from processing.methods.road.objects.sparse_plan import SparsePlan
 from processing.methods.road.objects.survey import survey_ground
@@ -26,8 +27,6 @@ _STEP_M = 0.5
 _ROAD_M = 3.0
 """What lies so near to the vehicle's path in plan is carriageway: half a lane and the next one's
 edge (道路構造令 第5条: lanes of 2.75 to 3.5 m)."""
-
-_PATH_STEP_M = 0.5
 
 _SAME_M, _SAME_SHARE, _COMPARED = 0.12, 0.6, 15
 """Wires of two passes so near to each other along so much of the one are one wire: positions of
@@ -97,7 +96,7 @@ def street_wires(
     """
     plan, ground = survey_ground(drives, PartMonitor(monitor, 0.0, 0.4))
     seen = _seen_wires(drives, plan, ground, settings, PartMonitor(monitor, 0.4, 0.9))
-    is_over = _path_tree(drives, plan)
+    is_over = _PathTree(driven_places(drives, plan))
     wires: list[StreetWire] = []
     for span, found in seen:
         monitor.check()
@@ -177,10 +176,9 @@ def _least(heights: Floats) -> float:
 class _PathTree:
     """Tells which places lie over the vehicle's way."""
 
-    def __init__(self, paths: Sequence[Floats]) -> None:
+    def __init__(self, places: Floats) -> None:
         from scipy.spatial import cKDTree
 
-        places = np.concatenate([np.empty((0, 2)), *paths])
         self._tree = cKDTree(places) if len(places) else None
 
     def __call__(self, line: Floats) -> NDArray[np.bool_]:
@@ -189,15 +187,3 @@ class _PathTree:
             return np.zeros(len(line), np.bool_)
         away, _ = self._tree.query(line[:, :2], distance_upper_bound=_ROAD_M)
         return np.asarray(np.isfinite(away))
-
-
-def _path_tree(drives: Sequence[Drive], plan: SparsePlan) -> _PathTree:
-    paths: list[Floats] = []
-    for drive in drives:
-        if drive.trajectory is None or len(drive.trajectory.xyz) < 2:
-            continue
-        path = drive.trajectory.xyz[:, :2] - plan.origin[:2]
-        along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
-        at = np.arange(0.0, along[-1], _PATH_STEP_M)
-        paths.append(np.column_stack([np.interp(at, along, axis) for axis in path.T]))
-    return _PathTree(paths)
