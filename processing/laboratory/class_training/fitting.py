@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.laboratory.noise_training.fitting import joined_trees
 from processing.methods.noise.tree_files import Forest
-from processing.methods.noise.trees import Trees
 
 _BINS = 48
 _LEAST_IN_A_LEAF = 40
@@ -67,19 +67,6 @@ def _forest_of(model: Any) -> Forest:
     rounds = model._predictors  # noqa: SLF001 - the only way to the nodes
     predictors = [one for each in rounds for one in each]
     class_of = np.array([which for each in rounds for which in range(len(each))], np.int32)
-    nodes = [one.nodes for one in predictors]
-    starts = np.cumsum([0, *(one.size for one in nodes)])[:-1].astype(np.int32)
-    joined = np.concatenate(nodes)
-    firsts = np.repeat(starts, [one.size for one in nodes])
-    is_leaf = joined["is_leaf"].astype(bool)
-    values = np.where(is_leaf, joined["value"], joined["num_threshold"])
-    trees = Trees(
-        np.where(is_leaf, -1, joined["feature_idx"]).astype(np.int32),
-        values.astype(np.float32).astype(np.float64),
-        (firsts + joined["left"]).astype(np.int32),
-        (firsts + joined["right"]).astype(np.int32),
-        starts,
-        0.0,
-    )
+    trees = joined_trees(predictors, 0.0)
     bases = np.ravel(model._baseline_prediction).astype(np.float32)  # noqa: SLF001 - as above
     return Forest(trees, class_of, bases.astype(np.float64), model.classes_.astype(np.uint8))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -60,18 +61,32 @@ def shift_to_keep(
 
 # scikit-learn has no types here.
 def _trees_of(model: Any) -> Trees:
-    nodes = [one[0].nodes for one in model._predictors]  # noqa: SLF001 - the only way to the nodes
+    base = model._baseline_prediction  # noqa: SLF001 - the only way to it
+    predictors = [one[0] for one in model._predictors]  # noqa: SLF001 - the only way to the nodes
+    return joined_trees(predictors, float(np.ravel(base)[0]))
+
+
+def joined_trees(predictors: Sequence[Any], base: float) -> Trees:
+    """The trees of scikit-learn's boosting, one behind the other.
+
+    Parameters
+    ----------
+    predictors : sequence
+        As a fitted ``HistGradientBoostingClassifier`` holds them.
+    base : float
+        Log-odds before any tree.
+    """
+    nodes = [one.nodes for one in predictors]
     starts = np.cumsum([0, *(one.size for one in nodes)])[:-1].astype(np.int32)
     joined = np.concatenate(nodes)
     firsts = np.repeat(starts, [one.size for one in nodes])
     is_leaf = joined["is_leaf"].astype(bool)
     values = np.where(is_leaf, joined["value"], joined["num_threshold"])
-    base = model._baseline_prediction  # noqa: SLF001 - the only way to it
     return Trees(
         np.where(is_leaf, -1, joined["feature_idx"]).astype(np.int32),
         values.astype(np.float32).astype(np.float64),
         (firsts + joined["left"]).astype(np.int32),
         (firsts + joined["right"]).astype(np.int32),
         starts,
-        float(np.ravel(base)[0]),
+        base,
     )
