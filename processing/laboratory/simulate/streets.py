@@ -57,6 +57,7 @@ from processing.laboratory.simulate.truth import (
 from processing.laboratory.simulate.whole_folder import write_whole_folder
 
 _DRY_SHARE = 0.65
+_SHORTEST_GROWTH = 0.03  # of grass: from a lawn just mown to a meadow, as often short as long
 _POINTS_SHARE = 0.4  # of the progress of a pass; the rest is photographs
 _SHOWN_M = 40.0  # of truth before the beginning and behind the end
 _KMH = 3.6
@@ -132,6 +133,7 @@ class _Work:
             float(random.uniform(0.05, 0.7)) if wet else 0.0,
             float(random.uniform(0.3, 0.9)),
             float(random.choice([0.0, 0.5, 0.9])),
+            float(_SHORTEST_GROWTH ** chance(request.seed, "grass").random()),
         )
         self.scan_pattern = ScanPattern(
             request.pulses or sensor.pulses, request.turns_per_s or sensor.turns_per_s, 0.0

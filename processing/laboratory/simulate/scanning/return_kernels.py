@@ -19,9 +19,19 @@ Integers = NDArray[np.int64]
 # Columns of a surface's numbers.
 REFLECTANCE, SPREAD, ROUGHNESS, GRAIN, SHINE, RETRO, STANDS, OPEN = range(8)
 # Numbers of a scanner.
-NOISE, EXIT, DIVERGENCE, TURN_RAD, MOST_RETURNS, IS_PHASE, WEAKEST, LEVELLED, WETNESS, LENGTH = (
-    range(10)
-)
+(
+    NOISE,
+    EXIT,
+    DIVERGENCE,
+    TURN_RAD,
+    MOST_RETURNS,
+    IS_PHASE,
+    WEAKEST,
+    LEVELLED,
+    WETNESS,
+    LENGTH,
+    GROWTH,
+) = range(11)
 
 TRUE, MIXED = 0, 1
 _BASE_M = 10.0
@@ -132,6 +142,7 @@ def first_returns(
             grown = 0.5 + 0.5 * relief(u / 1.3, v / 1.3, 11)
             blade = share_of(number, key + 1)
             high += surface[STANDS] * (0.25 + 1.5 * grown) * blade**1.5
+            high *= scanner[GROWTH]
         # Nearer by what stands up, but never by more than a beam just over the ground would be.
         truth = reach - high / max(cosine, 0.25)
         wet = 0.0
@@ -218,7 +229,7 @@ def warm_up() -> None:
     """Compile the kernels."""
     one, three = np.ones(1), np.ones((1, 3))
     bytes_, body = np.zeros(1, np.uint8), np.zeros(1, np.int64)
-    surfaces, scanner = np.ones((1, 8)), np.ones(10)
+    surfaces, scanner = np.ones((1, 8)), np.ones(GROWTH + 1)
     out = np.ones(1), np.ones(1), np.ones(1)
     start, key = 0, 1
     first_returns((start, three, three), (one, one, bytes_), surfaces, scanner, key, out)

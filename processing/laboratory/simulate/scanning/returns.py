@@ -62,11 +62,14 @@ class Weather:
         Exponent of intensity over power: 1 in proportion, less where the maker evens out.
     levelled : float
         How far the maker takes out what the range does: 0 not at all, 1 wholly.
+    growth : float
+        Height of grass as a share of that of a meadow, 0 to 1: mown lawns have next to none.
     """
 
     wetness: float
     damping: float
     levelled: float = 0.0
+    growth: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -167,7 +170,7 @@ def weakest_of(sensor: Sensor) -> float:
 
 
 def scanner_numbers(sensor: Sensor, pulses: int, weather: Weather) -> Floats:
-    """The numbers of a scanner for the kernels: (10,) float64."""
+    """The numbers of a scanner for the kernels: (11,) float64."""
     return np.array(
         [
             sensor.noise_m,
@@ -180,6 +183,7 @@ def scanner_numbers(sensor: Sensor, pulses: int, weather: Weather) -> Floats:
             weather.levelled,
             weather.wetness,
             _PULSE_LENGTH_M,
+            weather.growth,
         ]
     )
 
@@ -193,7 +197,7 @@ def returns_of(
     ----------
     scene : RaycastScene
         What the beams go on into behind leaves and nets.
-    scanner : (10,) float64
+    scanner : (11,) float64
         `scanner_numbers`.
     key : int
         Of the recording's chance.
