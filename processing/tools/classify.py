@@ -8,22 +8,32 @@ from pathlib import Path
 import numpy as np
 
 from processing.core.errors import UserError, report_as_user_error
-from processing.core.monitor import Monitor, PartMonitor
+from processing.core.monitor import Monitor, PartMonitor, parts_of
 from processing.core.owned_files import remove_folder
-from processing.core.parameters import ParameterChoice, choice, file, ratio
+from processing.core.parameters import ParameterChoice, choice, file, ratio, switch
 from processing.core.scratch_arrays import scratch_array
 from processing.core.text import Text
 from processing.methods.classes.class_models import ClassModels, shipped_models
 from processing.methods.classes.drive_classes import FoundClasses, classify_drive
+from processing.methods.classes.found_things import FoundThings
 from processing.methods.classes.own_model import ModelFacts, read_own_model
 from processing.recording.columns.columns import ColumnWriter
 from processing.recording.columns.ordering import chunk_ranges, read_chunk
 from processing.recording.drive import Drive
 from processing.scoring.scorers import CLASS_SCORER
-from processing.tools.tool import FinishedColumns, Needs, OutputColumn, PerDrive, Tool
+from processing.tools.found_things import LookedFor, look_for_things
+from processing.tools.tool import (
+    FinishedColumns,
+    Needs,
+    OutputColumn,
+    Together,
+    TogetherResult,
+    Tool,
+)
 
 _CLASS, _CONFIDENCE = "classification", "confidence"
-_FINDING = 0.95
+_LOOKING, _FINDING = 0.5, 0.95
+"""Of the progress: when things were looked for; of a drive, when all its points have a class."""
 _OTHER = 1
 
 CLASSES = (2, 3, 4, 5, 6, 11, 14, 64, 65, 66, 67)
@@ -33,6 +43,7 @@ CLASSES = (2, 3, 4, 5, 6, 11, 14, 64, 65, 66, 67)
 OWN, SHIPPED = "own", "shipped"
 
 _NO_NOTE = Text("", "")
+_NOTHING = LookedFor(FoundThings(), _NO_NOTE)
 _LEARNT = Text("model learnt on {date}, {points} points", "{date}学習のモデル、{points}点")
 _SHIPPED = Text("the program's own model", "付属のモデル")
 _WORSE = Text(
@@ -54,6 +65,16 @@ class ClassifyParameters:
         explanation=Text(
             "Points whose class is less likely than this become “other” (1).",
             "クラスの信頼度がこの値より低い点は「その他」（1）とします。",
+        ),
+    )
+    looks_for_things: bool = switch(
+        default=True,
+        name=Text("Look for things first", "地物を先に探索"),
+        explanation=Text(
+            "Curbs, signs, poles and trees are found as their own tools find them, and tell the "
+            "class of their points. It takes about twice the time.",
+            "縁石・標識・柱状物・樹木をそれぞれの抽出機能で探し、その点のクラスを決めます。"
+            "処理時間は約2倍です。",
         ),
     )
     model: str = choice(
@@ -81,14 +102,20 @@ class ClassifyParameters:
 
 
 def mark_classes(
-    drive: Drive, parameters: ClassifyParameters, into: Path, points_at_once: int, monitor: Monitor
-) -> FinishedColumns:
+    drives: tuple[Drive, ...],
+    parameters: ClassifyParameters,
+    into: Path,
+    points_at_once: int,
+    monitor: Monitor,
+) -> TogetherResult:
     """The class of every point and how sure it is; noise keeps its class.
 
     Parameters
     ----------
+    drives : tuple of Drive
+        Recorded together: what is found on them tells the points of all.
     into : Path
-        Where the columns come to lie.
+        Gets the columns of the first drive, and folders for the others.
     points_at_once : int
         Not asked: what is in memory at a time is part of the method.
 
@@ -98,19 +125,51 @@ def mark_classes(
         The disk can't hold the columns and some 20 bytes a point meanwhile.
     """
     del points_at_once
+    folders = [into / str(number) if number else into for number in range(len(drives))]
+    with report_as_user_error(into):
+        for folder in folders[1:]:
+            folder.mkdir()
+    models, note = models_of(parameters)
+    looked, start = _NOTHING, 0.0
+    if parameters.looks_for_things:
+        looked, start = look_for_things(drives, PartMonitor(monitor, 0.0, _LOOKING)), _LOOKING
+    parts = parts_of(PartMonitor(monitor, start, 1.0), [drive.count for drive in drives])
+    known = _Known(models, looked.things, parameters.least_confidence)
+    columns = tuple(
+        _mark_drive(drive, known, folder, part)
+        for drive, folder, part in zip(drives, folders, parts, strict=True)
+    )
+    return TogetherResult(columns, note=_joined(note, looked.note))
+
+
+@dataclass(frozen=True)
+class _Known:
+    """What says what a point is, and how sure it must be."""
+
+    models: ClassModels
+    things: FoundThings
+    least_confidence: float
+
+
+def _mark_drive(drive: Drive, known: _Known, into: Path, monitor: Monitor) -> FinishedColumns:
     scratch = into / "scratch"
     with report_as_user_error(into):
         scratch.mkdir()
         codes = scratch_array(scratch / "codes", np.uint8, drive.count)
         sure = scratch_array(scratch / "confidence", np.float32, drive.count)
-        models, note = models_of(parameters)
         if drive.count:
             finding = PartMonitor(monitor, 0.0, _FINDING)
-            classify_drive(drive, codes, sure, scratch, finding, models=models)
-        found = FoundClasses(codes, sure)
-        _write(drive, found, parameters.least_confidence, into, monitor)
+            classify_drive(
+                drive, codes, sure, scratch, finding, models=known.models, things=known.things
+            )
+        _write(drive, FoundClasses(codes, sure), known.least_confidence, into, monitor)
         remove_folder(scratch)
-    return FinishedColumns(into, (_CLASS, _CONFIDENCE), drive.count, note)
+    return FinishedColumns(into, (_CLASS, _CONFIDENCE), drive.count)
+
+
+def _joined(*notes: Text) -> Text:
+    said = [one for one in notes if one.en]
+    return Text("; ".join(one.en for one in said), "。".join(one.ja for one in said))
 
 
 def models_of(parameters: ClassifyParameters) -> tuple[ClassModels, Text]:
@@ -168,7 +227,7 @@ CLASSIFY = Tool(
     group=Text("Points", "点群"),
     needs=Needs.POINTS,
     parameters=ClassifyParameters,
-    method=PerDrive(
+    method=Together(
         mark_classes,
         outputs=(
             OutputColumn(_CLASS, "uint8", 1, Text("Class", "クラス")),

@@ -32,11 +32,13 @@ from processing.laboratory.accuracy.road.road_scenes import RoadScene, given_sce
 from processing.laboratory.class_training.examples import NOISE, labels_of_drive
 from processing.methods.classes.class_models import ClassModels, shipped_models, shipped_sample
 from processing.methods.classes.drive_classes import classify_drive
+from processing.methods.classes.found_things import FoundThings
 from processing.methods.classes.learning import learnt_forest
 from processing.methods.classes.painted_cells import PaintedCells, PaintedLabels, painted_cells
 from processing.recording.drive import Drive
 from processing.scoring.class_scores import class_score
 from processing.scoring.confusion_matrix import ConfusionMatrix
+from processing.tools.found_things import look_for_things
 
 _STROKES = 50
 _BRUSHED = (2, 3, 11, 67)
@@ -61,12 +63,15 @@ class StreetPoints:
     truth, said : (n,) uint8
     along_m : (n,) float64
         Metres along the street from its middle.
+    things : FoundThings
+        What tools found along it.
     """
 
     xyz: Floats
     truth: NDArray[np.uint8]
     said: NDArray[np.uint8]
     along_m: Floats
+    things: FoundThings
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -102,7 +107,7 @@ def _row_of(scene: RoadScene, street: StreetPoints, seed: int) -> str:
         start += drive.count
     forest = learnt_forest(PaintedCells.joined(cells), shipped_sample(), shipped, M)
     learnt = ClassModels(shipped.alone, forest)
-    after = np.concatenate([_said_of(drive, learnt) for drive in scene.drives])
+    after = np.concatenate([_said_of(drive, learnt, street.things) for drive in scene.drives])
     rest = street.along_m > _APART_M
     before_f, after_f = (_mean_f(street.truth[rest], one[rest]) for one in (street.said, after))
     name = f"{scene.name}, painter {seed}"
@@ -158,16 +163,17 @@ def _street_of(scene: RoadScene, models: ClassModels) -> StreetPoints:
     truth = np.concatenate(
         [labels_of_drive(drive, scene.delivery / "truth") for drive in scene.drives]
     )
-    said = np.concatenate([_said_of(drive, models) for drive in scene.drives])
+    things = look_for_things(scene.drives, M).things
+    said = np.concatenate([_said_of(drive, models, things) for drive in scene.drives])
     flat = xyz[:, :2] - xyz[:, :2].mean(axis=0)
     along = flat @ np.linalg.svd(flat[:: max(1, len(flat) // 10_000)], full_matrices=False)[2][0]
-    return StreetPoints(xyz, truth, said, along - np.median(along))
+    return StreetPoints(xyz, truth, said, along - np.median(along), things)
 
 
-def _said_of(drive: Drive, models: ClassModels) -> NDArray[np.uint8]:
+def _said_of(drive: Drive, models: ClassModels, things: FoundThings) -> NDArray[np.uint8]:
     codes, confidence = np.zeros(drive.count, np.uint8), np.zeros(drive.count, np.float32)
     with TemporaryDirectory(prefix="zuka-") as scratch:
-        classify_drive(drive, codes, confidence, Path(scratch), M, models=models)
+        classify_drive(drive, codes, confidence, Path(scratch), M, models=models, things=things)
     return codes
 
 

@@ -1,4 +1,4 @@
-"""Benchmarks of extraction on a simulated avenue, as for 3 M points: each tool, and their sum."""
+"""Benchmarks on a simulated avenue, as for 3 M points: each extractor, their sum, and classes."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from processing.laboratory.simulate.requests import StreetRequest
 from processing.laboratory.simulate.streets import simulate_street
 from processing.project.importing.importing import ImportRequest, import_drives
 from processing.recording.drive import Drive
+from processing.tools.classify import ClassifyParameters
 from processing.tools.registry import TOOLS, extractors
 from processing.tools.run_shares import run_shares
 from processing.tools.runner import run, run_together
@@ -26,11 +27,12 @@ _MOST_S = {"trees": 1.5, "signs": 1.5, "poles": 1.5, "wires": 1.5}
 
 _MOST_OF_ALL_S = 8.0
 _SEED, _LEAST_PULSES, _REPEATS = 11, 300, 3
-_NOISE = "noise"
+_NOISE, _CLASSIFY = "noise", "classify"
+_LEAST_CLASSES = 0.5  # M points/s
 
 
 def measure_extraction(options: BenchmarkOptions) -> tuple[Measurement, ...]:
-    """How long noise and each extractor take once an avenue is imported."""
+    """How long noise, each extractor and classes take once an avenue is imported."""
     share = options.limited(_POINTS) / _POINTS
     request = StreetRequest(
         seed=_SEED,
@@ -51,13 +53,21 @@ def measure_extraction(options: BenchmarkOptions) -> tuple[Measurement, ...]:
         passes = [
             _times_of(tools, _opened(folders), folder) for _ in range(options.repeats(_REPEATS))
         ]
+        classes = [
+            statistics.median(
+                _seconds(_CLASSIFY, _opened(folders), folder / _CLASSIFY, looks)
+                for _ in range(options.repeats(_REPEATS))
+            )
+            for looks in (ClassifyParameters(), ClassifyParameters(looks_for_things=False))
+        ]
     seconds, together = (
         {tool: statistics.median(one[tool] for one in runs) * _POINTS / points for tool in tools}
         for runs in (alone, passes)
     )
     detail = f"{points:,} points of {len(folders)} heads"
     rows = [_row(tool, seconds[tool], most, detail) for tool, most in _MOST_S.items()]
-    return (*rows, _row_of_all(together, detail))
+    speeds = [points / one / 1e6 for one in classes]
+    return (*rows, _row_of_all(together, detail), _row_of_classes(speeds, detail))
 
 
 def _opened(folders: Sequence[Path]) -> list[Drive]:
@@ -108,11 +118,28 @@ def _row_of_all(seconds: dict[str, float], detail: str) -> Measurement:
     )
 
 
-def _seconds(tool: str, drives: Sequence[Drive], into: Path) -> float:
-    """Of one run on all drives, its columns removed again."""
+def _row_of_classes(speeds: Sequence[float], detail: str) -> Measurement:
+    looking, alone = speeds
+    return Measurement(
+        "classes",
+        Text("Classes along an avenue", "並木道での点群の分類"),
+        looking,
+        "M points/s",
+        _LEAST_CLASSES,
+        is_at_most=False,
+        detail=f"{detail}; without looking for things first {alone:.2f} M points/s",
+        figures={"looking_mpps": looking, "alone_mpps": alone},
+    )
+
+
+def _seconds(
+    tool: str, drives: Sequence[Drive], into: Path, parameters: ClassifyParameters | None = None
+) -> float:
+    """Of one run on all drives, its columns removed again; by default with the tool's defaults."""
     begin = time.perf_counter()
     results: list[FinishedColumns] = []
-    shares = run_shares(tool, drives, TOOLS[tool].parameters(), SilentMonitor())
+    asked = parameters or TOOLS[tool].parameters()
+    shares = run_shares(tool, drives, asked, SilentMonitor())
     for number, share in enumerate(shares):
         folder = into.with_name(f"{into.name}-{number}")
         if TOOLS[tool].outputs:
