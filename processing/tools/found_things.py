@@ -81,8 +81,8 @@ def _note(refusals: Sequence[UserError]) -> Text:
         return Text("", "")
     reasons = {error.what.en: error.what for error in refusals}
     return Text(
-        f"Classes are told by the surroundings alone: {' '.join(reasons)}",
-        "周囲の点だけから分類しました。" + "".join(one.ja for one in reasons.values()),
+        f"Not everything could be looked for: {' '.join(reasons)}",
+        "一部の地物は探索できませんでした。" + "".join(one.ja for one in reasons.values()),
     )
 
 

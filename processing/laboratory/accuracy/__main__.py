@@ -56,6 +56,7 @@ TABLES = {
     "filters": AccuracyTable("accuracy.filters.filters", "data", paints=True),
     "removal": AccuracyTable("accuracy.filters.removal_study"),
     "street-ground": AccuracyTable("accuracy.filters.street_ground", "data"),
+    "real-classes": AccuracyTable("accuracy.real_street_classes", "data"),
     "landscapes": AccuracyTable("accuracy.filters.landscape_ground"),
     "volumes": AccuracyTable("accuracy.site_volumes", "sites"),
     "edges": AccuracyTable("accuracy.road.road_edges", paints=True),
