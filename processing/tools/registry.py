@@ -15,6 +15,7 @@ from processing.scoring.scorers import Scorer
 from processing.tools.classify import CLASSIFY
 from processing.tools.colour import COLOUR
 from processing.tools.curbs import CURBS
+from processing.tools.features import FEATURES
 from processing.tools.ground import GROUND_TOOL
 from processing.tools.gutters import GUTTERS
 from processing.tools.noise import NOISE
@@ -40,6 +41,7 @@ _DECLARED = (
     CLASSIFY,
     NORMALS,
     SEGMENTS,
+    FEATURES,
     COLOUR,
     TEMPLATE,
     VOLUME,

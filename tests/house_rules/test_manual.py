@@ -21,6 +21,7 @@ from processing.core.text import Language, Text
 from processing.formats.format import Format
 from processing.formats.registry import FORMATS
 from processing.map.catalogue_file import read_catalogue
+from processing.recording.columns.point_features import POINT_FEATURES
 from processing.tools.registry import TOOLS
 from resources import path_of
 from tests.house_rules.manual_pages import LANGUAGES, MANUAL, Page, pages, read_page
@@ -210,6 +211,18 @@ def test_every_processing_tool_is_explained() -> None:
     for language in LANGUAGES:
         named = {name.action for name in page_of(language, "processing").names}
         assert {f"process-{tool}" for tool in TOOLS} <= named
+
+
+def test_every_feature_of_points_is_listed_with_its_formula() -> None:
+    for language in LANGUAGES:
+        page = (MANUAL / language / "processing.html").read_text(encoding="utf-8")
+        for column in POINT_FEATURES.values():
+            scale = column.group.partition("_")[2]
+            plain = column.id == "neighbours_best" or not scale
+            size = "_大きさ" if language == "ja" else "_SIZE"
+            name = column.id if plain else column.id.removesuffix(f"_{scale}") + size
+            (row,) = [line for line in page.splitlines() if f"<th><code>{name}</code>" in line]
+            assert f"<td>{column.formula}</td><td>{column.source}</td>" in row
 
 
 def format_row(one: Format, language: Language) -> str:

@@ -29,6 +29,7 @@ from processing.tools.blocks import JoinedResults, blocks_of
 from processing.tools.classify import CLASSIFY, ClassifyParameters
 from processing.tools.colour import COLOUR, ColourParameters
 from processing.tools.curbs import CURBS
+from processing.tools.features import FEATURES, FeaturesParameters
 from processing.tools.ground import GROUND_TOOL, GroundParameters
 from processing.tools.gutters import GUTTERS
 from processing.tools.noise import NOISE, NoiseParameters
@@ -70,6 +71,7 @@ IN_SPACE = (
     (NOISE.id, NoiseParameters()),
     (GROUND_TOOL.id, GroundParameters()),
     (CLASSIFY.id, ClassifyParameters()),
+    (FEATURES.id, FeaturesParameters(names="verticality_1m,plan_density_2m,cell_height")),
     (GROUND_TOOL.id, GroundParameters(method="published", grid_m=2.0)),
     (GROUND_TOOL.id, GroundParameters(method="lowest", tolerance_m=0.1)),
 )

@@ -33,6 +33,7 @@ from processing.recording.camera_images.colouring import colours_from_images
 from processing.recording.columns.counted_classes import class_columns
 from processing.recording.columns.error_map import ERROR_MAP
 from processing.recording.columns.ordering import read_chunk
+from processing.recording.columns.point_features import POINT_FEATURES
 from processing.recording.kinds import ImageKind
 
 if TYPE_CHECKING:  # Drive makes its images, so importing it here would be a circle
@@ -68,6 +69,11 @@ class Attribute:
     needs: tuple[str, ...] = ()
     missing: Text = Text("", "")
 
+
+_NO_FEATURE = Text(
+    "Run the tool “Features of points” on this drive first.",
+    "先にこの走行データで「点群特徴量」を実行してください。",
+)
 
 ATTRIBUTES: Mapping[str, Attribute] = {
     attribute.id: attribute
@@ -110,9 +116,13 @@ ATTRIBUTES: Mapping[str, Attribute] = {
                 "先に評価パネルで実行結果の正誤を表示してください。",
             ),
         ),
+        *(
+            Attribute(column.id, column.title, (column.id,), _NO_FEATURE)
+            for column in POINT_FEATURES.values()
+        ),
     )
 }
-"""By id, those of the thesis first, in its order."""
+"""By id, those of the thesis first, in its order; then each feature of points."""
 
 SHOWS_LABELS = frozenset({"label", "class", "judged"})
 """Attributes that show what was painted, or found by a tool that classifies."""
@@ -131,7 +141,7 @@ def colours(
         A key of `ATTRIBUTES`.
     low_percent, high_percent : float
         Percentiles of the drive at the dark and the bright end; of intensity, which labels lie on
-        too, and of height only.
+        too, of height and of features only.
 
     Returns
     -------
@@ -150,7 +160,9 @@ def colours(
     shown = np.empty((flat.size, 3), np.uint8)
     shown[~is_filled] = EMPTY_COLOUR
     filled = flat[is_filled]
-    if attribute in _STRETCHED:
+    if attribute in POINT_FEATURES:
+        shown[is_filled] = _feature(drive, attribute, filled, (low_percent, high_percent))
+    elif attribute in _STRETCHED:
         shown[is_filled] = _STRETCHED[attribute](drive, filled, low_percent, high_percent)
     else:
         shown[is_filled] = _PLAIN[attribute](drive, filled)
@@ -274,6 +286,16 @@ def _height(drive: Drive, points: _Points, low: float, high: float) -> Colours:
     ]
     values = np.asarray(drive.coordinates.integers(points)[..., 2], np.float64)
     return height_ramp()[stretch_values(values, *ends)]
+
+
+def _feature(drive: Drive, name: str, points: _Points, percents: tuple[float, float]) -> Colours:
+    """From low to high as heights are; grey where it isn't known."""
+    ends = [value_at_percent(drive.folder, name, drive.count, None, one) for one in percents]
+    values = np.asarray(drive.columns[name][points], np.float64)
+    is_known = np.isfinite(values)
+    shown = np.array(height_ramp()[stretch_values(np.where(is_known, values, ends[0]), *ends)])
+    shown[~is_known] = UNKNOWN_COLOUR
+    return shown
 
 
 def _normal(drive: Drive, points: _Points) -> Colours:

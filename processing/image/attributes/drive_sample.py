@@ -44,4 +44,5 @@ def _sorted_sample(folder: Path, name: str, count: int, axis: int | None) -> NDA
         length = _PIECE_POINTS
     pieces = [read_chunk(folder, name, int(start), int(start) + length) for start in starts]
     values = np.concatenate([piece if axis is None else piece[:, axis] for piece in pieces])
-    return np.sort(values.astype(np.float64))
+    values = values.astype(np.float64)
+    return np.sort(values[np.isfinite(values)])

@@ -18,6 +18,7 @@ from processing.core.errors import UNCHANGED, BadFile, report_as_user_error
 from processing.core.owned_files import new_file
 from processing.core.text import Text
 from processing.recording.columns.mapped_pages import MappedPages
+from processing.recording.columns.point_features import POINT_FEATURES
 from processing.recording.columns.varying_columns import VaryingColumn, starts_path
 
 COLUMN_TYPES: Mapping[str, tuple[str, int]] = {
@@ -45,6 +46,7 @@ COLUMN_TYPES: Mapping[str, tuple[str, int]] = {
     "judged": ("u1", 1),
     "height_above_ground": ("<f4", 1),
     "confidence": ("<f4", 1),
+    **dict.fromkeys(POINT_FEATURES, ("<f4", 1)),
 }
 """Column name to dtype and values per point."""
 

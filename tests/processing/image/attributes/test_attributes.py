@@ -31,6 +31,7 @@ from processing.recording.camera_images.colouring import colours_from_images
 from processing.recording.camera_images.image_list import CameraImage, ImageList
 from processing.recording.camera_images.image_store import write_images
 from processing.recording.columns.classes import point_classes, read_classes
+from processing.recording.columns.point_features import POINT_FEATURES
 from processing.recording.drive import Drive
 from processing.recording.kinds import ImageKind
 from tests.builders import simulated_drive
@@ -57,7 +58,7 @@ def lightness(rgb: NDArray[np.uint8]) -> NDArray[np.float64]:
 
 def test_the_eight_attributes_of_the_contract_are_there_and_what_an_evaluation_shows() -> None:
     wanted = ["intensity", "height", "normal", "shape", "segment", "color", "label", "class"]
-    assert list(ATTRIBUTES) == [*wanted, "confidence", "judged"]
+    assert list(ATTRIBUTES) == [*wanted, "confidence", "judged", *POINT_FEATURES]
     for attribute in ATTRIBUTES.values():
         assert attribute.title.en
         assert attribute.title.ja

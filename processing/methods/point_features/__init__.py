@@ -1,0 +1,1 @@
+"""What a point is described by: shapes of what is around it, cells, scan lines, the path."""
