@@ -102,6 +102,7 @@ def _add_reading_commands(commands: _Commands[_Parser]) -> None:
     scoring.add_argument("result", type=Path, metavar="RESULT")
     scoring.add_argument("truth", type=Path, metavar="TRUTH")
     scoring.add_argument("--json", action="store_true")
+    scoring.add_argument("--picture", type=Path, metavar="FILE.svg")
     scoring.set_defaults(module="score")
     measuring = commands.add_parser("bench", help="the project's own benchmarks")
     measuring.add_argument("names", nargs="*", metavar="NAME")

@@ -42,11 +42,7 @@ def class_score(counts: ConfusionMatrix) -> PointScore:
     """
     known = counts.without_true((NOT_KNOWN,))
     classes = _each_class(known)
-    judged = [
-        code
-        for code, points in zip(known.codes, known.true_counts.tolist(), strict=True)
-        if points and code not in NOISE_CODES and code != _OTHER
-    ]
+    judged = judged_classes(known)
     ground = known.against_rest(GROUND_CODES)
     f_of = dict(zip(known.codes, known.f_measure.tolist(), strict=True))
     joined = [f_of[code] for code in judged if code not in GROUND_CODES]
@@ -82,12 +78,26 @@ def class_score(counts: ConfusionMatrix) -> PointScore:
             NamedFigure(
                 "mean_f_balanced",
                 Text("mean F, as many points of each class", "F値のクラス平均（各クラス同数の点）"),
-                known.balanced(judged, _DRAWN).mean_f,
+                balanced_sample(known).mean_f,
             ),
             NamedFigure("kappa", Text("kappa", "カッパ係数"), known.kappa),
         ),
         matrix=known,
     )
+
+
+def judged_classes(known: ConfusionMatrix) -> tuple[int, ...]:
+    """The classes that count: those that the truth has, without noise and “other”."""
+    return tuple(
+        code
+        for code, points in zip(known.codes, known.true_counts.tolist(), strict=True)
+        if points and code not in NOISE_CODES and code != _OTHER
+    )
+
+
+def balanced_sample(known: ConfusionMatrix) -> ConfusionMatrix:
+    """The same for as many points of each class that counts."""
+    return known.balanced(judged_classes(known), _DRAWN)
 
 
 def _each_class(known: ConfusionMatrix) -> list[ClassScore]:

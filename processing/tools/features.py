@@ -54,10 +54,10 @@ class FeaturesParameters:
         ),
         name=Text("Features", "特徴量"),
         explanation=Text(
-            "Each is a column of 4 bytes a point. All of them take about four minutes a million "
-            "points on one core, the best number of neighbours half of that.",
-            "特徴量ごとに1点あたり4バイトの列になります。すべて計算すると1コアで100万点あたり約4分、"
-            "その半分は最適な近傍点数の計算です。",
+            "Each is a column of 4 bytes a point. All of them take about three minutes a million "
+            "points on one core, the best number of neighbours almost half of that.",
+            "特徴量ごとに1点あたり4バイトの列になります。すべて計算すると1コアで100万点あたり約3分、"
+            "その半分近くは最適な近傍点数の計算です。",
         ),
     )
     names: str = text(

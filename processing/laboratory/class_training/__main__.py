@@ -7,7 +7,9 @@ rate, of ``--mounted`` are learnt from, each head thinned, shaken and brightened
 ways; those of ``--check`` are not. Of the avenues ``--kept``, which aren't either, a sample is
 shipped for learning from corrections; ``--sample-only`` makes nothing else.
 ``--deliveries`` are folders with truths that are only scored.
-``--score-only`` leaves the models as they are. The same seeds give the same models.
+``--score-only`` leaves the models as they are. ``--pictures`` is a folder for the confusion matrix
+of each street that is scored, and for images of its true and found classes. The same seeds give the
+same models.
 """
 
 from __future__ import annotations
@@ -39,6 +41,7 @@ from processing.laboratory.class_training.examples import (
     labels_of_drive,
 )
 from processing.laboratory.class_training.fitting import ForestSize, fit_forest
+from processing.laboratory.class_training.pictures import write_confusion, write_label_image
 from processing.laboratory.class_training.sample import kept_sample
 from processing.methods.classes.class_models import AGAIN, ALONE, MODELS, SAMPLE, shipped_models
 from processing.methods.classes.class_trees import class_shares
@@ -73,7 +76,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         _keep_sample(options)
     checked = simulated_scenes(_seeds(options.check), options.length)
     for scene in itertools.chain(checked, given_scenes(options.deliveries)):
-        _say(_score_line(scene))
+        _say(_score_line(scene, options.pictures))
     return 0
 
 
@@ -87,6 +90,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--length", type=float, default=60.0, help="m of each")
     parser.add_argument("--variants", type=int, default=2, help="of each head")
     parser.add_argument("--deliveries", type=Path, nargs="*", default=[])
+    parser.add_argument("--pictures", type=Path)
     parser.add_argument("--score-only", action="store_true")
     parser.add_argument("--sample-only", action="store_true")
     return parser
@@ -163,7 +167,7 @@ def _write(forest: Forest, name: str, columns: int) -> None:
     _say(f"{path.name}: {path.stat().st_size / 1e3:,.0f} kB")
 
 
-def _score_line(scene: RoadScene) -> str:
+def _score_line(scene: RoadScene, pictures: Path | None) -> str:
     said, true, sure, told = [], [], [], []
     things = look_for_things(scene.drives, SilentMonitor()).things
     near = NearThings(things)
@@ -184,8 +188,13 @@ def _score_line(scene: RoadScene) -> str:
         told.append(near.told(drive.xyz(slice(0, drive.count))).codes)
         sure.append(confidence)
         true.append(labels_of_drive(drive, scene.delivery / "truth"))
+        if pictures is not None:
+            name = f"{scene.name}_{len(true)}.png".replace(" ", "_")
+            write_label_image(drive, true[-1], codes, pictures / name)
     truth, found = np.concatenate(true), np.concatenate(said)
     score = class_score(ConfusionMatrix.of(truth, found))
+    if pictures is not None and score.matrix is not None:
+        write_confusion(score.matrix, pictures / f"{scene.name}.svg".replace(" ", "_"))
     figures = " ".join(f"{one.id} {one.value:.3f}" for one in score.figures)
     classes = " ".join(f"{one.id} {one.counts.f_measure:.2f}" for one in score.classes)
     is_asked = (found > 0) & (truth > 0) & ~np.isin(truth, NOISE)

@@ -114,7 +114,14 @@ def computable_features(drive: Drive, wanted: Sequence[str]) -> tuple[tuple[str,
     return kept, why
 
 
-def drive_features(drive: Drive, columns: Columns, scratch: Path, monitor: Monitor) -> None:
+def drive_features(
+    drive: Drive,
+    columns: Columns,
+    scratch: Path,
+    monitor: Monitor,
+    *,
+    wanted: NDArray[np.bool_] | None = None,
+) -> None:
     """Compute features of every point; those that :func:`computable_features` gives.
 
     Parameters
@@ -123,6 +130,8 @@ def drive_features(drive: Drive, columns: Columns, scratch: Path, monitor: Monit
         Get the values by name; points without a coordinate keep what is there.
     scratch : Path
         A folder for files meanwhile; the caller deletes it.
+    wanted : (n,) bool, optional
+        Other points needn't have features in space; they count as neighbours.
 
     Raises
     ------
@@ -140,7 +149,8 @@ def drive_features(drive: Drive, columns: Columns, scratch: Path, monitor: Monit
     in_space = {group: names for group, names in groups.items() if group not in ("line", "path")}
     if in_space and drive.count:
         rest = PartMonitor(monitor, _LINE + _PATH, 1.0)
-        _in_space(drive, columns, in_space, scratch, rest)
+        chosen = np.ones(drive.count, np.bool_) if wanted is None else wanted
+        _in_space(drive, columns, in_space, (chosen, scratch), rest)
 
 
 def _pair(
@@ -159,10 +169,11 @@ def _in_space(
     drive: Drive,
     columns: Columns,
     groups: Mapping[str, Sequence[str]],
-    scratch: Path,
+    asked_with: tuple[NDArray[np.bool_], Path],
     monitor: Monitor,
 ) -> None:
     """Features of spheres, discs and cells, a part of space at a time."""
+    wanted, scratch = asked_with
     sorting, rest = PartMonitor(monitor, 0.0, _LINE), PartMonitor(monitor, _LINE, 1.0)
 
     def read(points: Integers | slice) -> Floats:
@@ -171,11 +182,14 @@ def _in_space(
 
     cloud = TiledCloud(read, drive.count, scratch / "order", _TILE_M, monitor=sorting)
     done = 0
-    for part in cloud.parts(max(map(_reach_m, groups))):
+    for part in cloud.parts(max(map(_reach_m, groups)), wanted=wanted):
         rest.check()
-        xyz = drive.xyz(np.concatenate([part.own, part.around]))
+        is_wanted = wanted[part.own]
+        points = np.concatenate([part.own[is_wanted], part.own[~is_wanted], part.around])
+        xyz = drive.xyz(points)
         finite: Flags = np.asarray(np.isfinite(xyz).all(axis=1))
-        asked = part.own[finite[: part.own.size]]
+        first = int(np.count_nonzero(is_wanted))
+        asked = points[:first][finite[:first]]
         step = PartMonitor(rest, done / drive.count, (done + part.own.size) / drive.count)
         if asked.size:
             around = _Around(asked, xyz[finite])

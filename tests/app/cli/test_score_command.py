@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import laspy
@@ -236,3 +237,29 @@ def test_the_table_lines_up_in_japanese_too(
     assert head.split() == ["正例とするクラス", "適合率", "再現率", "F値", "TP", "FP", "FN", "TN"]
     wide = [len(line) + sum(ord(one) > 0x2E80 for one in line) for line in (head, kept)]
     assert wide[0] == wide[1]
+
+
+def test_the_matrix_is_drawn_with_natural_and_balanced_figures(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("ZUKA_LANGUAGE", "en")
+    np.save(tmp_path / "left.labels.npy", np.array([2, 2, 2, 2, 2, 2, 5, 5, 65, 1], np.uint8))
+    codes = np.array([2, 2, 2, 2, 2, 65, 5, 2, 65, 5], np.uint8)
+    result = write_las(tmp_path / "result.las", positions(), codes)
+    picture = tmp_path / "matrix.svg"
+    arguments = ["score", "classify", str(result), str(tmp_path / "left.labels.npy")]
+    assert run_in_terminal([*arguments, "--picture", str(picture)]) == DONE
+    words = re.findall(r">([^<]+)</text>", picture.read_text(encoding="utf-8"))
+    assert {"83", "17", "50", "100"} <= set(words)  # % of a true class
+    # Of six, two and one point, five, one and one are right: F of 2 is 5 / 6, of 65 it is 2 / 3.
+    assert {"0.833", "0.667", "0.500"} <= set(words)
+    # As many of each: of 65, one sixth of 2 is beside it, so that precision is 6 / 7.
+    assert "0.857" in words
+    capsys.readouterr()
+    assert run_in_terminal([*arguments, "--picture", str(tmp_path / "matrix.png")]) == 2
+    assert ".svg" in capsys.readouterr().err
+    np.savez(tmp_path / "truth.npz", code=TRUTH)
+    noise = write_las(tmp_path / "noise.las", positions(), RESULT)
+    noisy = ["score", "noise", str(noise), str(tmp_path / "truth.npz")]
+    assert run_in_terminal([*noisy, "--picture", str(tmp_path / "noise.svg")]) == 2
+    assert not (tmp_path / "noise.svg").exists()
