@@ -8,7 +8,7 @@ a = 112 m, Irvine 1981, Cable Structures, 1.2).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -142,18 +142,18 @@ def _fit(local: Floats, lines: Integers) -> WireSpan | None:
     told, kept = np.empty(SPAN_WIDTH), np.empty(lines.size, np.bool_)
     if lines.size < _FEWEST or not span_kernel(local, lines, _LIMITS, told, kept):
         return None
-    span = WireSpan(
-        middle=told[EAST : NORTH + 1],
-        way=told[WAY_EAST : WAY_NORTH + 1],
+    lines, middle, way = lines[kept], told[EAST : NORTH + 1], told[WAY_EAST : WAY_NORTH + 1]
+    order = np.argsort((local[lines, :2] - middle) @ way, kind="stable")
+    return WireSpan(
+        middle=middle,
+        way=way,
         aside=told[ASIDE : TURN + 1],
         rise=told[RISE : BEND + 1],
         start_m=float(told[START]),
         end_m=float(told[END]),
         noise_m=float(told[NOISE]),
-        lines=lines[kept],
+        lines=lines[order],
     )
-    order = np.argsort(span.along(local[span.lines]), kind="stable")
-    return replace(span, lines=span.lines[order])
 
 
 def _pieces(local: Floats, lines: Integers) -> list[WireSpan]:
@@ -186,16 +186,36 @@ def _pieces(local: Floats, lines: Integers) -> list[WireSpan]:
 def _joined(local: Floats, pieces: Sequence[WireSpan]) -> list[WireSpan]:
     """Pieces of one wire as one, the nearest joined first."""
     spans = list(pieces)
-    of_piece = list(range(len(pieces)))
+    ways = [_way_of(one) for one in spans]
+    joined_to = list(range(len(spans)))
+
+    def whole(number: int) -> int:
+        while joined_to[number] != number:
+            joined_to[number] = number = joined_to[joined_to[number]]
+        return number
+
     for a, b in _neighbours(pieces):
-        first, second = of_piece[a], of_piece[b]
-        if first == second:
+        first, second = whole(a), whole(b)
+        if first == second or _turns_away(ways[first], ways[second]):
             continue
         both = _both(local, spans[first], spans[second])
         if both is not None:
+            joined_to[first] = joined_to[second] = len(spans)
+            joined_to.append(len(spans))
             spans.append(both)
-            of_piece = [len(spans) - 1 if one in (first, second) else one for one in of_piece]
-    return [spans[number] for number in sorted(set(of_piece))]
+            ways.append(_way_of(both))
+    return [span for number, span in enumerate(spans) if joined_to[number] == number]
+
+
+def _way_of(span: WireSpan) -> tuple[float, float, float]:
+    """Its way in plan and how long it is."""
+    return float(span.way[0]), float(span.way[1]), span.long_m
+
+
+def _turns_away(one: tuple[float, float, float], other: tuple[float, float, float]) -> bool:
+    """Whether two pieces run in directions that one wire doesn't have."""
+    sine = abs(one[0] * other[1] - one[1] * other[0])
+    return sine > _TURN + 0.1 / min(one[2], other[2])
 
 
 def _neighbours(pieces: Sequence[WireSpan]) -> list[tuple[int, int]]:
@@ -208,19 +228,15 @@ def _neighbours(pieces: Sequence[WireSpan]) -> list[tuple[int, int]]:
     pairs = cKDTree(ends).query_pairs(_GAP_M, output_type="ndarray")
     pairs = pairs[pairs[:, 0] // 2 != pairs[:, 1] // 2]
     away = np.linalg.norm(ends[pairs[:, 0]] - ends[pairs[:, 1]], axis=1)
-    found: dict[tuple[int, int], float] = {}
-    for (a, b), gap in zip((pairs // 2).tolist(), away.tolist(), strict=True):
-        key = (min(a, b), max(a, b))
-        found[key] = min(found.get(key, np.inf), gap)
-    return sorted(found, key=lambda key: found[key])
+    sides = np.sort(pairs // 2, axis=1)
+    nearest = np.argsort(away, kind="stable")
+    _, first = np.unique(sides[nearest] @ (len(pieces), 1), return_index=True)
+    found: list[tuple[int, int]] = [tuple(one) for one in sides[nearest[np.sort(first)]].tolist()]
+    return found
 
 
 def _both(local: Floats, one: WireSpan, other: WireSpan) -> WireSpan | None:
-    """Two pieces as one wire; None where they aren't."""
-    if abs(one.way[0] * other.way[1] - one.way[1] * other.way[0]) > _TURN + 0.1 / min(
-        one.long_m, other.long_m
-    ):
-        return None
+    """Two pieces of about one direction as one wire; None where they aren't."""
     ends = one.along(other.at(np.array([other.start_m, other.end_m])))
     low, high = float(ends.min()), float(ends.max())
     gap = max(low - one.end_m, one.start_m - high)

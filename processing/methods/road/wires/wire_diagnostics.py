@@ -7,6 +7,7 @@ import math
 import numpy as np
 
 from processing.core.arrays import Floats
+from processing.core.monitor import SilentMonitor
 from processing.core.text import Text
 from processing.methods.road.asked_points import stretch_about
 from processing.methods.road.diagnostics import Diagnostic, DiagnosticTest
@@ -51,7 +52,8 @@ def wire_diagnostics(
     ground = float(np.quantile(local[:, 2], _GROUND_SHARE))
     thin = thin_points(drive, pulse_interval(drive), start, local)
     kept = np.flatnonzero(thin & (local[:, 2] > ground + settings.lowest_m))
-    lines = points_on_lines(local[kept], np.zeros(kept.size, np.int64), start + kept)
+    no_drive = np.zeros(kept.size, np.int64)
+    lines = points_on_lines(local[kept], no_drive, start + kept, SilentMonitor())
     right = asked.scanlines.rights[len(asked.scanlines.rights) // 2]
     forward = np.array([-right[1], right[0]])
     found: list[Diagnostic] = []

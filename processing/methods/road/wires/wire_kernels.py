@@ -170,9 +170,10 @@ def lines_kernel(
     starts: Integers,
     grid: WireGrid,
     limits: LineLimits,
+    some: tuple[int, int],
     directions: Floats,
 ) -> None:
-    """The direction of the thin line through each point; 0 where there is none.
+    """The direction of the thin line through each point of some cells; 0 where there is none.
 
     Parameters
     ----------
@@ -180,22 +181,26 @@ def lines_kernel(
         Sorted by cells.
     cells, starts : (c,) and (c + 1,) int64
         Filled cells, rising, and where the points of each begin.
+    some : (int, int)
+        The first of the cells, and the one after the last.
     directions : (n, 3) float64
-        Unit vectors. Written.
+        Unit vectors. Written for the points of these cells.
     """
     found = np.empty(2 * _MOST_NEAR, np.int64)
+    offs = np.empty((4, found.size))
     bins = np.empty((found.size, 2), np.int64)
     votes = np.zeros(2 * _SIDE * _SIDE, np.int32)
     spans = np.empty((9, 2), np.int64)
-    for cell in range(cells.size):
+    for cell in range(some[0], some[1]):
         # Of the cells about it a sphere holds a sixth.
         every = _spans_about(cell, cells, starts, grid, spans) // (6 * _MOST_NEAR) + 1
         for point in range(starts[cell], starts[cell + 1]):
             directions[point] = 0.0
             count = _near(points, point, spans, grid, every, found)
             if count >= limits.fewest:
-                _vote(points, point, found[:count], limits, bins, votes)
-                _best_line(points, point, found[:count], limits, (bins, votes), directions)
+                _measure_offs(points, point, found[:count], offs)
+                _vote(offs, count, limits, bins, votes)
+                _best_line(offs, count, limits, (bins, votes), directions[point])
                 for one in range(count):
                     for of_map in range(2):
                         if bins[one, of_map] >= 0:
@@ -203,20 +208,25 @@ def lines_kernel(
 
 
 @kernel
+def _measure_offs(points: Floats, point: int, found: Integers, offs: Floats) -> None:
+    """Write how far points lie to the east, north and up of one, and the square of all three."""
+    for one in range(found.size):
+        square = 0.0
+        for axis in range(3):
+            off = points[found[one], axis] - points[point, axis]
+            offs[axis, one] = off
+            square += off * off
+        offs[3, one] = square
+
+
+@kernel
 def _vote(
-    points: Floats,
-    point: int,
-    found: Integers,
-    limits: LineLimits,
-    bins: Integers,
-    votes: NDArray[np.int32],
+    offs: Floats, count: int, limits: LineLimits, bins: Integers, votes: NDArray[np.int32]
 ) -> None:
     """Count how many points about one lie in each direction from it, whichever way along it."""
-    for one in range(found.size):
+    for one in range(count):
         bins[one] = -1
-        east = points[found[one], 0] - points[point, 0]
-        north = points[found[one], 1] - points[point, 1]
-        up = points[found[one], 2] - points[point, 2]
+        east, north, up = offs[0, one], offs[1, one], offs[2, one]
         level = east * east + north * north
         if level + up * up < (limits.reach_m / 5) ** 2 or up * up > limits.steepest**2 * level:
             continue
@@ -231,18 +241,16 @@ def _vote(
 
 @kernel
 def _best_line(
-    points: Floats,
-    point: int,
-    found: Integers,
+    offs: Floats,
+    count: int,
     limits: LineLimits,
     voted: tuple[Integers, NDArray[np.int32]],
-    directions: Floats,
+    direction: Floats,
 ) -> None:
     """Write the direction through a point that has the most on it, of those that others share."""
     bins, votes = voted
-    way = np.empty(3)
-    most = 0.0
-    for one in range(0, found.size, max(1, found.size // _DIRECTIONS)):
+    most = 0
+    for one in range(0, count, max(1, count // _DIRECTIONS)):
         home = bins[one, 0] if bins[one, 0] >= 0 else bins[one, 1]
         if home < 0:
             continue
@@ -252,34 +260,39 @@ def _best_line(
                 agreed += votes[home + i * _SIDE + j]
         if agreed < _AGREED:
             continue
-        for axis in range(3):
-            way[axis] = points[found[one], axis] - points[point, axis]
-        way /= math.sqrt(way[0] ** 2 + way[1] ** 2 + way[2] ** 2)
-        score = _on_line(points, point, found, way, limits)
+        long = math.sqrt(offs[3, one])
+        way = (offs[0, one] / long, offs[1, one] / long, offs[2, one] / long)
+        score = _on_line(offs, count, way, limits, most)
         if score > most:
             most = score
-            directions[point] = way
+            direction[0], direction[1], direction[2] = way
 
 
 @kernel
-def _on_line(points: Floats, point: int, found: Integers, way: Floats, limits: LineLimits) -> float:
-    """How many points lie on a line through a point; 0 where too few or others lie beside it."""
+def _on_line(
+    offs: Floats, count: int, way: tuple[float, float, float], limits: LineLimits, most: int
+) -> int:
+    """How many points lie on a line through one, less those beside it.
+
+    0 where too few lie on it, or too many beside it, or no more than `most` are told.
+    """
+    east, north, up, square = offs[0], offs[1], offs[2], offs[3]
+    core, ring, free = limits.core_m**2, limits.ring_m**2, limits.free_m**2
     on, beside = 0, 0
+    # Without a branch, so that several points are counted at a time.
+    for one in range(count):
+        along = east[one] * way[0] + north[one] * way[1] + up[one] * way[2]
+        off = square[one] - along * along
+        on += off < core
+        beside += (off > ring) & (off < free)
+    if on < limits.fewest or beside > limits.beside * on or on - beside <= most:
+        return 0
     low, high = 0.0, 0.0
-    for other in found:
-        east = points[other, 0] - points[point, 0]
-        north = points[other, 1] - points[point, 1]
-        up = points[other, 2] - points[point, 2]
-        along = east * way[0] + north * way[1] + up * way[2]
-        off = math.sqrt(max(east * east + north * north + up * up - along * along, 0.0))
-        if off < limits.core_m:
-            on += 1
+    for one in range(count):
+        along = east[one] * way[0] + north[one] * way[1] + up[one] * way[2]
+        if square[one] - along * along < core:
             low, high = min(low, along), max(high, along)
-        elif limits.ring_m < off < limits.free_m:
-            beside += 1
-    if on < limits.fewest or high - low < limits.reach_m / 2 or beside > limits.beside * on:
-        return 0.0
-    return float(on - beside)
+    return on - beside if high - low >= limits.reach_m / 2 else 0
 
 
 @kernel

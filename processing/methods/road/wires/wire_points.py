@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from processing.core.arrays import Flags, Floats, Integers
 from processing.core.kernels import kernel
 from processing.core.monitor import Monitor
+from processing.core.worked_ahead import in_order
 from processing.methods.road.objects.drive_chunks import chunks_of
 from processing.methods.road.objects.ground_heights import GROUND_CELLS
 from processing.methods.road.objects.sparse_plan import SparsePlan, cell_of
@@ -26,6 +27,7 @@ from processing.methods.road.wires.wire_kernels import (
     lines_kernel,
     short_runs_kernel,
 )
+from processing.recording.columns.ordering import chunk_ranges
 from processing.recording.drive import Drive
 
 _NEAR_M = 0.3
@@ -43,6 +45,10 @@ _LONGEST_M = 0.35
 _CELL_M = 0.8
 """How far about a point its line is looked for: scan lines of a fast vehicle, 0.28 m apart at 100
 turns a second and 100 km/h, meet it six times."""
+
+_CELLS_AT_ONCE = 1_000
+"""Whose points are measured between two moments at which the work can be stopped: a hundredth of a
+second where crowns fill them."""
 
 _MOST_FILLED = 24
 """Of 64 parts of such a cell: a wire fills four or five, a line of five side by side 20 to 25."""
@@ -111,8 +117,7 @@ def wire_points(
     local = np.concatenate([np.empty((0, 3)), *(one[0] for one in parts)])
     which = np.concatenate([np.empty(0, np.int64), *(one[1] for one in parts)])
     numbers = np.concatenate([np.empty(0, np.int64), *(one[2] for one in parts)])
-    monitor.check()
-    return points_on_lines(local, which, numbers)
+    return points_on_lines(local, which, numbers, monitor)
 
 
 def thin_points(drive: Drive, interval_s: float, start: int, local: Floats) -> NDArray[np.bool_]:
@@ -145,7 +150,9 @@ def pulse_interval(drive: Drive) -> float:
     return float(np.quantile(steps, _INTERVAL_SHARE)) if steps.size else 0.0
 
 
-def points_on_lines(local: Floats, which: Integers, numbers: Integers) -> WirePoints:
+def points_on_lines(
+    local: Floats, which: Integers, numbers: Integers, monitor: Monitor
+) -> WirePoints:
     """Those of points in short runs that lie on thin free lines, and on which together.
 
     Parameters
@@ -164,8 +171,7 @@ def points_on_lines(local: Floats, which: Integers, numbers: Integers) -> WirePo
         # Points on lines tell the lines again, without what lay beside them.
         order, cells, starts, grid = _sorted(local)
         local, which, numbers = local[order], which[order], numbers[order]
-        direction = np.zeros_like(local)
-        lines_kernel(local, cells, starts, grid, _LIMITS, direction)
+        direction = _directions(local, cells, starts, grid, monitor)
         is_on = direction.any(axis=1)
         local, which, numbers = local[is_on], which[is_on], numbers[is_on]
     direction = direction[is_on]
@@ -174,6 +180,21 @@ def points_on_lines(local: Floats, which: Integers, numbers: Integers) -> WirePo
     group = np.empty(len(local), np.int64)
     groups_kernel(local, direction, cells, starts, grid, _LIMITS.core_m, group)
     return WirePoints(local, direction, group, which[order], numbers[order])
+
+
+def _directions(
+    local: Floats, cells: Integers, starts: Integers, grid: WireGrid, monitor: Monitor
+) -> Floats:
+    """The direction of the thin line through each of points that are sorted by cells."""
+    direction = np.zeros_like(local)
+
+    def measure(some: tuple[int, int]) -> None:
+        monitor.check()
+        lines_kernel(local, cells, starts, grid, _LIMITS, some, direction)
+
+    for _ in in_order(measure, chunk_ranges(len(cells), _CELLS_AT_ONCE)):
+        monitor.check()
+    return direction
 
 
 def _sorted(local: Floats) -> tuple[Integers, Integers, Integers, WireGrid]:
