@@ -279,9 +279,9 @@ def _surface_line(points: Floats, drawn: Integers, limits: ShaftLimits, line: Fl
     """The steep line that the most slabs have points on: place at height 0 and lean; how many."""
     best, state = 0.0, 1
     guess = np.zeros(4)
-    on = np.zeros(_SLABS)
     starts = np.zeros(_SLABS + 1, np.int64)
     ordered = _by_slab(points, drawn, starts)
+    near = np.ascontiguousarray(points[ordered].T)
     filled = np.flatnonzero(starts[1:] > starts[:-1])
     if filled.size < 2:
         return 0
@@ -307,7 +307,7 @@ def _surface_line(points: Floats, drawn: Integers, limits: ShaftLimits, line: Fl
         guess[0] = points[a, 0] - guess[2] * points[a, 2]
         guess[1] = points[a, 1] - guess[3] * points[a, 2]
         # Most poles are upright; along a thick one many lines are as good.
-        score = _on_line(points, drawn, guess, on) * (1.0 - lean)
+        score = _on_line(near, starts, guess)[0] * (1.0 - lean)
         if score > best:
             best = score
             line[:] = guess
@@ -315,8 +315,7 @@ def _surface_line(points: Floats, drawn: Integers, limits: ShaftLimits, line: Fl
         return 0
     for _ in range(2):
         _straighten(points, drawn, line)
-    _on_line(points, drawn, line, on)
-    return int((on > 0).sum())
+    return _on_line(near, starts, line)[1]
 
 
 @kernel
@@ -336,20 +335,28 @@ def _by_slab(points: Floats, drawn: Integers, starts: Integers) -> Integers:
 
 
 @kernel
-def _on_line(points: Floats, drawn: Integers, line: Floats, on: Floats) -> float:
-    """How much speaks for a line: each slab as much as its points are near, `_MOST_OF_SLAB`."""
-    on[:] = 0.0
-    for point in drawn:
-        up = points[point, 2]
-        east = points[point, 0] - line[0] - line[2] * up
-        north = points[point, 1] - line[1] - line[3] * up
-        off = (east * east + north * north) / (_ON_LINE_M * _ON_LINE_M)
-        if off < 1.0:
-            on[int(up / SLAB_M)] += 1.0 - off
-    score = 0.0
+def _on_line(near: Floats, starts: Integers, line: Floats) -> tuple[float, int]:
+    """How much speaks for a line, and how many slabs have points on it.
+
+    Each slab speaks as much as its points are near, `_MOST_OF_SLAB` at most.
+
+    Parameters
+    ----------
+    near : (3, n) float64
+        The drawn points, slab after slab.
+    starts : (_SLABS + 1,) int64
+    """
+    score, slabs = 0.0, 0
     for slab in range(_SLABS):
-        score += min(on[slab], _MOST_OF_SLAB)
-    return score
+        on = 0.0
+        for point in range(starts[slab], starts[slab + 1]):
+            east = near[0, point] - line[0] - line[2] * near[2, point]
+            north = near[1, point] - line[1] - line[3] * near[2, point]
+            off = (east * east + north * north) / (_ON_LINE_M * _ON_LINE_M)
+            on += max(1.0 - off, 0.0)
+        score += min(on, _MOST_OF_SLAB)
+        slabs += on > 0.0
+    return score, slabs
 
 
 @kernel
@@ -394,45 +401,62 @@ def _touching_circle(
     Slabs count alike: in each it is the share of what lies near, for a plate on a post has more
     points than all of the post, and a circle that touches both is neither.
     """
+    about = _about_line(points, drawn, line)
+    turns = np.arange(_SIDES) * (2 * math.pi / _SIDES)
     radius, best = limits.least_m, 0.0
-    near = np.ones(_SLABS)
-    for point in drawn:
-        if _beside_line(points, point, line) < BESIDE_M:
-            near[min(max(int(points[point, 2] / SLAB_M), 0), _SLABS - 1)] += 1.0
+    scores = np.empty(_SIDES)
     while radius <= limits.most_m:
-        for sector in range(_SIDES):
-            angle = 2 * math.pi * sector / _SIDES
-            east, north = line[0] + radius * math.cos(angle), line[1] + radius * math.sin(angle)
-            score = 0.0
-            for point in drawn:
-                up = points[point, 2]
-                off_east = points[point, 0] - east - line[2] * up
-                off_north = points[point, 1] - north - line[3] * up
-                off = math.sqrt(off_east * off_east + off_north * off_north) - radius
-                slab = min(max(int(up / SLAB_M), 0), _SLABS - 1)
-                if abs(off) < limits.noise_m:
-                    score += (1.0 - abs(off) / limits.noise_m) / near[slab]
-                elif off < 0:
-                    score -= 1.0 / near[slab]
-                elif _beside_line(points, point, line) < _FLANK_M:
-                    score -= _LEFT_OUT / near[slab]
-            if score > best:
-                best = score
-                shaft[EAST] = east + line[2] * LEVEL_M
-                shaft[NORTH] = north + line[3] * LEVEL_M
-                shaft[RADIUS] = radius
+        east, north = radius * np.cos(turns), radius * np.sin(turns)
+        _rate_circles(about, (east, north), radius, limits.noise_m, scores)
+        side = int(scores.argmax())
+        if scores[side] > best:
+            best = scores[side]
+            shaft[EAST] = line[0] + east[side] + line[2] * LEVEL_M
+            shaft[NORTH] = line[1] + north[side] + line[3] * LEVEL_M
+            shaft[RADIUS] = radius
         radius *= 1.25
     shaft[LEAN_EAST], shaft[LEAN_NORTH] = line[2], line[3]
     return best > 0.0
 
 
 @kernel
-def _beside_line(points: Floats, point: int, line: Floats) -> float:
-    """How far a point lies from a line in plan."""
-    up = points[point, 2]
-    east = points[point, 0] - line[0] - line[2] * up
-    north = points[point, 1] - line[1] - line[3] * up
-    return float(math.hypot(east, north))
+def _about_line(points: Floats, drawn: Integers, line: Floats) -> Floats:
+    """(4, n) how far points lie to the east and north of a line and in plan; what each counts."""
+    about = np.empty((4, drawn.size))
+    slabs = np.empty(drawn.size, np.int64)
+    near = np.ones(_SLABS)
+    for number in range(drawn.size):
+        up = points[drawn[number], 2]
+        about[0, number] = points[drawn[number], 0] - line[0] - line[2] * up
+        about[1, number] = points[drawn[number], 1] - line[1] - line[3] * up
+        about[2, number] = math.sqrt(about[0, number] ** 2 + about[1, number] ** 2)
+        slabs[number] = min(max(int(up / SLAB_M), 0), _SLABS - 1)
+        near[slabs[number]] += about[2, number] < BESIDE_M
+    for number in range(drawn.size):
+        about[3, number] = 1.0 / near[slabs[number]]
+    return about
+
+
+@kernel
+def _rate_circles(
+    about: Floats, middles: tuple[Floats, Floats], radius: float, noise_m: float, scores: Floats
+) -> None:
+    """How much speaks for circles: points on each, less those in it and on the flank beside it."""
+    scores[:] = 0.0
+    # Farther points are neither on nor in a circle that touches the line, nor on its flank.
+    reach = max(2 * radius + noise_m, _FLANK_M)
+    for point in range(about.shape[1]):
+        if about[2, point] >= reach:
+            continue
+        east, north, counts = about[0, point], about[1, point], about[3, point]
+        beyond = -_LEFT_OUT if about[2, point] < _FLANK_M else 0.0
+        # Without a branch, so that several circles are asked at a time.
+        for side in range(_SIDES):
+            off_east, off_north = east - middles[0][side], north - middles[1][side]
+            off = math.sqrt(off_east * off_east + off_north * off_north) - radius
+            worth = 1.0 - abs(off) / noise_m
+            outside = -1.0 if off < 0.0 else beyond
+            scores[side] += counts * (worth if worth > 0.0 else outside)
 
 
 @kernel
@@ -441,7 +465,7 @@ def _off(points: Floats, point: int, shaft: Floats) -> float:
     up = points[point, 2] - LEVEL_M
     east = points[point, 0] - shaft[EAST] - shaft[LEAN_EAST] * up
     north = points[point, 1] - shaft[NORTH] - shaft[LEAN_NORTH] * up
-    return float(math.hypot(east, north) - shaft[RADIUS] + shaft[TAPER] * up)
+    return float(math.sqrt(east * east + north * north) - shaft[RADIUS] + shaft[TAPER] * up)
 
 
 @kernel
@@ -484,7 +508,7 @@ def _fit(points: Floats, is_clear: Flags, limits: ShaftLimits, shaft: Floats) ->
             up -= LEVEL_M
             east = points[point, 0] - shaft[EAST] - shaft[LEAN_EAST] * up
             north = points[point, 1] - shaft[NORTH] - shaft[LEAN_NORTH] * up
-            away = max(math.hypot(east, north), 1e-6)
+            away = max(math.sqrt(east * east + north * north), 1e-6)
             row[0], row[1] = east / away, north / away
             row[2], row[3], row[4], row[5] = row[0] * up, row[1] * up, 1.0, -up
             # A half that is seen doubly well tells no more than the other.

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from processing.core.arrays import Floats, Integers
 from processing.core.monitor import Monitor, PartMonitor
+from processing.core.worked_ahead import in_order
 from processing.methods.road.objects.column_points import ColumnPoints, points_about
 from processing.methods.road.objects.columns import FoundColumns
 from processing.methods.road.objects.drive_passes import passes_of
@@ -34,10 +35,14 @@ from processing.methods.road.poles.shaft_kernels import (
     ShaftLimits,
     shafts_kernel,
 )
+from processing.recording.columns.ordering import chunk_ranges
 from processing.recording.drive import Drive
 
 ABOUT_M = 0.7
 """Points so near to a column may be of its shaft: half the thickest and what columns are off."""
+
+_COLUMNS_AT_ONCE = 64
+"""Between two moments at which the work can be stopped: a hundredth of a second."""
 
 _ONE_M = 0.3
 """Columns nearer to each other are of one pole, as thick as two cells; each would get a half."""
@@ -128,8 +133,7 @@ def find_shafts(
     gathered = points_about(drives, plan, columns.middles, ABOUT_M, PartMonitor(monitor, 0.0, 0.8))
     found: list[Shaft] = []
     for members in passes_of(drives):
-        monitor.check()
-        found += _of_pass(columns, _only(gathered, members))
+        found += _of_pass(columns, _only(gathered, members), monitor)
     return _one_of_each(found)
 
 
@@ -176,11 +180,19 @@ def _only(gathered: ColumnPoints, members: Sequence[int]) -> ColumnPoints:
     )
 
 
-def _of_pass(columns: FoundColumns, gathered: ColumnPoints) -> list[Shaft]:
-    owner = np.repeat(np.arange(len(columns)), np.diff(gathered.starts))
-    about = gathered.local - np.column_stack([columns.middles, columns.ground])[owner]
+def _of_pass(columns: FoundColumns, gathered: ColumnPoints, monitor: Monitor) -> list[Shaft]:
+    places = np.column_stack([columns.middles, columns.ground])
     told = np.zeros((len(columns), _OF_COLUMN, SHAFT_WIDTH))
-    shafts_kernel(about, gathered.starts, _LIMITS, told)
+
+    def measure(some: tuple[int, int]) -> None:
+        monitor.check()
+        starts = gathered.starts[some[0] : some[1] + 1]
+        owner = np.repeat(np.arange(*some), np.diff(starts))
+        about = gathered.local[starts[0] : starts[-1]] - places[owner]
+        shafts_kernel(about, starts - starts[0], _LIMITS, told[some[0] : some[1]])
+
+    for _ in in_order(measure, chunk_ranges(len(columns), _COLUMNS_AT_ONCE)):
+        monitor.check()
     return [
         _standing(columns, gathered, column, told[column, number])
         for column, number in np.argwhere(_are_shafts(told)).tolist()
