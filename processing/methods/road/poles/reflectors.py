@@ -16,7 +16,7 @@ from processing.core.arrays import Floats, Integers
 from processing.methods.road.objects.column_points import ColumnPoints
 from processing.methods.road.poles.shafts import Shaft
 from processing.methods.road.signs.brightness import CLASSES, bright_bounds
-from processing.methods.road.signs.piece_kernels import range_class
+from processing.methods.road.signs.piece_kernels import range_classes
 from processing.recording.drive import Drive
 
 _SAMPLE = 20_000
@@ -99,4 +99,4 @@ class ReflectorSearch:
         times = np.where(is_known, times, trajectory.time[0])
         off = self._around.local[lines] + self._origin - trajectory.positions_at(times)
         ranges = np.where(is_known, np.linalg.norm(off, axis=1), 0.0)
-        return np.array([range_class(one, CLASSES) for one in ranges.tolist()], np.int64)
+        return range_classes(ranges, CLASSES)

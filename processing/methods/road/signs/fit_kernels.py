@@ -83,8 +83,13 @@ def chord_of(corners: Floats, line: Floats, pose: Floats) -> tuple[float, float]
     """
     c, s = math.cos(pose[2]), math.sin(pose[2])
     du, dv = line[U] - pose[0], line[V] - pose[1]
-    u, v = c * du + s * dv, c * dv - s * du
     a, b = c * line[ALONG_U] + s * line[ALONG_V], c * line[ALONG_V] - s * line[ALONG_U]
+    return _chord(corners, c * du + s * dv, c * dv - s * du, a, b)
+
+
+@kernel
+def _chord(corners: Floats, u: float, v: float, a: float, b: float) -> tuple[float, float]:
+    """The same for a line from (u, v) on along (a, b), as the outline has right and up."""
     if corners.shape[0] == 1:
         along = -(u * a + v * b)
         inside = corners[0, 0] ** 2 - (u * u + v * v - along * along)
@@ -133,20 +138,24 @@ def _end_cost(beyond: float, spacing: float, is_open: float, sigma_m: float) -> 
 def cost_of(corners: Floats, lines: Floats, pose: Floats, sigma_m: float, enough: float) -> float:
     """What all lines say against an outline; no more than `enough` is added up."""
     total = float((pose[2] / ROLL_RAD) ** 2)
+    c, s = math.cos(pose[2]), math.sin(pose[2])
     for k in range(lines.shape[0]):
         if total > enough:
             break
-        line = lines[k]
-        enters, leaves = chord_of(corners, line, pose)
-        if line[OPEN_START] < 0.0:
-            missed = leaves - max(enters, 0.0) - line[SPACING]
+        du, dv = lines[k, U] - pose[0], lines[k, V] - pose[1]
+        a = c * lines[k, ALONG_U] + s * lines[k, ALONG_V]
+        b = c * lines[k, ALONG_V] - s * lines[k, ALONG_U]
+        enters, leaves = _chord(corners, c * du + s * dv, c * dv - s * du, a, b)
+        spacing, start, end = lines[k, SPACING], lines[k, OPEN_START], lines[k, OPEN_END]
+        if start < 0.0:
+            missed = leaves - max(enters, 0.0) - spacing
             if missed > 0.0:
                 total += min((missed / max(_MISSED_M, sigma_m)) ** 2, _MISSED_CAP)
         elif leaves <= enters:
             total += 2 * CAP
         else:
-            total += _end_cost(-enters, line[SPACING], line[OPEN_START], sigma_m)
-            total += _end_cost(leaves - line[LONG], line[SPACING], line[OPEN_END], sigma_m)
+            total += _end_cost(-enters, spacing, start, sigma_m)
+            total += _end_cost(leaves - lines[k, LONG], spacing, end, sigma_m)
     return total
 
 

@@ -81,10 +81,11 @@ def _are_linked(
             - values[b, FROM + axis] - values[b, TO + axis]
         ) / 2  # fmt: skip
         most = max(most, middles)
+    if most > reach_m + 0.5 * max(_length(values, a), _length(values, b)):
+        return False
     normal = np.empty(3)
     off, is_same = _plane_of(values, a, b, normal)
-    half = 0.5 * max(_length(values, a), _length(values, b))
-    if off > reach_m or most > reach_m + half:
+    if off > reach_m:
         return False
     if is_same:
         return bool(is_bright[a] == is_bright[b])

@@ -131,6 +131,20 @@ def range_class(range_m: float, classes: int) -> int:
     return min(int(math.log(range_m / 4.0) / math.log(1.5)) + 1, classes - 1)
 
 
+def range_classes(ranges: Floats, classes: int) -> Integers:
+    """(n,) int64: the class of each of (n,) ranges, as of `range_class`."""
+    found = np.empty(len(ranges), np.int64)
+    range_classes_kernel(ranges, classes, found)
+    return found
+
+
+@kernel
+def range_classes_kernel(ranges: Floats, classes: int, found: Integers) -> None:
+    """Write the class of each range."""
+    for one in range(len(ranges)):
+        found[one] = range_class(ranges[one], classes)
+
+
 @kernel
 def runs_kernel(
     chunk: ChunkPoints,

@@ -11,13 +11,14 @@ from scipy.spatial import cKDTree
 
 from processing.core.arrays import Floats
 from processing.core.monitor import Monitor, PartMonitor
+from processing.core.worked_ahead import in_order
 from processing.methods.road.objects.ground_heights import height_of
 from processing.methods.road.objects.sparse_plan import SparsePlan
 from processing.methods.road.objects.survey import survey_ground
 from processing.methods.road.signs.distinct_plates import distinct_plates
 from processing.methods.road.signs.piece_kernels import FIRST, FROM
 from processing.methods.road.signs.plate_fit import fit_plates
-from processing.methods.road.signs.plate_groups import plate_groups
+from processing.methods.road.signs.plate_groups import PlateGroup, plate_groups
 from processing.methods.road.signs.plate_lines import empty_lines, lines_of
 from processing.methods.road.signs.plates import Plate, plates_of
 from processing.methods.road.signs.scan_pieces import ScanPieces, scan_pieces
@@ -117,17 +118,20 @@ def road_signs(
     pieces = scan_pieces(drives, plan, ground, PartMonitor(monitor, 0.3, 0.7))
     reaches = np.array([reach_of(drive) for drive in drives])
     groups = plate_groups(pieces, reaches, PartMonitor(monitor, 0.7, 0.8))
-    found: list[RoadSign] = []
     ways = DriveWays(drives)
-    for number, group in enumerate(groups):
+
+    def of_group(group: PlateGroup) -> list[RoadSign]:
         monitor.check()
         shapes = shapes_at(group.middle + plan.origin)
         if not shapes:
-            continue
+            return []
         lines = lines_of(pieces, group)
         fit = fit_plates(lines, empty_lines(pieces, group, lines), shapes)
-        plates = plates_of(pieces, group, lines, fit)
-        found += _signs(plates, pieces, (plan, ground), ways)
+        return _signs(plates_of(pieces, group, lines, fit), pieces, (plan, ground), ways)
+
+    found: list[RoadSign] = []
+    for number, signs_of_group in enumerate(in_order(of_group, groups)):
+        found += signs_of_group
         monitor.report(0.8 + 0.1 * (number + 1) / len(groups))
     kept = distinct_plates(
         [one.plate for one in found], np.array([one.confidence for one in found]), _LIKELY

@@ -22,7 +22,7 @@ from processing.methods.road.signs.piece_kernels import (
     brightness_kernel,
     heights_kernel,
     pieces_kernel,
-    range_class,
+    range_classes,
     ranges_of,
     runs_kernel,
 )
@@ -158,8 +158,7 @@ class _Head:
         ranges = np.concatenate([ranges_of(chunk, self.limits) for chunk, _ in samples])
         if high.mean() < _LEAST_HIGH:
             high[:] = True
-        classes = [range_class(one, CLASSES) for one in ranges[high].tolist()]
-        return bright_bounds(intensity[high], np.array(classes, np.int64))
+        return bright_bounds(intensity[high], range_classes(ranges[high], CLASSES))
 
 
 def scan_pieces(

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cache, lru_cache
 
 import numpy as np
 
 from processing.core.arrays import Floats
+from processing.core.kernels import kernel
 
 CIRCLE, TRIANGLE, SQUARE, DIAMOND, PENTAGON, RECTANGLE = (
     "circle",
@@ -160,17 +162,32 @@ def centroid_of(shape: SignShape) -> Floats:
 
 def rounded_corners(corners: Floats, radius: float, count: int) -> Floats:
     """The outline of a polygon whose corners are arcs of so many points: (k * count, 2)."""
-    before, ahead = np.roll(corners, 1, axis=0), np.roll(corners, -1, axis=0)
-    places = []
-    for one, previous, following in zip(corners, before, ahead, strict=True):
-        back = (previous - one) / np.linalg.norm(previous - one)
-        on = (following - one) / np.linalg.norm(following - one)
-        half = np.arccos(np.clip(back @ on, -1, 1)) / 2
-        middle = (back + on) / np.linalg.norm(back + on)
-        centre = one + middle * radius / np.sin(half)
-        start = one + back * radius / np.tan(half) - centre
-        end = one + on * radius / np.tan(half) - centre
-        turn = np.arctan2(start[0] * end[1] - start[1] * end[0], start @ end)
-        angles = np.arctan2(start[1], start[0]) + np.linspace(0, turn, count)
-        places.append(centre + radius * np.column_stack([np.cos(angles), np.sin(angles)]))
-    return np.concatenate(places)
+    places = np.empty((len(corners) * count, 2))
+    arcs_kernel(corners, radius, count, places)
+    return places
+
+
+@kernel
+def arcs_kernel(corners: Floats, radius: float, count: int, places: Floats) -> None:
+    """Write the arcs of all corners, one after the other."""
+    for k in range(len(corners)):
+        one, before, ahead = corners[k], corners[k - 1], corners[(k + 1) % len(corners)]
+        long_back = math.hypot(before[0] - one[0], before[1] - one[1])
+        long_on = math.hypot(ahead[0] - one[0], ahead[1] - one[1])
+        back = ((before[0] - one[0]) / long_back, (before[1] - one[1]) / long_back)
+        on = ((ahead[0] - one[0]) / long_on, (ahead[1] - one[1]) / long_on)
+        half = math.acos(min(max(back[0] * on[0] + back[1] * on[1], -1.0), 1.0)) / 2
+        middle = (back[0] + on[0], back[1] + on[1])
+        away = radius / math.sin(half) / math.hypot(middle[0], middle[1])
+        centre = (one[0] + middle[0] * away, one[1] + middle[1] * away)
+        along = radius / math.tan(half)
+        start = (one[0] + back[0] * along - centre[0], one[1] + back[1] * along - centre[1])
+        end = (one[0] + on[0] * along - centre[0], one[1] + on[1] * along - centre[1])
+        turn = math.atan2(
+            start[0] * end[1] - start[1] * end[0], start[0] * end[0] + start[1] * end[1]
+        )
+        first = math.atan2(start[1], start[0])
+        for number in range(count):
+            angle = first + turn * number / max(count - 1, 1)
+            places[k * count + number, 0] = centre[0] + radius * math.cos(angle)
+            places[k * count + number, 1] = centre[1] + radius * math.sin(angle)
