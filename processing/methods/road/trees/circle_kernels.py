@@ -80,50 +80,52 @@ def circles_kernel(plan: Floats, starts: Integers, limits: CircleLimits, circles
         Written.
     """
     for slab in range(starts.size - 1):
-        part = plan[starts[slab] : starts[slab + 1]]
-        left = np.arange(len(part))
+        left = np.ascontiguousarray(plan[starts[slab] : starts[slab + 1]].T)
         circles[slab] = 0.0
         for number in range(MOST_CIRCLES):
-            if left.size < limits.fewest:
+            if left.shape[1] < limits.fewest:
                 break
-            best = _best_circle(part, left, limits)
+            best = _best_circle(left, limits)
             if best[RADIUS] == 0.0:
                 break
             circles[slab, number] = best
-            left = _others(part, left, best, 2 * limits.noise_m)
+            left = _others(left, best, 2 * limits.noise_m)
 
 
 @kernel
-def _best_circle(part: Floats, left: Integers, limits: CircleLimits) -> Floats:
+def _best_circle(left: Floats, limits: CircleLimits) -> Floats:
+    """The circle that most speaks for among (2, n) points."""
     best = np.zeros(CIRCLE_WIDTH)
     best_score = 0.0
     found = np.zeros(CIRCLE_WIDTH)
+    some = np.ascontiguousarray(left[:, ::_EVERY])
+    count = left.shape[1]
     state, needed = 1, float(_DRAWS)
     for draw in range(_DRAWS):
         if draw >= needed:
             break
         state = (state * _FACTOR + 1) % _MODULUS
-        a = left[state * left.size // _MODULUS]
+        a = state * count // _MODULUS
         state = (state * _FACTOR + 1) % _MODULUS
-        b = left[state * left.size // _MODULUS]
+        b = state * count // _MODULUS
         state = (state * _FACTOR + 1) % _MODULUS
-        c = left[state * left.size // _MODULUS]
-        if a in (b, c) or b == c or not _through(part, a, b, c, found):
+        c = state * count // _MODULUS
+        if a in (b, c) or b == c or not _through(left, a, b, c, found):
             continue
         if not limits.least_m <= found[RADIUS] <= limits.most_m:
             continue
-        if not _is_promising(part, left, limits, found, best[INLIERS]):
+        if not _is_promising(some, limits, found, best[INLIERS]):
             continue
-        score = _rate(part, left, limits, found)
+        score = _rate(left, limits, found, best_score)
         if score > best_score:
             best_score = score
             best[:] = found
-            share = min(found[INLIERS] / left.size, 0.99)
+            share = min(found[INLIERS] / count, 0.99)
             needed = _SURE / -math.log1p(-(share**3))
     if best_score > 0:
         for _ in range(3):
-            _refit(part, left, limits, best)
-        if _rate(part, left, limits, best) <= 0 or not (
+            _refit(left, limits, best)
+        if _rate(left, limits, best, 0.0) <= 0 or not (
             limits.least_m <= best[RADIUS] <= limits.most_m
         ):
             best[:] = 0.0
@@ -131,71 +133,74 @@ def _best_circle(part: Floats, left: Integers, limits: CircleLimits) -> Floats:
 
 
 @kernel
-def _through(part: Floats, a: int, b: int, c: int, circle: Floats) -> bool:
+def _through(left: Floats, a: int, b: int, c: int, circle: Floats) -> bool:
     """The circle through three points; False where they are on a line."""
-    bx, by = part[b, 0] - part[a, 0], part[b, 1] - part[a, 1]
-    cx, cy = part[c, 0] - part[a, 0], part[c, 1] - part[a, 1]
+    bx, by = left[0, b] - left[0, a], left[1, b] - left[1, a]
+    cx, cy = left[0, c] - left[0, a], left[1, c] - left[1, a]
     cross = 2 * (bx * cy - by * cx)
     if abs(cross) < 1e-9:
         return False
     b2, c2 = bx * bx + by * by, cx * cx + cy * cy
     east, north = (cy * b2 - by * c2) / cross, (bx * c2 - cx * b2) / cross
-    circle[EAST], circle[NORTH] = part[a, 0] + east, part[a, 1] + north
+    circle[EAST], circle[NORTH] = left[0, a] + east, left[1, a] + north
     circle[RADIUS] = math.hypot(east, north)
     return True
 
 
 @kernel
-def _is_promising(
-    part: Floats, left: Integers, limits: CircleLimits, circle: Floats, most: float
-) -> bool:
+def _is_promising(some: Floats, limits: CircleLimits, circle: Floats, most: float) -> bool:
     """Whether a few of the points speak for a circle as much as for the best so far, about."""
+    middle_east, middle_north = circle[EAST], circle[NORTH]
+    outer, inner = circle[RADIUS] + limits.noise_m, circle[RADIUS] - limits.noise_m
+    outer_square, inner_square = outer * outer, inner * inner if inner > 0 else 0.0
     on, inside = 0, 0
-    for number in range(0, left.size, _EVERY):
-        point = left[number]
-        east, north = part[point, 0] - circle[EAST], part[point, 1] - circle[NORTH]
+    # Without a branch, so that several points are counted at a time.
+    for point in range(some.shape[1]):
+        east, north = some[0, point] - middle_east, some[1, point] - middle_north
         square = east * east + north * north
-        outer, inner = circle[RADIUS] + limits.noise_m, circle[RADIUS] - limits.noise_m
-        if square <= outer * outer:
-            if inner <= 0 or square >= inner * inner:
-                on += 1
-            else:
-                inside += 1
+        on += (square <= outer_square) & (square >= inner_square)
+        inside += square < inner_square
     return _EVERY * on >= _ABOUT * most - _EVERY and inside <= 2 + limits.most_inside * on / _ABOUT
 
 
 @kernel
-def _rate(part: Floats, left: Integers, limits: CircleLimits, circle: Floats) -> float:
-    """How much speaks for a circle; 0 where it isn't one. Writes its points and arc."""
-    covered, on, inside = 0, 0, 0
-    for point in left:
-        east, north = part[point, 0] - circle[EAST], part[point, 1] - circle[NORTH]
-        off = math.hypot(east, north) - circle[RADIUS]
-        if abs(off) <= limits.noise_m:
-            on += 1
+def _rate(left: Floats, limits: CircleLimits, circle: Floats, least: float) -> float:
+    """How much speaks for a circle; 0 where it isn't one, or where no more than so much does.
+
+    Its points and arc are written where it is more.
+    """
+    middle_east, middle_north, radius = circle[EAST], circle[NORTH], circle[RADIUS]
+    on, inside = 0, 0
+    for point in range(left.shape[1]):
+        east, north = left[0, point] - middle_east, left[1, point] - middle_north
+        off = math.sqrt(east * east + north * north) - radius
+        on += abs(off) <= limits.noise_m
+        inside += off < -limits.noise_m
+    if on < limits.fewest or inside > limits.most_inside * on or 1.5 * on - inside <= least:
+        return 0.0
+    covered = 0
+    for point in range(left.shape[1]):
+        east, north = left[0, point] - middle_east, left[1, point] - middle_north
+        if abs(math.sqrt(east * east + north * north) - radius) <= limits.noise_m:
             sector = int((math.atan2(north, east) / math.pi + 1) / 2 * _SECTORS)
             covered |= 1 << min(sector, _SECTORS - 1)
-        elif off < 0:
-            inside += 1
-    circle[INLIERS] = on
     sectors = 0
     while covered:
         sectors += covered & 1
         covered >>= 1
-    circle[ARC] = sectors / _SECTORS
-    if on < limits.fewest or circle[ARC] < limits.least_arc or inside > limits.most_inside * on:
-        return 0.0
-    return float(on * (0.5 + circle[ARC]) - inside)
+    circle[INLIERS], circle[ARC] = on, sectors / _SECTORS
+    score = on * (0.5 + circle[ARC]) - inside
+    return float(score) if circle[ARC] >= limits.least_arc and score > least else 0.0
 
 
 @kernel
-def _refit(part: Floats, left: Integers, limits: CircleLimits, circle: Floats) -> None:
+def _refit(left: Floats, limits: CircleLimits, circle: Floats) -> None:
     """One step of Gauss and Newton on the points that lie on the circle."""
     normal, right = np.zeros((3, 3)), np.zeros(3)
     row = np.ones(3)
-    for point in left:
-        east, north = part[point, 0] - circle[EAST], part[point, 1] - circle[NORTH]
-        away = math.hypot(east, north)
+    for point in range(left.shape[1]):
+        east, north = left[0, point] - circle[EAST], left[1, point] - circle[NORTH]
+        away = math.sqrt(east * east + north * north)
         if away == 0.0 or abs(away - circle[RADIUS]) > limits.noise_m:
             continue
         row[0], row[1] = east / away, north / away
@@ -213,14 +218,13 @@ def _refit(part: Floats, left: Integers, limits: CircleLimits, circle: Floats) -
 
 
 @kernel
-def _others(part: Floats, left: Integers, circle: Floats, band_m: float) -> Integers:
+def _others(left: Floats, circle: Floats, band_m: float) -> Floats:
     """The points that are neither on a circle nor inside it."""
-    kept = np.zeros(left.size, np.bool_)
-    for number in range(left.size):
-        point = left[number]
-        away = math.hypot(part[point, 0] - circle[EAST], part[point, 1] - circle[NORTH])
-        kept[number] = away > circle[RADIUS] + band_m
-    return left[kept]
+    kept = np.zeros(left.shape[1], np.bool_)
+    for point in range(left.shape[1]):
+        away = math.hypot(left[0, point] - circle[EAST], left[1, point] - circle[NORTH])
+        kept[point] = away > circle[RADIUS] + band_m
+    return left[:, kept]
 
 
 class ChainLimits(NamedTuple):
