@@ -12,21 +12,33 @@ from numpy.typing import NDArray
 
 from processing.core.arrays import Floats
 
-_SHARE, _STEPS_OF_SHARE = 0.7, 0.524
-"""Quantile from which the spread follows, and how many standard deviations it lies above the
-middle: where little rises beside the road up to a quarter of that may be faces of signs."""
+_LOW, _MIDDLE, _HIGH = 0.3, 0.5, 0.7
+_STEPS = 1.049
+"""Quantiles from which the spread follows, and how many standard deviations lie between the outer
+ones. Where little rises beside the road up to a quarter may be faces of signs; the dark side alone
+would follow what is seen askew, the bright side alone is narrow where leaves are most of all."""
 
 CLASSES = 10
 """Of ranges: up to 4 m, and nine that each end half as far again, the last one beyond 100 m."""
 
+_CLASS_RATIO = 1.5
+"""Between ranges of neighbouring classes."""
+
+_FEWEST_POINTS = 200
+"""Of a range class that has a say in how brightness falls with the range."""
+
 _LEAST_POINTS = 1_500
-"""Of a range class that tells its own limit; others take that of the class beside them: a few
+"""Of a range class that tells its own middle; others take what the law of the head says: a few
 hundred points that follow each other may be of one thing."""
 
-_NEARER, _OTHER = 2.25, 1.5
-"""By how much diffuse things are brighter in the range class before: the square of the ranges'
-ratio where intensities aren't corrected for the range, nothing where they are; and by how much as
-other things stand there. Where signs are most of what was met at a range, it looks brighter."""
+_POWERS = np.arange(0.0, 2.01, 0.1)
+"""Of the range by which diffuse things grow darker: 0 where a maker has taken that out, 2 where
+nothing was done; scales that are a root or a logarithm of the strength lie between."""
+
+_OTHER = 1.5
+"""By how much what stands at one range is brighter than the law says. Where signs are most of what
+was met at a range, it looks brighter still; where it looks darker, panes and tyres are most of it
+and what else stands there is as bright as elsewhere."""
 
 _SPREADS = 4.5
 """How many standard deviations of all intensities lies above their middle what nothing diffuse
@@ -55,29 +67,40 @@ def bright_bounds(intensity: NDArray[np.uint16], classes: NDArray[np.int64]) -> 
         return bounds
     middles = _middles(intensity, classes)
     # One spread for all: far away a single wall may be all that there is.
-    step = (float(np.quantile(intensity / middles[classes], _SHARE)) - 1.0) / _STEPS_OF_SHARE
-    return np.asarray(middles * (1.0 + _SPREADS * step)) if step > 0 else bounds
+    low, middle, high = np.quantile(intensity / middles[classes], (_LOW, _MIDDLE, _HIGH)).tolist()
+    step = (high - low) / _STEPS
+    return np.asarray(middles * (middle + _SPREADS * step)) if step > 0 else bounds
 
 
 def _middles(intensity: NDArray[np.uint16], classes: NDArray[np.int64]) -> Floats:
-    """(CLASSES,) what diffuse things send back from each range class.
-
-    From the class with the most points on, each next one is as bright as it can be beside it.
-    """
+    """(CLASSES,) what diffuse things send back from each range class."""
     counts = np.bincount(classes, minlength=CLASSES)[:CLASSES]
-    middles: Floats = np.full(
-        CLASSES, float(np.median(intensity))
-    )  # where no class has enough points
-    known = counts >= _LEAST_POINTS
-    for number in np.flatnonzero(known).tolist():
-        middles[number] = float(np.median(intensity[classes == number]))
-    middles = np.maximum(middles, 1.0)
-    most = int(counts.argmax())
-    for way, low, high in ((1, _NEARER * _OTHER, _OTHER), (-1, _OTHER, _NEARER * _OTHER)):
-        beside = middles[most]
-        number = most + way
-        while 0 <= number < CLASSES:
-            own = middles[number] if known[number] else beside
-            beside = middles[number] = min(max(own, beside / low), beside * high)
-            number += way
+    known = np.flatnonzero(counts >= _FEWEST_POINTS)
+    if not known.size:
+        return np.full(CLASSES, max(float(np.median(intensity)), 1.0))
+    own = np.array([float(np.median(intensity[classes == number])) for number in known])
+    own = np.maximum(own, 1.0)
+    middles = _falling(known, own, counts[known].astype(np.float64))
+    for number, middle in zip(known.tolist(), own.tolist(), strict=True):
+        if counts[number] >= _LEAST_POINTS:
+            middles[number] = min(max(middle, middles[number]), middles[number] * _OTHER)
     return middles
+
+
+def _falling(known: NDArray[np.int64], own: Floats, counts: Floats) -> Floats:
+    """(CLASSES,) the power of the range that lies nearest to what classes tell, each by its points.
+
+    Distances are those of logarithms, not squared: a class that holds something else than others
+    doesn't bend the law.
+    """
+    every = np.arange(CLASSES) * np.log(_CLASS_RATIO)
+    best = (np.inf, 0.0, 0.0)
+    for power in _POWERS.tolist():
+        level = np.log(own) + power * every[known]
+        order = np.argsort(level, kind="stable")
+        share = np.cumsum(counts[order])
+        middle = float(level[order[int(np.searchsorted(share, share[-1] / 2))]])
+        off = float((counts * np.abs(level - middle)).sum())
+        if off < best[0]:
+            best = (off, middle, power)
+    return np.asarray(np.exp(best[1] - best[2] * every))

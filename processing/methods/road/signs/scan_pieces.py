@@ -39,16 +39,28 @@ _SHORTEST_M = 0.07
 _LONGEST_M = 6.0
 """Of a piece: across the largest guide sign."""
 
-_SAMPLES = 40
+_SAMPLES = 200
 _SAMPLE_POINTS = 2_000
-"""Stretches of a drive, and points of each, from which brightness, noise and spacing follow."""
+"""Stretches of a drive, and points of each, from which brightness and noise follow: of a country
+road, beside which hardly anything rises, a hundredth are points of things."""
 
 _USUAL_PULSES = 2_000
 """Of a turn, where a drive doesn't say."""
 
-_LEAST_HIGH = 0.1
-"""Share of points that rise above the ground from which they tell what is bright; where fewer do,
-signs are many of them, and the road tells it too."""
+_MUCH_HIGH = 0.1
+"""Share of points that rise above the ground from which few of them are of signs, whatever else
+they are of. Where fewer do, a sign or two may be most of what rises."""
+
+_NEAR = 1.5
+"""Ranges of the road below the vehicle over the least: it is seen under 45 degrees and more."""
+
+_OVER_ROAD = 5.0
+"""What is this much brighter than the road below the vehicle is no diffuse thing: white paint
+(reflectance 0.6 to 0.8) over asphalt (0.13 to 0.2), and farther away all is darker. Scales that are
+a root or a logarithm of the strength show less of it."""
+
+_FEWEST_HIGH = 1_500
+"""Points of things from which they tell what is bright; where fewer rise, the road tells it too."""
 
 _LOWEST_SHARE = 0.05
 """Of the points of a few turns: on the road, not below it."""
@@ -156,7 +168,10 @@ class _Head:
         high = np.concatenate([heights >= self.limits.lowest_m for _, heights in samples])
         intensity = np.concatenate([chunk.intensity for chunk, _ in samples])
         ranges = np.concatenate([ranges_of(chunk, self.limits) for chunk, _ in samples])
-        if high.mean() < _LEAST_HIGH:
+        if high.mean() < _MUCH_HIGH and not high.all():
+            near = ~high & (ranges <= _NEAR * np.quantile(ranges[~high], _LOWEST_SHARE))
+            high &= intensity <= _OVER_ROAD * np.median(intensity[near])
+        if np.count_nonzero(high) < _FEWEST_HIGH:
             high[:] = True
         return bright_bounds(intensity[high], range_classes(ranges[high], CLASSES))
 

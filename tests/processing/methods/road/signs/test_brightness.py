@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from numpy.typing import NDArray
 
 from processing.methods.road.signs.brightness import CLASSES, bright_bounds
@@ -36,10 +37,22 @@ def test_a_scale_of_decibels_has_bright_faces_too() -> None:
 def test_a_range_with_few_points_takes_the_limit_of_the_one_beside_it() -> None:
     intensity = np.concatenate([diffuse(9_000, 8_000, 4), np.full(400, 900, np.uint16)])
     bounds = bright_bounds(intensity, np.repeat([MIDDLE, NEAR], [9_000, 400]))
-    assert bounds[NEAR] == bounds[MIDDLE]
+    assert bounds[NEAR] == pytest.approx(bounds[MIDDLE])
 
 
 def test_without_intensity_nothing_is_bright() -> None:
     none = np.zeros(5_000, np.uint16)
     assert np.isinf(bright_bounds(none, np.full(5_000, MIDDLE))).all()
     assert len(bright_bounds(none, np.full(5_000, MIDDLE))) == CLASSES
+
+
+def test_a_wall_far_away_is_not_bright_where_all_else_that_stands_there_is_dark() -> None:
+    # Brightness falls with the range; far away panes and tyres are most of what stands.
+    ranges = [1, 2, 3, 4]
+    things = [diffuse(6_000, 8_000 / 1.5**number, 5 + number) for number in ranges]
+    panes = np.full(3_000, 300, np.uint16)
+    wall = np.full(1_000, 0.6 / 0.35 * 8_000 / 1.5**FAR, np.uint16)
+    intensity = np.concatenate([*things, panes, wall])
+    classes = np.repeat([*ranges, FAR], [6_000] * 4 + [4_000])
+    bounds = bright_bounds(intensity, classes)
+    assert wall.max() < bounds[FAR] < 4 * wall.max()
