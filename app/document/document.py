@@ -31,6 +31,7 @@ from processing.operations.project_export import export_of
 from processing.operations.run import operation_on_drive
 from processing.operations.store import StoredRun, store_prepared, store_run
 from processing.project.importing.importing import ImportRequest
+from processing.project.photos import photo_of
 from processing.project.project import Project
 from processing.project.results.found_features import FoundFeatures
 from processing.project.store.label_filing import are_many
@@ -137,6 +138,10 @@ class Document(QObject):
     def feature(self, id: str) -> Feature | None:  # noqa: A002 - the word of the trade
         """One feature, or None."""
         return None if self._project is None else self._project.features.get(id)
+
+    def photo(self, feature: Feature) -> Path | None:
+        """The file of a feature's picture, or None."""
+        return None if self._project is None else photo_of(feature, self._project.folder)
 
     def runs(self) -> tuple[Run, ...]:
         """The runs of tools, the first one first."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -13,6 +13,7 @@ from processing.core.owned_files import make_marked, remove_folder
 from processing.core.safe_write import refuse_inputs
 from processing.methods.ground.stored_surface import FILE_NAME as SURFACE
 from processing.methods.ground.stored_surface import StoredSurface, copy_surface
+from processing.project.photos import photo_folder, write_photos
 from processing.project.results.found_classes import found_classes
 from processing.project.results.found_features import FoundFeatures, found_features
 from processing.project.results.run_findings import adopt_finding, write_finding, write_given
@@ -24,6 +25,7 @@ from processing.tools.runner import RunRequest, drives_of, run, run_together, to
 from processing.tools.tool import CandidateResult, FinishedColumns
 
 _CLASS = "classification"
+_PHOTOS = "photos"
 _BESIDE = "+"
 """Between a drive's id and the name of a column that it is to have."""
 
@@ -50,12 +52,12 @@ class FinishedRun:
     drive: str = ""
 
     def keep_with(self, drive_of: Callable[[str], Drive], files: NewStepFiles) -> None:
-        """Keep with its drives what the run said of their points, columns, the surface it found.
+        """Keep what the run said of its drives' points, columns, the surface it found, pictures.
 
         Parameters
         ----------
         files : NewStepFiles
-            Gets the surface and the columns, which take the places of older ones.
+            Gets the surface and the columns, which take the places of older ones, and pictures.
 
         Raises
         ------
@@ -64,7 +66,9 @@ class FinishedRun:
         if self.found is None or self.kept is None:
             return
         try:
-            surface = self.kept / SURFACE
+            photos, surface = self.kept / _PHOTOS, self.kept / SURFACE
+            if photos.is_dir():
+                files.give(photos, photo_folder(self.found.run.id))
             for drive in (drive_of(id_) for id_ in self.found.run.drives):
                 said = self.kept / drive.id
                 if said.is_file():
@@ -120,8 +124,29 @@ def finish_run(
     if isinstance(result, CandidateResult):
         times = {"started": started, "finished": datetime.now(UTC)}
         drives = [drive.id for drive in drives_of(request)]
-        return FinishedRun(found=found_features(result, tool, parameters, drives, **times))
+        return with_photos(found_features(result, tool, parameters, drives, **times), into)
     return FinishedRun(columns=result, drive=request.drive.id)
+
+
+def with_photos(found: FoundFeatures, into: Path) -> FinishedRun:
+    """Candidates, their pictures written to files beside a folder on the project's disk.
+
+    Raises
+    ------
+    NoSpace
+    """
+    if not found.pictures:
+        return FinishedRun(found=found)
+    kept = into.with_name(f"{into.name}-kept")
+    try:
+        with report_as_user_error(kept):
+            make_marked(kept)
+            (kept / _PHOTOS).mkdir()
+        write_photos(found.pictures, kept / _PHOTOS)
+    except BaseException:
+        remove_folder(kept)
+        raise
+    return FinishedRun(found=replace(found, pictures={}), kept=kept)
 
 
 @dataclass(frozen=True)

@@ -30,6 +30,7 @@ from processing.map.step_files import STEP_FILES, StepFiles
 from processing.project.importing.drive_completion import CompletedDrive, drive_changed
 from processing.project.importing.unfinished_imports import TEMPORARY, unfinished_imports
 from processing.project.own_models import OWN_MODELS
+from processing.project.photos import PHOTOS
 from processing.project.sources.source_files import HOMES, SourceFiles
 from processing.project.store.catalogue_adoption import CatalogueFile
 from processing.project.store.database import Database
@@ -61,7 +62,7 @@ from resources import path_of
 _DATABASE = "project.gpkg"
 _FOLDERS = (DRIVES, TEMPORARY, LABEL_STEPS, STEP_FILES)
 _FILES = (*database_files(_DATABASE), *database_files(UNFINISHED), *LOCK_FILES)
-_OWN = (*_FOLDERS, VOLUMES, OWN_MODELS, *_FILES)
+_OWN = (*_FOLDERS, VOLUMES, OWN_MODELS, PHOTOS, *_FILES)
 _MOST_NAMES = 3
 
 

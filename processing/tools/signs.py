@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 
+from processing.cameras.cut_outs import Face, cut_outs
 from processing.core.arrays import Floats
-from processing.core.monitor import Monitor
+from processing.core.monitor import Monitor, PartMonitor
 from processing.core.parameters import file, least_confidence
 from processing.core.text import Text
 from processing.methods.road.diagnostics import Diagnostic
@@ -39,6 +40,9 @@ from processing.tools.tool import (
 
 _ONE_POST_M = 0.8
 """Between middles of plates that hang on one post, in plan: side by side, or back to back."""
+
+_FOUND = 0.9
+"""Of the progress: the rest is for pictures out of camera images."""
 
 _CUT_OUT_M = 3.0
 """About a position, plates are looked at (Takahashi 2022, 8.3)."""
@@ -82,9 +86,10 @@ def find_signs(
     """
     if parameters.positions.strip():
         return _by_positions(drives, read_positions(Path(parameters.positions)), monitor)
-    found = road_signs(drives, monitor)
+    found = road_signs(drives, PartMonitor(monitor, 0.0, _FOUND))
     signs = [one for one in found if one.confidence >= parameters.least_confidence]
-    return CandidateResult(_candidates(signs), _note(drives, found, signs))
+    note = _note(drives, found, signs)
+    return _with_pictures(signs, drives, note, PartMonitor(monitor, _FOUND, 1.0))
 
 
 def diagnose_signs(asked: RequestedPosition, parameters: SignParameters) -> tuple[Diagnostic, ...]:
@@ -105,10 +110,34 @@ def _by_positions(
     def shapes_at(place: Floats) -> Sequence[SignShape]:
         return looked_for() if is_near(place, here, _CUT_OUT_M + FARTHEST_M) else ()
 
-    signs, without = asked_signs(road_signs(drives, monitor, shapes_at), here)
+    found = road_signs(drives, PartMonitor(monitor, 0.0, _FOUND), shapes_at)
+    signs, without = asked_signs(found, here)
     nothing = tuple(one.line for one in without)
     whole = MissedPositions(missed.outside, missed.swapped, missed.degrees, nothing)
-    return CandidateResult(_candidates(signs), whole.note())
+    return _with_pictures(signs, drives, whole.note(), PartMonitor(monitor, _FOUND, 1.0))
+
+
+def _with_pictures(
+    signs: Sequence[RoadSign], drives: Sequence[Drive], note: Text, monitor: Monitor
+) -> CandidateResult:
+    """Signs as candidates, each with its picture where camera images show its face."""
+    candidates = _candidates(signs)
+    if not any(drive.images for drive in drives):
+        return CandidateResult(candidates, note)
+    faces = [
+        Face(one.plate.outline - one.plate.centre + one.centre, one.plate.normal) for one in signs
+    ]
+    cut = cut_outs(faces, drives, monitor)
+    pictured = [
+        replace(one, picture=picture) for one, picture in zip(candidates, cut.pictures, strict=True)
+    ]
+    if cut.unread:
+        unread = Text(
+            "Camera images that can't be read: {count}; signs on them have no picture.",
+            "読み込めないカメラ画像が{count}枚あり、写っている標識の写真はありません。",
+        ).filled(count=cut.unread)
+        note = Text(f"{note.en} {unread.en}".strip(), f"{note.ja}{unread.ja}")
+    return CandidateResult(tuple(pictured), note)
 
 
 def _note(drives: Sequence[Drive], found: Sequence[RoadSign], signs: Sequence[RoadSign]) -> Text:

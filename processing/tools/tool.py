@@ -168,6 +168,8 @@ class Candidate:
     is_drawing : bool
         Drawn from other candidates, as the outline of a gutter from its lids: it goes on the map
         and into drawings, not into files of what was found.
+    picture : (h, w, 3) uint8 or None
+        What a camera image shows of it, red, green, blue; a project keeps it with the feature.
     """
 
     kind: str
@@ -178,6 +180,7 @@ class Candidate:
     attributes: Mapping[str, CandidateValue] = field(default_factory=dict)
     drives: NDArray[np.int64] | None = None
     is_drawing: bool = False
+    picture: NDArray[np.uint8] | None = None
 
 
 @dataclass(frozen=True)

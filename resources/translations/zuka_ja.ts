@@ -1268,6 +1268,13 @@ kept</source>
     </message>
 </context>
 <context>
+    <name>PhotoRow</name>
+    <message>
+        <source>Picture</source>
+        <translation>写真</translation>
+    </message>
+</context>
+<context>
     <name>PlaneView</name>
     <message>
         <source>Show everything</source>

@@ -15,6 +15,7 @@ from processing.map.catalogue import Catalogue, FeatureKind, Geometry
 from processing.map.change import Change
 from processing.map.feature import Feature, PointReference, Vertex, new_feature_id
 from processing.project.importing.importing import ImportRequest, import_drives
+from processing.project.photos import photo_of
 from processing.project.store.runs import Run
 from processing.recording.drive import Drive
 from tests.builders import simulated_drive, write_laz, write_trajectory_csv
@@ -67,6 +68,7 @@ class OpenMap:
     applied: list[tuple[Text, Change]] = field(default_factory=list)
     reported: list[Text] = field(default_factory=list)
     all_runs: tuple[Run, ...] = ()
+    folder: Path = Path()
 
     def drives(self) -> tuple[Drive, ...]:
         return self.all_drives
@@ -82,6 +84,9 @@ class OpenMap:
 
     def feature(self, id: str) -> Feature | None:
         return self.stored.get(id)
+
+    def photo(self, feature: Feature) -> Path | None:
+        return photo_of(feature, self.folder)
 
     def runs(self) -> tuple[Run, ...]:
         return self.all_runs

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from pathlib import Path
 from typing import Protocol
 
 import numpy as np
@@ -31,6 +32,9 @@ class MapSource(Protocol):
 
     def feature(self, id: str) -> Feature | None:  # noqa: A002 - the word of the trade
         """One feature, or None."""
+
+    def photo(self, feature: Feature) -> Path | None:
+        """The file of a feature's picture, or None."""
 
     def runs(self) -> tuple[Run, ...]:
         """The runs of tools, the first one first; those whose candidates are gone, too."""

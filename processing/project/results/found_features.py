@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import datetime
 
 import numpy as np
+from numpy.typing import NDArray
 
 from processing.core.parameters import parameters_of
 from processing.core.text import Text
@@ -21,6 +22,8 @@ from processing.map.feature import (
     Vertex,
     new_feature_id,
 )
+from processing.project.photos import FIELD as PHOTO
+from processing.project.photos import photo_name
 from processing.project.store.runs import Run, new_run_id
 from processing.tools.tool import Candidate, CandidateResult, Tool
 
@@ -55,12 +58,15 @@ class FoundFeatures:
         What ran.
     note : Text
         What the summary says beside the count; empty where nothing is to be said.
+    pictures : mapping of str to (h, w, 3) uint8
+        Of candidates, by the names that they have in the project.
     """
 
     run: Run
     change: Change
     tool: Tool
     note: Text = _NO_NOTE
+    pictures: Mapping[str, NDArray[np.uint8]] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -118,8 +124,14 @@ def found_features(
         finished=finished,
         summary=summary_of(tool, len(result.candidates), result.note),
     )
-    features = tuple(_feature(one, run, drives) for one in result.candidates)
-    return FoundFeatures(run, Change(added=features), tool, result.note)
+    features = []
+    pictures = {}
+    for number, one in enumerate(result.candidates, 1):
+        name = "" if one.picture is None else photo_name(run.id, number)
+        features.append(_feature(one, run, drives, name))
+        if one.picture is not None:
+            pictures[name] = one.picture
+    return FoundFeatures(run, Change(added=tuple(features)), tool, result.note, pictures)
 
 
 def parameter_values(tool: Tool, parameters: object) -> Mapping[str, AttributeValue]:
@@ -146,7 +158,7 @@ def _write_count(count: int, one: Text, many: Text) -> Text | None:
     return (one if count == 1 else many).filled(count=f"{count:,}") if count else None
 
 
-def _feature(candidate: Candidate, run: Run, drives: Sequence[str]) -> Feature:
+def _feature(candidate: Candidate, run: Run, drives: Sequence[str], photo: str) -> Feature:
     xyz = np.asarray(candidate.xyz, np.float64)
     if len(xyz) < _LEAST[candidate.geometry] or not np.isfinite(xyz).all():
         message = f"{run.tool} gave a candidate without a place: {candidate.geometry} {xyz}"
@@ -164,7 +176,7 @@ def _feature(candidate: Candidate, run: Run, drives: Sequence[str]) -> Feature:
         kind=candidate.kind,
         geometry=Geometry(candidate.geometry),
         vertices=vertices,
-        attributes=dict(candidate.attributes),
+        attributes={**candidate.attributes, **({PHOTO: photo} if photo else {})},
         status=Status.CANDIDATE,
         provenance=Provenance(run.tool, run.version, run.parameters, confidence, run.id),
     )

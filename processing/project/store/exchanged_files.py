@@ -51,7 +51,7 @@ class NewStepFiles:
         return path
 
     def give(self, file: Path, name: str, drive: str = "") -> None:
-        """Move a file or a folder here, which is to have a name of its drive's folder.
+        """Move a file or a folder here that is to have a name of its drive's, or the project's.
 
         Raises
         ------

@@ -21,20 +21,23 @@ from processing.map.feature import Feature, Vertex
 from processing.methods.earthwork.maps.change_grid import ChangeGrid
 from processing.methods.earthwork.volumes.volume_result import VolumeResult, Volumes
 from processing.methods.ground.filters.cells import CellGrid
-from processing.operations.finished_runs import finish_run
+from processing.operations.finished_runs import finish_run, with_photos
 from processing.operations.import_files import ImportOperation, import_files
 from processing.operations.project_volumes import MadeVolume, remove_volume, store_volume
 from processing.operations.store import store_prepared, store_run
 from processing.operations.undo import UndoneStep, UndoOperation, undo_step
 from processing.project.additions import bring_in, home_of, take_over
 from processing.project.importing.import_request import ImportRequest
+from processing.project.photos import photo_of
 from processing.project.project import Project
 from processing.project.store.exchanged_files import ExchangedFiles
 from processing.project.volumes.volume import ChosenSide, SideKind, VolumeRequest, new_volume
 from processing.project.volumes.volume_store import VolumeStore, write_volume
 from processing.recording.camera_images.image_list import ImageList
 from processing.tools.runner import RunRequest, tool_of
+from processing.tools.tool import Candidate, CandidateResult
 from tests.builders import simulated_drive, write_laz
+from tests.processing.project.candidates import found
 from tests.processing.project.labelled import labelled_project
 
 SIGN = Feature("sign", "sign", Geometry.POINT, (Vertex((1.0, 2.0, 3.0)),))
@@ -124,6 +127,13 @@ def _images(project: Project) -> None:
     bring(project, ImportRequest((), images=(listed,)))
 
 
+def _pictured(project: Project) -> None:
+    picture = np.full((3, 4, 3), 200, np.uint8)
+    sign = Candidate("sign", "point", np.ones((1, 3)), np.array([-1]), 0.9, picture=picture)
+    made = found(CandidateResult((sign,)), drive=project.drives[0].id)
+    store_run(project, with_photos(made, project.temporary_folder()))
+
+
 STEPS: Mapping[str, tuple[tuple[Callable[[Project], None], ...], str, str]] = {
     "a column": ((_normals,), "street: normal", "街路"),
     "a column for another": ((_normals, _normals_again), "street: normal", "normal"),
@@ -132,6 +142,7 @@ STEPS: Mapping[str, tuple[tuple[Callable[[Project], None], ...], str, str]] = {
     "a volume": ((_volume,), "Volume: 面 → level", "土量"),
     "a removed volume": ((_volume, _volume_removed), "Remove Volume", "を削除"),
     "an import": ((_import,), "Import later", "later のインポート"),
+    "a picture": ((_pictured,), "Curbs: 1 candidate", "候補1件"),
     "images": ((_images,), "Add to street", "street への追加"),
 }
 """What is done, and what the undo menu calls the last of it."""
@@ -155,6 +166,11 @@ def state_of(project: Project) -> dict[str, object]:
             if (path := drive.folder / "ground_surface.tiles").is_file()
         },
         "images": [tuple(drive.noted_images or ImageList(())) for drive in project.drives],
+        "photos": {
+            one.id: photo.read_bytes()
+            for one in project.features.all()
+            if (photo := photo_of(one, project.folder)) is not None
+        },
         "volumes": [
             (one.id, VolumeStore(project.folder).read_result(one).volumes)
             for one in VolumeStore(project.folder).all()
@@ -354,3 +370,17 @@ def test_the_command_line_takes_an_import_back(project: Project) -> None:
     with closing(Project.open(folder)) as again:
         assert len(again.drives) == 1
         assert again.history.can_redo
+
+
+def test_the_picture_of_a_feature_is_a_file_of_its_project_and_nothing_else(
+    project: Project,
+) -> None:
+    _pictured(project)
+    (sign,) = (one for one in project.features.all() if one.id != SIGN.id)
+    path = photo_of(sign, project.folder)
+    assert path is not None
+    assert path.is_relative_to(project.folder)
+    assert photo_of(SIGN, project.folder) is None
+    for typed in ("P1010023.jpg", "results/photos/../../project.gpkg", 7):
+        written = replace(sign, attributes={"photo": typed})
+        assert photo_of(written, project.folder) is None

@@ -19,12 +19,14 @@ from widgets.panels.attributes.attribute_field import (
     ShownValue,
 )
 from widgets.panels.attributes.occluded_row import OccludedRow
+from widgets.panels.attributes.photo_row import PhotoRow
 from widgets.panels.attributes.shared_values import common_fields, common_value
 from widgets.panels.attributes.sign_numbers import SignNumberMenu, plate_picture
 from widgets.panels.feature_changes import kinds_for
 from widgets.panels.feature_words import STATUS_NAMES, name_of_kind, words_of_value
 from widgets.panels.geometry_facts import facts_of
 from widgets.shared.cursor import Cursor
+from widgets.shared.map_source import MapSource
 
 _MOST_KINDS_LISTED = 5
 _WIDEST_LABEL_PX = 96
@@ -37,7 +39,7 @@ class AttributeForm(QWidget):
     ----------
     features : tuple of Feature
         At least one.
-    catalogue : Catalogue
+    source : MapSource
     language : Language
     cursor : Cursor
         Moved to vertices without a measured point.
@@ -57,13 +59,14 @@ class AttributeForm(QWidget):
     def __init__(
         self,
         features: tuple[Feature, ...],
-        catalogue: Catalogue,
+        source: MapSource,
         language: Language,
         cursor: Cursor,
     ) -> None:
         super().__init__()
         self._features = features
-        self._catalogue = catalogue
+        self._source = source
+        self._catalogue = catalogue = source.catalogue()
         self._language = language
         self._fields = common_fields(features, catalogue)
         self._editors: dict[str, AttributeEditor] = {}
@@ -81,6 +84,8 @@ class AttributeForm(QWidget):
         self._status = self._add_status()
         self._fill_boxes()
         self._add_row(self.tr("Confidence"), self._confidence)
+        self._photo = PhotoRow(self)
+        self._form.addRow(self._photo)
         self._add_fields()
         if len(features) == 1:
             self._add_facts(features[0])
@@ -235,6 +240,8 @@ class AttributeForm(QWidget):
             facts = facts_of(features[0], self._language)
             for label, (_, words) in zip(self._fact_labels, facts, strict=True):
                 label.setText(words)
+        photo = self._source.photo(features[0]) if len(features) == 1 else None
+        self._form.setRowVisible(self._photo, self._photo.show_photo(photo))
         self._occluded.show_features(features)
         self._form.setRowVisible(self._occluded, self._occluded.count > 0)
 

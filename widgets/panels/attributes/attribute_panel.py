@@ -106,7 +106,7 @@ class AttributePanel(QWidget):
             field.setFocus()
 
     def _new_form(self, features: tuple[Feature, ...]) -> AttributeForm:
-        form = AttributeForm(features, self._source.catalogue(), self._language, self._cursor)
+        form = AttributeForm(features, self._source, self._language, self._cursor)
         form.attribute_edited.connect(self._on_form_attribute_edited)
         form.status_chosen.connect(self._on_form_status_chosen)
         form.kind_chosen.connect(self._on_form_kind_chosen)

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
+import numpy as np
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QAction
@@ -14,9 +17,11 @@ from processing.map.catalogue_file import read_catalogue
 from processing.map.change import Change
 from processing.map.feature import AttributeValue, Feature, Vertex
 from processing.map.sign_numbers import numbers_for, sign_numbers
+from processing.project.photos import photo_folder, photo_name, write_photos
 from resources import path_of
 from tests.widgets.builders import OpenMap
 from widgets.panels.attributes.attribute_panel import AttributePanel
+from widgets.panels.attributes.photo_row import PhotoRow
 from widgets.panels.attributes.sign_numbers import SignNumberMenu
 
 
@@ -108,3 +113,25 @@ def test_a_number_chosen_by_keys_is_written_with_its_class_in_one_step(qtbot: Qt
     assert written.attributes["sign_class"] == "regulation"
     assert field.text() == "330"
     assert len(steps) == 1
+
+
+def test_the_picture_of_a_sign_is_shown_and_goes_with_it(qtbot: QtBot, tmp_path: Path) -> None:
+    open_map = MapOfSigns(folder=tmp_path)
+    (tmp_path / photo_folder("r1")).mkdir(parents=True)
+    face = np.full((20, 40, 3), (215, 0, 15), np.uint8)
+    write_photos({photo_name("r1", 1): face}, tmp_path / photo_folder("r1"))
+    panel = AttributePanel(open_map, open_map.shared, "en")
+    qtbot.addWidget(panel)
+    panel.show()
+    stop, other = sign("a", photo=photo_name("r1", 1)), sign("b", photo="DSC_0815")
+    open_map.apply(Text.same("draw"), Change(added=(stop, other)))
+    choose = open_map.shared.selection.choose_features
+    choose(frozenset({"a"}))
+    row = panel.findChild(PhotoRow)
+    assert isinstance(row, PhotoRow)
+    assert row.isVisible()
+    shown = row.pixmap().toImage()
+    assert shown.width() == 2 * shown.height() == 160
+    assert shown.pixelColor(80, 40).name() == "#d7000f"
+    choose(frozenset({"b"}))
+    assert not row.isVisible()
