@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -144,14 +145,14 @@ def recording() -> DrivenRecording:
     return DrivenRecording(way, facing_along(way), street(), head=HEAD_45, pulses=3_000)
 
 
-def shine(cloud: Path) -> None:
+def shine(cloud: Path, plates: Sequence[KnownPlate] = PLATES) -> None:
     """Give points on the faces of plates, seen from before, the intensity of beads."""
     points = laspy.read(cloud)
     xyz = np.asarray(points.xyz) - ORIGIN
     random = np.random.default_rng(5)
     intensity = random.integers(*DIFFUSE, len(xyz))
     scanner_x = (np.asarray(points.gps_time) - START_S) * SPEED_M_S
-    for one in PLATES:
+    for one in plates:
         right, up, look = axes_of(one.hung)
         about = xyz - np.array(one.middle)
         half = max(one.plate.size_m, one.plate.high_m) * 0.75

@@ -25,20 +25,16 @@ _CLASS_RATIO = 1.5
 """Between ranges of neighbouring classes."""
 
 _FEWEST_POINTS = 200
-"""Of a range class that has a say in how brightness falls with the range."""
-
-_LEAST_POINTS = 1_500
-"""Of a range class that tells its own middle; others take what the law of the head says: a few
-hundred points that follow each other may be of one thing."""
+"""Of a range class that has a say in what is bright; others take what the law of the head says."""
 
 _POWERS = np.arange(0.0, 2.01, 0.1)
 """Of the range by which diffuse things grow darker: 0 where a maker has taken that out, 2 where
 nothing was done; scales that are a root or a logarithm of the strength lie between."""
 
 _OTHER = 1.5
-"""By how much what stands at one range is brighter than the law says. Where signs are most of what
-was met at a range, it looks brighter still; where it looks darker, panes and tyres are most of it
-and what else stands there is as bright as elsewhere."""
+"""By how much what stands at one range is brighter than the law says: leaves, where nearer things
+are darker. Where signs are most of what was met at a range, it looks brighter still; where it looks
+darker, panes and tyres are most of it and what else stands there is as bright as elsewhere."""
 
 _SPREADS = 4.5
 """How many standard deviations of all intensities lies above their middle what nothing diffuse
@@ -81,9 +77,7 @@ def _middles(intensity: NDArray[np.uint16], classes: NDArray[np.int64]) -> Float
     own = np.array([float(np.median(intensity[classes == number])) for number in known])
     own = np.maximum(own, 1.0)
     middles = _falling(known, own, counts[known].astype(np.float64))
-    for number, middle in zip(known.tolist(), own.tolist(), strict=True):
-        if counts[number] >= _LEAST_POINTS:
-            middles[number] = min(max(middle, middles[number]), middles[number] * _OTHER)
+    middles[known] = np.clip(own, middles[known], _OTHER * middles[known])
     return middles
 
 
