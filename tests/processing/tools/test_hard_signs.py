@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from processing.laboratory.simulate.roadside.sign_plates import PlateShape
 from processing.laboratory.simulate.scene.mesh import TriangleShape, box
 from processing.recording.drive import Drive
 from processing.tools.tool import Candidate
@@ -27,7 +28,7 @@ from tests.processing.tools.test_signs import KnownPlate, known, post, shine
 LENGTH_M = 34.0
 Y = 5.5
 LEAFY = known("circle", 0.6, (8.0, Y, 2.5))
-SHAPES = ("triangle", "diamond", "pentagon")
+SHAPES: tuple[PlateShape, ...] = ("triangle", "diamond", "pentagon")
 SIZES = (0.8, 0.6, 0.6)
 FRONTS = tuple(
     known(shape, size, (12.0 + 4 * number, Y, 2.6))
