@@ -39,7 +39,7 @@ _FEWEST = 6
 _HELD_SHARE = 0.3
 """Of the cells about, empty and thin, of which a true surface holds this share at least."""
 
-_ABOUT_M = 1.0
+ABOUT_M = 1.0
 """To each side of a cell, within which others of its ground lie. On fourteen development sites
 (seeds 2401 to 2414) whole cut and fill were off by 1.7 and 4.3 % of what was moved, root mean
 square; with 1.4 m and twelve others by 2.3 and 4.9 %; with 0.6 m and three on eleven of them by 2.1
@@ -54,7 +54,7 @@ _LONELY_SHARE = 0.02
 others are no sign of a stray. By the same sites mixed pixels and ghosts that pass for ground are
 fewer than one cell in a hundred."""
 
-_LEVEL_M, _STEEP = 0.1, 0.75
+LEVEL_M, STEEP = 0.1, 0.75
 """How far another may lie above or below to be of the same ground: the scatter of rough ground, and
 37° between, the angle of repose of spoil, the steepest ground that isn't walled or cut."""
 
@@ -217,7 +217,7 @@ def _lonely_strays(counts: NDArray[np.int32], sums: Floats, size_m: float) -> ND
     """
     known = counts > 0
     others = np.full(counts.shape, _MOST_ABOUT, np.int8)
-    reach = max(1, round(_ABOUT_M / size_m))
+    reach = max(1, round(ABOUT_M / size_m))
     _others_kernel(_mean_heights(known, counts, sums), reach, size_m, others)
     fewest = np.cumsum(np.bincount(others[known], minlength=_MOST_ABOUT + 1))
     needed = int(np.searchsorted(fewest, _LONELY_SHARE * fewest[-1], side="right"))
@@ -303,7 +303,7 @@ def _others_kernel(heights: Floats, reach: int, size_m: float, others: NDArray[n
                 for beside in range(max(0, column - reach), min(columns, column + reach + 1)):
                     # NaN fails both tests; the second is asked where ground isn't level.
                     apart_m = abs(heights[at, beside] - heights[row, column])
-                    if apart_m <= _LEVEL_M or apart_m <= _LEVEL_M + _STEEP * size_m * np.hypot(
+                    if apart_m <= LEVEL_M or apart_m <= LEVEL_M + STEEP * size_m * np.hypot(
                         at - row, beside - column
                     ):
                         count += 1

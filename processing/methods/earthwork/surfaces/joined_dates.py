@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.core.monitor import Monitor
+from processing.methods.earthwork.surfaces.filling import FARTHEST_M
 from processing.methods.earthwork.surfaces.hidden_change import expected_change
 from processing.methods.earthwork.surfaces.surfaces import (
     SideHeights,
@@ -108,6 +109,30 @@ def join_dates(
         for date, heights, deviations in zip(dates, own.T, spread.T, strict=True)
     )
     return JoinedDates(grounds, change_spread.reshape(is_wanted.shape))
+
+
+def reached_ground(date: SideHeights, is_shown: Mask, size_m: float) -> Mask:
+    """Where a date has ground, or another measured it no farther from that than holes reach.
+
+    Parameters
+    ----------
+    is_shown : (rows, columns) bool
+        As :func:`shown_by_others` says.
+    """
+    from scipy.ndimage import distance_transform_edt
+
+    has_ground: Mask = np.isfinite(date.heights)
+    if has_ground.all() or not has_ground.any():
+        return has_ground
+    is_near = np.asarray(distance_transform_edt(~has_ground)) * size_m <= FARTHEST_M
+    reached: Mask = has_ground | (is_shown & is_near)
+    return reached
+
+
+def shown_by_others(dates: Sequence[SideHeights], number: int) -> Mask:
+    """Where any date but one measured the ground: (rows, columns) bool."""
+    found: Mask = np.any([one.is_measured for at, one in enumerate(dates) if at != number], axis=0)
+    return found
 
 
 def _with_values(values: Floats, cells: NDArray[np.int64], told: Floats) -> Floats:

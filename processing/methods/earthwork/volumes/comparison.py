@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 import shapely
@@ -15,8 +15,17 @@ from processing.methods.earthwork.geometry.boundary import inside_shares
 from processing.methods.earthwork.geometry.volume_scope import EVERYWHERE, VolumeScope
 from processing.methods.earthwork.maps.change_grid import ChangeGrid
 from processing.methods.earthwork.surfaces.ground_cells import GroundCells, grid_over, ground_cells
-from processing.methods.earthwork.surfaces.joined_dates import JoinedDates, join_dates
+from processing.methods.earthwork.surfaces.joined_dates import (
+    JoinedDates,
+    join_dates,
+    reached_ground,
+    shown_by_others,
+)
 from processing.methods.earthwork.surfaces.sides import EpochGround, Side
+from processing.methods.earthwork.surfaces.stray_islands import (
+    contradicted,
+    loose_islands,
+)
 from processing.methods.earthwork.surfaces.surfaces import (
     EpochContext,
     SideHeights,
@@ -130,20 +139,58 @@ def _filled(
 ) -> JoinedDates:
     """The epochs that are compared, each filled in by all that were measured."""
     every = [*epochs, *others]
+    if not every:
+        # A design against another, or a level: nothing was measured that could be unsure.
+        return JoinedDates((), np.zeros((grid.rows, grid.columns)))
+    if len(every) < 2:
+        grounds = _each_filled(every, inside, monitor)
+        return JoinedDates(tuple(grounds), grounds[0].spread)
+    every = _without_strays(every, inside, monitor)
+    grounds = _each_filled(every, inside, monitor)
+    wanted = inside > 0
+    for number, ground in enumerate(grounds[: len(epochs)]):
+        wanted &= reached_ground(ground, shown_by_others(grounds, number), grid.size_m)
+    counted = [one.cells.heights for one in every]
+    return join_dates(grounds, counted, wanted, grid.size_m, monitor)
+
+
+def _each_filled(
+    every: list[_Epoch], inside: NDArray[np.float32], monitor: Monitor
+) -> list[SideHeights]:
+    """Each date filled in from its own surroundings."""
     counted = [one.cells.heights for one in every]
     grounds = []
     for number, one in enumerate(every):
         context = EpochContext(one.shift_m, (*counted[:number], *counted[number + 1 :]))
         grounds.append(measured_surface(one.ground, one.cells, inside > 0, monitor, context))
-    if not every:
-        # A design against another, or a level: nothing was measured that could be unsure.
-        return JoinedDates((), np.zeros((grid.rows, grid.columns)))
-    if len(every) < 2:
-        return JoinedDates(tuple(grounds), grounds[0].spread)
-    wanted = inside > 0
-    for ground in grounds[: len(epochs)]:
-        wanted &= np.isfinite(ground.heights)
-    return join_dates(grounds, counted, wanted, grid.size_m, monitor)
+    return grounds
+
+
+def _without_strays(
+    every: list[_Epoch], inside: NDArray[np.float32], monitor: Monitor
+) -> list[_Epoch]:
+    """The dates without islands of points that are no ground, as the other dates tell."""
+    size_m = every[0].cells.grid.size_m
+    islands = [loose_islands(one.cells.heights, size_m) for one in every]
+    if not any(one.any() for one in islands):
+        return every
+    firm = [_without(one, labels > 0) for one, labels in zip(every, islands, strict=True)]
+    counted = [one.cells.heights for one in firm]
+    grounds = _each_filled(firm, inside, monitor)
+    expected = join_dates(grounds, counted, inside > 0, size_m, monitor).grounds
+    return [
+        _without(one, contradicted(one.cells.heights, labels, expected, number, size_m))
+        for number, (one, labels) in enumerate(zip(every, islands, strict=True))
+    ]
+
+
+def _without(epoch: _Epoch, dropped: Mask) -> _Epoch:
+    """An epoch without the points of some cells."""
+    if not dropped.any():
+        return epoch
+    counts = np.where(dropped, 0, epoch.cells.counts).astype(np.int32)
+    heights = np.where(dropped, np.nan, epoch.cells.heights)
+    return replace(epoch, cells=replace(epoch.cells, counts=counts, heights=heights))
 
 
 @dataclass(frozen=True)

@@ -165,7 +165,7 @@ def test_hidden_ground_takes_the_shape_of_the_other_date_and_no_change_is_invent
     assert result.volumes.uncertainty_m3 < 2.5
 
 
-def test_ground_beyond_the_last_points_is_left_out_and_named() -> None:
+def test_ground_far_beyond_the_last_points_is_left_out_and_named() -> None:
     def shown(x: Floats, _: Floats) -> NDArray[np.bool_]:
         return x < 24.0
 
@@ -174,10 +174,40 @@ def test_ground_beyond_the_last_points_is_left_out_and_named() -> None:
     after = scan_of(lambda x, y: rolling(x, y) + 0.5, keep=shown, seed=4, **wide)  # type: ignore[arg-type]
     result = volume(before, after, boundary=box(2, 2, 38, 18))
 
-    assert result.volumes.left_out_area_m2 == pytest.approx(14 * 16, rel=0.03)
-    assert result.volumes.unmeasured_area_m2 >= result.volumes.left_out_area_m2
-    assert result.volumes.fill_m3 == pytest.approx(0.5 * 22 * 16, rel=0.03)
+    # As far as holes reach, 10 m, it takes the shape that the other date shows.
+    assert result.volumes.left_out_area_m2 == pytest.approx(4 * 16, rel=0.1)
+    assert result.volumes.unmeasured_area_m2 == pytest.approx(14 * 16, rel=0.03)
+    assert result.volumes.measured_fill_m3 == pytest.approx(0.5 * 22 * 16, rel=0.03)
+    assert result.volumes.fill_m3 == pytest.approx(0.5 * 32 * 16, rel=0.15)
+    assert abs(result.volumes.fill_m3 - 0.5 * 32 * 16) < result.volumes.uncertainty_m3
     assert any("left out and count nothing" in note.en for note in result.notes)
+
+
+def test_a_roof_over_hidden_ground_is_no_fill() -> None:
+    def hidden(x: Floats, y: Floats) -> NDArray[np.bool_]:
+        return np.hypot(x - 10, y - 10) < 6.0
+
+    def roof(x: Floats, y: Floats) -> NDArray[np.bool_]:
+        return (np.abs(x - 10) < 1.2) & (np.abs(y - 10) < 2.0)
+
+    def hut(x: Floats, y: Floats) -> Floats:
+        return np.where(roof(x, y), 3.5, rolling(x, y))
+
+    after = scan_of(hut, keep=lambda x, y: ~hidden(x, y) | roof(x, y), seed=7)
+    result = volume(scan_of(rolling), after, boundary=box(2, 2, 18, 18))
+
+    assert result.volumes.fill_m3 + result.volumes.cut_m3 < 0.5
+    assert result.volumes.unmeasured_area_m2 == pytest.approx(np.pi * 6.0**2, rel=0.1)
+
+
+def test_a_pit_with_upright_walls_is_cut() -> None:
+    def floor(x: Floats, y: Floats) -> NDArray[np.bool_]:
+        return (np.abs(x - 10) < 2.0) & (np.abs(y - 10) < 3.0)
+
+    after = scan_of(lambda x, y: np.where(floor(x, y), -2.5, flat(x, y)), seed=8)
+    result = volume(scan_of(flat), after, boundary=box(2, 2, 18, 18))
+
+    assert result.volumes.cut_m3 == pytest.approx(2.5 * 4 * 6, rel=0.05)
 
 
 def test_a_third_date_fills_what_both_compared_ones_hid() -> None:
