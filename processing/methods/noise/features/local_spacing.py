@@ -10,6 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.kernels import kernel
 from processing.methods.noise.neighbours.morton import NestedCells
 
 _REGION_LEVELS = 5
@@ -46,31 +47,43 @@ def local_spacings(cells: NestedCells) -> NDArray[np.float64]:
     count = cells.codes.size
     if count < 2:
         return np.full(count, cells.cell_m)
-    whole = _level_of_two(cells.codes, np.zeros(count, np.int64), 1)[0]
-    base = min(round(float(whole)) + _REGION_LEVELS, _TOP)
-    found = np.full(count, whole)
+    numbers = np.empty(count, np.int32)
+    whole, _ = _begun_cubes(cells.codes, _TOP, 1, numbers)
+    usual = float(_level_of_two(whole)[0])
+    base = min(round(usual) + _REGION_LEVELS, _TOP)
+    regions = int(whole[0, 1 + base :].sum())
+    begun, opened = _begun_cubes(cells.codes, base, regions, numbers)
+    found = np.full(regions, usual)
     for level in range(min(base + _WIDENINGS, _TOP), base - 1, -1):
-        regions = cells.codes >> (3 * level)
-        numbers = np.cumsum(np.r_[False, regions[1:] != regions[:-1]])
-        sizes = np.bincount(numbers)
-        levels = _level_of_two(cells.codes, numbers, sizes.size)
-        is_known = (sizes >= _FEWEST) & np.isfinite(levels)
-        found = np.where(is_known[numbers], levels[numbers], found)
-    spacings: NDArray[np.float64] = cells.cell_m * 2.0**found
+        firsts = np.flatnonzero(opened >= level)
+        together = np.add.reduceat(begun, firsts, axis=0)
+        levels = _level_of_two(together)
+        levels[together.sum(axis=1) < _FEWEST] = np.nan
+        levels = np.repeat(levels, np.diff(np.r_[firsts, regions]))
+        found = np.where(np.isfinite(levels), levels, found)
+    spacings: NDArray[np.float64] = (cells.cell_m * 2.0**found)[numbers]
     return spacings
 
 
-def _level_of_two(
-    codes: NDArray[np.int64], numbers: NDArray[np.int64], regions: int
-) -> NDArray[np.float64]:
-    """(regions,) level, with fractions, at which an occupied cube holds two points on average."""
-    sizes = np.bincount(numbers, minlength=regions).astype(np.float64)
-    found = np.full(regions, np.nan)
-    before = np.ones(regions)
+def _begun_cubes(
+    codes: NDArray[np.int64], base: int, regions: int, numbers: NDArray[np.int32]
+) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """What :func:`begun_kernel` finds; every point's region goes to ``numbers`` (n,)."""
+    begun, opened = np.zeros((regions, _TOP + 2)), np.zeros(regions, np.int64)
+    begun_kernel(codes, base, begun, opened, numbers)
+    return begun, opened
+
+
+def _level_of_two(begun: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(regions,) level, with fractions, at which an occupied cube holds two points on average.
+
+    ``begun`` (regions, levels + 2) as from :func:`begun_kernel`.
+    """
+    sizes = begun.sum(axis=1)
+    found = np.full(sizes.size, np.nan)
+    before = np.ones(sizes.size)
     for level in range(_TOP):
-        part = codes >> (3 * level)
-        is_first = np.r_[True, part[1:] != part[:-1]]
-        cubes = np.bincount(numbers[is_first], minlength=regions)
+        cubes = begun[:, 1 + level :].sum(axis=1)
         per_cube = sizes / np.maximum(cubes, 1)
         is_new = np.isnan(found) & (per_cube >= _PER_CELL)
         growth = np.log2(np.maximum(per_cube / before, _LEAST_GROWTH))
@@ -80,3 +93,40 @@ def _level_of_two(
             break
         before = per_cube
     return found
+
+
+@kernel
+def begun_kernel(
+    codes: NDArray[np.int64],
+    base: int,
+    begun: NDArray[np.float64],
+    opened: NDArray[np.int64],
+    numbers: NDArray[np.int32],
+) -> None:
+    """Count, by region, the points along the curve with which cubes begin.
+
+    ``begun`` (regions, levels + 2): points that share every cube with the one before, then those
+    that begin a cube of level 0 and none above, and so on; the very first begins one of all
+    levels. ``opened`` (regions,): the highest level begun by a region's first point; a region is a
+    cube of level ``base``. ``numbers`` (n,): the region of each point.
+    """
+    top = begun.shape[1] - 2
+    region, before = -1, 0
+    for position in range(codes.size):
+        differing, level = codes[position] ^ before, -1
+        while differing > 0:
+            differing >>= 3
+            level += 1
+        if position == 0:
+            level = top
+        before = codes[position]
+        if level >= base:
+            region += 1
+            opened[region] = level
+        begun[region, 1 + level] += 1
+        numbers[position] = region
+
+
+def warm_up() -> None:
+    """Compile the kernel."""
+    _begun_cubes(np.array([0, 8], np.int64), 1, 2, np.empty(2, np.int32))
