@@ -16,13 +16,10 @@ from processing.laboratory.noise_training.scenes import TrainingScene
 from processing.laboratory.noise_training.streets import FAR, GRASS, POST, RAIL, TREE, WIRE
 from processing.methods.noise.beams.beam_origins import beam_origins
 from processing.methods.noise.beams.beams_of_drives import beams_of
-from processing.methods.noise.features.features import (
-    BeamSearch,
-    Candidates,
-    candidates_in_space,
-    search_with_beams,
-)
+from processing.methods.noise.combined import OPEN_IN_SPACE
+from processing.methods.noise.features.features import BeamSearch, Candidates, search_with_beams
 from processing.methods.noise.features.second_pass import OPEN_ODDS
+from processing.methods.noise.features.space_search import SpaceSearch, search_in_space
 from processing.methods.noise.trees import Trees, log_odds
 from processing.recording.drive import Drive
 
@@ -38,6 +35,7 @@ _FEWEST_POINTS = 100
 _THIN = (WIRE, POST, RAIL, GRASS, TREE, FAR)
 _EASILY_LOST = (WIRE, TREE)
 _LOST_WEIGHT, _THIN_WEIGHT, _TRUE_WEIGHT = 4.0, 2.2, 0.9
+_REST_WEIGHT, _MOST_WEIGHT = 0.5, 5.0
 _UNKNOWN_LIGHT_SHARE, _SHIFTED_LIGHT_SHARE = 0.4, 0.4
 
 
@@ -79,12 +77,13 @@ class LabelledCloud:
     Attributes
     ----------
     noise, kinds : (n,) int64
-        Of every point: kind of noise, 0 none; what was met, −1 for noise.
+        Of every point, as the search counts them: kind of noise, 0 none; what was met, −1 for
+        noise.
     search : BeamSearch or None
         Where its beams are known.
     intensity : (n,) uint16
-    candidates : Candidates or None
-        In space.
+    space : SpaceSearch or None
+        Where only places are known.
     seed : int
         Chance is drawn from it, so that every pass sees the same.
     """
@@ -94,15 +93,15 @@ class LabelledCloud:
     seed: int
     search: BeamSearch | None = None
     intensity: NDArray[np.uint16] | None = None
-    candidates: Candidates | None = None
+    space: SpaceSearch | None = None
 
     def alone(self) -> tuple[Examples, Examples]:
         """Examples of points by themselves: what the first look sees of each, and everything.
 
         The first has no columns in space.
         """
-        if self.candidates is not None:
-            rows, points = self.candidates.features, self.candidates.points
+        if self.space is not None:
+            rows, points = self._candidates(None).features, self.space.points
             cheap = np.zeros((points.size, 0), np.float32)
         else:
             search = self._search()
@@ -118,9 +117,33 @@ class LabelledCloud:
         rows = candidates.seen_again(odds, is_open, monitor)
         return self._some(rows, candidates.points[is_open])
 
+    def said(self, own: Trees, again: Trees) -> Examples:
+        """Examples in space for a first look: what others, that see everything, call noise.
+
+        All that is called noise, as far as there is no more of it than else in a scene, and some
+        of the rest, which counts half, or more where there was much to choose from.
+        """
+        if self.space is None:
+            raise ValueError("beams are known of this cloud")
+        candidates, monitor = self._candidates(None), SilentMonitor()
+        odds = log_odds(own, candidates.features, monitor)
+        is_open = np.flatnonzero(odds > OPEN_IN_SPACE)
+        rows = candidates.seen_again(odds, is_open, monitor)
+        is_said = np.zeros(odds.size, np.bool_)
+        is_said[is_open] = log_odds(again, rows, monitor) > 0
+        often = np.array(
+            [_POINTS_PER_SCENE / max(1, int(one.sum())) for one in (~is_said, is_said)]
+        )
+        chosen = np.random.default_rng(self.seed + 1).random(odds.size) < often[is_said.astype(int)]
+        of_rest = float(np.clip(1 / often[0], 1.0, _MOST_WEIGHT)) * _REST_WEIGHT
+        cheap = self.space.cheap_features(monitor)[chosen]
+        return Examples(cheap, is_said[chosen], np.where(is_said[chosen], 1.0, of_rest))
+
     def _candidates(self, first: Trees | None) -> Candidates:
-        if self.candidates is not None:
-            return self.candidates
+        if self.space is not None:
+            cheap = self.space.cheap_features(SilentMonitor())
+            everything = np.ones(self.space.points.size, np.bool_)
+            return self.space.candidates(cheap, everything, SilentMonitor())
         if first is None:
             raise ValueError("beams need the trees of the first look")
         cheap = self._search().cheap_features(SilentMonitor())
@@ -171,8 +194,8 @@ def case_with_beams(scene: TrainingScene, turn: float, seed: int) -> LabelledClo
 def case_in_space(scene: TrainingScene, seed: int) -> LabelledCloud:
     """A scene of which only places are known."""
     xyz = scene.xyz - scene.xyz.mean(axis=0)
-    candidates = candidates_in_space(xyz, SilentMonitor())
-    return LabelledCloud(scene.noise, scene.kinds, seed, candidates=candidates)
+    space = search_in_space(xyz, SilentMonitor())
+    return LabelledCloud(scene.noise[space.order], scene.kinds[space.order], seed, space=space)
 
 
 def sample_with_beams(drive: Drive, seed: int) -> Iterator[LabelledCloud]:
@@ -199,8 +222,8 @@ def sample_in_space(drive: Drive, seed: int) -> Iterator[LabelledCloud]:
     random = np.random.default_rng(seed)
     for number, cloud in enumerate(_as_delivered_elsewhere(xyz - xyz.mean(axis=0), random)):
         noise = np.zeros(cloud.shape[0], np.int64)
-        candidates = candidates_in_space(np.ascontiguousarray(cloud), SilentMonitor())
-        yield LabelledCloud(noise, noise + TREE, seed + number, candidates=candidates)
+        space = search_in_space(np.ascontiguousarray(cloud), SilentMonitor())
+        yield LabelledCloud(noise, noise + TREE, seed + number, space=space)
 
 
 def _as_delivered_elsewhere(

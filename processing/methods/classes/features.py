@@ -142,7 +142,7 @@ def class_cells(
     positions = np.empty(cells.codes.size, np.int32)
     used = number_kernel(cells.codes, positions)
     sums, codes = np.zeros((used, SUMS)), np.empty(used, np.int64)
-    point_sums_kernel(cells.local_xyz, np.zeros(positions.size, np.bool_), positions, sums)
+    point_sums_kernel(cells.local_xyz, positions, sums)
     codes[positions] = cells.codes
     even_kernel(sums)
     levels, numbers = levels_above(level_of(codes, sums, cells.cell_m), _LEVELS)

@@ -2,8 +2,9 @@
 
 1. Points from which a surface goes on to all sides, and that hang together with most of the
    recording, are kept at once.
-2. Where beams are known, a few trees look at what costs little: what the beams beside a point met,
-   what it hangs together with, its height. They keep what next to nothing speaks against.
+2. A few trees look at what costs little: what the beams beside a point met or, where none are
+   known, how the nearest points lie, what it hangs together with, its height. They keep what next
+   to nothing speaks against.
 3. Every other point is described by numbers relative to the spacing that the scanner should have
    there (:mod:`processing.methods.noise.features.features`), and more trees weigh them.
 4. What they say of the points around is asked together with the numbers once more
@@ -26,12 +27,9 @@ from numpy.typing import NDArray
 from processing.core.monitor import Monitor, SilentMonitor
 from processing.methods.noise.beams.beam_kernels import PointBeams
 from processing.methods.noise.beams.lone_points import lone_points
-from processing.methods.noise.features.features import (
-    Candidates,
-    candidates_in_space,
-    search_with_beams,
-)
+from processing.methods.noise.features.features import Candidates, search_with_beams
 from processing.methods.noise.features.second_pass import OPEN_ODDS
+from processing.methods.noise.features.space_search import search_in_space
 from processing.methods.noise.neighbours.far_points import heights_of_far, is_far
 from processing.methods.noise.noise_codes import HIGH_NOISE, codes_by_height
 from processing.methods.noise.tree_files import read_trees
@@ -39,11 +37,11 @@ from processing.methods.noise.trees import Trees, log_odds
 from resources import path_of
 
 MODELS = "models/noise"
-FIRST_LOOK = "first_look.onnx"
+FIRST_LOOK, FIRST_LOOK_IN_SPACE = "first_look.onnx", "first_look_in_space.onnx"
 WITH_BEAMS = "with_beams.onnx", "with_beams_again.onnx"
 IN_SPACE = "in_space.onnx", "in_space_again.onnx"
 
-_OPEN_IN_SPACE = -1.0
+OPEN_IN_SPACE = -1.0
 """Log-odds (27 % likely) from which the second look is asked where no beams are known: it may
 confirm what the first held possible, and not find noise where it saw none, since it learned from
 more, and grass and clods lie side by side, too. By trial."""
@@ -130,8 +128,12 @@ def noise_codes_in_space(
         finite = others
     if finite.size < _FEWEST_IN_SPACE or not np.ptp(xyz[finite], axis=0).any():
         return codes
-    candidates = candidates_in_space(xyz[finite], monitor)
-    codes[finite] = _codes(candidates, IN_SPACE, strictness, monitor, open_odds=_OPEN_IN_SPACE)
+    search = search_in_space(xyz[finite], monitor)
+    cheap = search.cheap_features(monitor)
+    is_doubtful = log_odds(_trees(FIRST_LOOK_IN_SPACE), cheap, monitor) > 0
+    candidates = search.candidates(cheap, is_doubtful, monitor)
+    found = _codes(candidates, IN_SPACE, strictness, monitor, OPEN_IN_SPACE)
+    codes[finite[search.order]] = found
     return codes
 
 
@@ -140,7 +142,6 @@ def _codes(
     models: tuple[str, str],
     strictness: float,
     monitor: Monitor,
-    *,
     open_odds: float = OPEN_ODDS,
 ) -> NDArray[np.uint8]:
     """(n,) codes of all points that the candidates were taken from."""

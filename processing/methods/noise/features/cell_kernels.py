@@ -78,15 +78,12 @@ def slots_kernel(codes: _Integers, slots: NDArray[np.int32]) -> None:
 
 
 @kernel
-def point_sums_kernel(
-    xyz: _Floats, is_sure: NDArray[np.bool_], group: NDArray[np.int32], sums: _Floats
-) -> None:
-    """Add every point to the sums of its cell."""
+def point_sums_kernel(xyz: _Floats, group: NDArray[np.int32], sums: _Floats) -> None:
+    """Add every point to the sums of its cell; none is sure as yet."""
     for point in range(xyz.shape[0]):
         row = sums[group[point]]
         x, y, z = xyz[point, 0], xyz[point, 1], xyz[point, 2]
         row[COUNT] += 1
-        row[SURE] += is_sure[point]
         row[SUM_X] += x
         row[SUM_Y] += y
         row[SUM_Z] += z
@@ -104,6 +101,35 @@ def cell_sums_kernel(below: _Floats, group: NDArray[np.int32], sums: _Floats) ->
     for cell in range(group.size):
         for m in range(SUMS):
             sums[group[cell], m] += below[cell, m]
+
+
+@kernel
+def sure_points_kernel(is_sure: NDArray[np.bool_], group: NDArray[np.int32], sums: _Floats) -> None:
+    """Count the sure points of every cell."""
+    for point in range(group.size):
+        sums[group[point], SURE] += is_sure[point]
+
+
+@kernel
+def sure_cells_kernel(below: _Floats, group: NDArray[np.int32], sums: _Floats) -> None:
+    """Count those of every cell that holds cells."""
+    for cell in range(group.size):
+        sums[group[cell], SURE] += below[cell, SURE]
+
+
+@kernel
+def held_kernel(
+    numbers: tuple[NDArray[np.int32], ...],
+    levels: NDArray[np.int8],
+    positions: _Integers,
+    found: NDArray[np.int32],
+) -> None:
+    """The cell that holds each of some positions along the curve, each at a level of its own."""
+    for i in range(positions.size):
+        cell = numbers[0][positions[i]]
+        for above in range(1, levels[i] + 1):
+            cell = numbers[above][cell]
+        found[i] = cell
 
 
 @kernel
@@ -379,8 +405,10 @@ def warm_up() -> None:
     slots_kernel(codes, slots)
     sums, numbers = np.zeros((2, SUMS)), np.zeros(2, np.int32)
     number_kernel(codes, numbers)
-    point_sums_kernel(np.zeros((2, 3)), np.ones(2, np.bool_), numbers, sums)
+    point_sums_kernel(np.zeros((2, 3)), numbers, sums)
     cell_sums_kernel(sums, numbers, np.zeros((2, SUMS)))
+    sure_points_kernel(np.ones(2, np.bool_), numbers, sums)
+    sure_cells_kernel(sums, numbers, np.zeros((2, SUMS)))
     level = CellLevel(codes, sums, 1.0, slots)
     around, found = np.zeros((2, AROUND)), np.empty((2, 8), np.float32)
     around_kernel(level, codes, around)

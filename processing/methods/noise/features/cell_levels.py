@@ -7,6 +7,8 @@ apart into line, plane and scatter.
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -17,6 +19,8 @@ from processing.methods.noise.features.cell_kernels import (
     number_kernel,
     point_sums_kernel,
     slots_kernel,
+    sure_cells_kernel,
+    sure_points_kernel,
 )
 from processing.methods.noise.neighbours.morton import NestedCells
 
@@ -30,15 +34,8 @@ _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
 
 
-def cell_levels(
-    cells: NestedCells, is_sure: NDArray[np.bool_], count: int
-) -> tuple[list[CellLevel], list[NDArray[np.int32]]]:
-    """Levels 0 … count − 1 of points in nested cells.
-
-    Parameters
-    ----------
-    is_sure : (n,) bool
-        In the cells' order.
+def cell_levels(cells: NestedCells, count: int) -> tuple[list[CellLevel], list[NDArray[np.int32]]]:
+    """Levels 0 … count − 1 of points in nested cells, none of them sure.
 
     Returns
     -------
@@ -50,10 +47,25 @@ def cell_levels(
     codes, positions = cells.codes, np.empty(cells.codes.size, np.int32)
     used = number_kernel(codes, positions)
     sums, kept = np.zeros((used, SUMS)), np.empty(used, np.int64)
-    point_sums_kernel(cells.local_xyz, is_sure, positions, sums)
+    point_sums_kernel(cells.local_xyz, positions, sums)
     kept[positions] = codes
     levels, parents = levels_above(level_of(kept, sums, cells.cell_m), count)
     return levels, [positions, *parents]
+
+
+def count_sure(
+    levels: list[CellLevel], numbers: list[NDArray[np.int32]], is_sure: NDArray[np.bool_]
+) -> None:
+    """Enter into the sums of all levels, as from :func:`cell_levels`, which points are sure.
+
+    Parameters
+    ----------
+    is_sure : (n,) bool
+        In the cells' order.
+    """
+    sure_points_kernel(is_sure, numbers[0], levels[0].sums)
+    for (below, above), group in zip(pairwise(levels), numbers[1:], strict=True):
+        sure_cells_kernel(below.sums, group, above.sums)
 
 
 def levels_above(finest: CellLevel, count: int) -> tuple[list[CellLevel], list[NDArray[np.int32]]]:

@@ -9,8 +9,10 @@ from numpy.typing import NDArray
 
 from processing.methods.noise.features.cell_kernels import (
     COUNT,
+    SUMS,
     SURE,
     CellLevel,
+    cell_sums_kernel,
     join_kernel,
     largest_kernel,
     spread_kernel,
@@ -31,7 +33,7 @@ class Parts:
 
     Attributes
     ----------
-    numbers : (c,) int64
+    numbers : (c,) int32
         Each cube's part.
     sizes : (p,) float64
         Points of each part.
@@ -40,7 +42,7 @@ class Parts:
         how much it is a line and a plane, 0 to 1.
     """
 
-    numbers: NDArray[np.int64]
+    numbers: NDArray[np.int32]
     sizes: NDArray[np.float64]
     features: NDArray[np.float32]
 
@@ -71,12 +73,12 @@ def parts_of(level: CellLevel, joins: NDArray[np.bool_] | None = None) -> Parts:
     """
     parents = np.arange(level.codes.size)
     join_kernel(level, np.ones(parents.size, np.bool_) if joins is None else joins, parents)
-    roots, numbers = np.unique(parents, return_inverse=True)
-    sums = np.column_stack(
-        [np.bincount(numbers, weights=one, minlength=roots.size) for one in level.sums.T]
-    )
-    spreads = np.empty((roots.size, 3))
-    spread_kernel(np.ascontiguousarray(sums), spreads)
+    is_root = parents == np.arange(parents.size)  # a part's first cube gives it its number
+    numbers = (np.cumsum(is_root, dtype=np.int32) - 1)[parents]
+    sums = np.zeros((int(is_root.sum()), SUMS))
+    cell_sums_kernel(level.sums, numbers, sums)
+    spreads = np.empty((sums.shape[0], 3))
+    spread_kernel(sums, spreads)
     length = np.maximum(spreads[:, 0], _LEAST_LENGTH_M)
     features = np.column_stack(
         [
@@ -87,4 +89,4 @@ def parts_of(level: CellLevel, joins: NDArray[np.bool_] | None = None) -> Parts:
             (spreads[:, 1] - spreads[:, 2]) / length,
         ]
     )
-    return Parts(numbers, sums[:, COUNT].astype(np.float64), features.astype(np.float32))
+    return Parts(numbers, sums[:, COUNT], features.astype(np.float32))

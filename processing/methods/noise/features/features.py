@@ -29,47 +29,20 @@ from processing.methods.noise.beams.window_kernels import (
     near_beams_kernel,
     wide_beams_kernel,
 )
-from processing.methods.noise.features.local_spacing import local_spacings
 from processing.methods.noise.features.second_pass import FirstEstimate, suspicions_beside
-from processing.methods.noise.features.surroundings import PART_SIZES, CloudNeighbourhood
-from processing.methods.noise.neighbours.morton import nested_cells
+from processing.methods.noise.features.surroundings import CloudNeighbourhood
 from processing.methods.noise.neighbours.sharing import share_out
 
 _Floats = NDArray[np.float64]
 _Integers = NDArray[np.int64]
 
-_FINEST_M = 0.02
-"""Least spacing: closer points of several passes are as far apart as a scanner measures."""
-
 _ROWS_AT_ONCE = 64
 _POINTS_AT_ONCE = 4_096
 """Rows and points of a share of a core's work: small enough to share evenly."""
 
-_CURVE_CELLS = 2**20
-"""Cells along an axis that the numbers of nested cells hold (20 binary digits)."""
-
-_GROUND_BAND_M = 0.3
-"""Height about the ground within which points of a plane are kept where no beams are known."""
-
 _FLAT_BAND_M = 0.1
-"""The same for surfaces square to the beam: narrower, since arcs of noise stand square, too."""
-
-_PLANE_SCALE = 1
-"""Points of a plane are looked for in 27 cells of two spacings, each wide 2 ** scale spacings."""
-
-_PLANE_POINTS = 24
-"""In these cells, of some 36 that a full plane holds there (six by six spacings)."""
-
-_PLANE_SHARE = 0.4
-"""Planarity from which points lie in a plane, 0 to 1."""
-
-_PLANE_THICKNESS = 0.12
-"""Of such a plane, in its cells of two spacings; a point may be twice as far from it."""
-
-_OFF_PLANE_THICKNESSES = 2
-
-_POINTS, _PLANARITY, _THICKNESS, _OFF_PLANE = 0, 3, 4, 5
-"""Columns of ``CloudNeighbourhood.scale_features``."""
+"""Height about the ground within which surfaces square to the beam are kept: narrow, since arcs of
+noise stand square, too."""
 
 _INTENSITY_SAMPLE = 20_000
 """Points whose median intensity stands for a range, and ten times as many for all ranges: the
@@ -209,51 +182,6 @@ def search_with_beams(beams: PointBeams, monitor: Monitor) -> BeamSearch:
     points = np.flatnonzero(~((is_sure | is_ground) & around.is_main))
     rows_of = np.searchsorted(beams.row_starts, points, "right") - 1
     return BeamSearch(beams, is_sure, around, points, rows_of)
-
-
-def candidates_in_space(xyz: _Floats, monitor: Monitor) -> Candidates:
-    """Candidates of a cloud of which only positions are known.
-
-    How many points lie on surfaces is a feature, too: in woods seen from the air, or in a
-    single tree, leaves look like noise to whoever knows streets only.
-
-    Parameters
-    ----------
-    xyz : (n, 3) float64
-        m, finite.
-    """
-    fine = nested_cells(xyz, float(np.ptp(xyz, axis=0).max(initial=0.0)) / _CURVE_CELLS)
-    spacings = np.empty(xyz.shape[0])
-    spacings[fine.order] = np.clip(local_spacings(fine), _FINEST_M, None)
-    is_sure = _planar_points(xyz, spacings, monitor)
-    around = CloudNeighbourhood.of(xyz, spacings, is_sure)
-    is_ground = np.abs(around.heights) < _GROUND_BAND_M
-    points = np.flatnonzero(~(is_sure & around.is_main & is_ground))
-    middle = float(np.median(spacings))
-    levels = [around.level_of(size * middle) for size in PART_SIZES]
-    blocks = [
-        around.scale_features(points, None, monitor),
-        around.place_features(points),
-        around.column_features(points),
-        *(around.part_features(points, level) for level in levels),
-        np.full((points.size, 1), is_sure.mean(), np.float32),
-        around.ground.features(points),
-    ]
-    return Candidates(points, np.concatenate(blocks, axis=1), around, levels)
-
-
-def _planar_points(xyz: _Floats, spacings: _Floats, monitor: Monitor) -> NDArray[np.bool_]:
-    """Points in the middle of a densely measured plane, six spacings wide."""
-    count = xyz.shape[0]
-    bare = CloudNeighbourhood.bare(xyz, spacings, np.zeros(count, np.bool_))
-    around = bare.scale_features(np.arange(count), None, monitor, (_PLANE_SCALE,))
-    found: NDArray[np.bool_] = (
-        (around[:, _POINTS] > np.log2(1 + _PLANE_POINTS))
-        & (around[:, _PLANARITY] > _PLANE_SHARE)
-        & (around[:, _THICKNESS] < _PLANE_THICKNESS)
-        & (around[:, _OFF_PLANE] < _OFF_PLANE_THICKNESSES * _PLANE_THICKNESS)
-    )
-    return found
 
 
 def _light(

@@ -83,36 +83,28 @@ class GroundGrid:
         Rise per metre, log2 of the roughness (m), height over the mean in roughnesses, and how
         many of the points lie near the ground; roughness and mean are of a cell and those around.
         """
-        heights = np.nan_to_num(self.heights)
-        is_near = np.abs(heights) < _NEAR_M
-        near, lie = self.cells[is_near], heights[is_near]
-        count = self._summed_around(points, near)
-        mean = self._summed_around(points, near, lie) / np.maximum(count, 1)
-        square = self._summed_around(points, near, lie**2) / np.maximum(count, 1)
+        sums = np.zeros((4, self.slopes.size))
+        _near_ground_kernel(self.heights, self.cells, sums)
+        everything, count, total, squares = (self._added_around(one) for one in sums)
+        mean, square = total / np.maximum(count, 1), squares / np.maximum(count, 1)
         rough = np.sqrt(np.maximum(square - mean**2, 0)) + _SMOOTHEST_M
-        relative = (heights[points] - mean) / rough
+        cells = self.cells[points]
+        relative = (np.nan_to_num(self.heights[points]) - mean[cells]) / rough[cells]
         found = np.empty((points.size, GROUND_FEATURES), np.float32)
-        found[:, 0] = self.slopes.ravel()[self.cells[points]]
-        found[:, 1] = np.log2(rough)
+        found[:, 0] = self.slopes.ravel()[cells]
+        found[:, 1] = np.log2(rough)[cells]
         found[:, 2] = np.clip(relative, -_MOST_RATIO, _MOST_RATIO)
-        found[:, 3] = count / np.maximum(self._summed_around(points, self.cells), 1)
+        found[:, 3] = (count / np.maximum(everything, 1))[cells]
         return found
 
-    def _summed_around(
-        self,
-        points: NDArray[np.int64],
-        cells: NDArray[np.int32],
-        values: NDArray[np.float64] | None = None,
-    ) -> NDArray[np.float64]:
-        """(k,): the count of ``cells``, or the sum of their values, in the nine around points."""
+    def _added_around(self, sums: NDArray[np.float64]) -> NDArray[np.float64]:
+        """(c,): sums of cells, with those of the eight around each."""
         height, width = self.slopes.shape
-        sums = np.bincount(cells, values, height * width).reshape(height, width)
-        padded, total = np.pad(sums, 1), np.zeros((height, width))
+        padded, total = np.pad(sums.reshape(height, width), 1), np.zeros((height, width))
         for side in range(9):
             i, j = divmod(side, 3)
             total += padded[i : i + height, j : j + width]
-        around: NDArray[np.float64] = total.ravel()[self.cells[points]]
-        return around
+        return total.ravel()
 
     @classmethod
     def none(cls) -> GroundGrid:
@@ -287,6 +279,26 @@ def _lower_kernel(
         heights[point] -= ground[cells[point]]
 
 
+@kernel
+def _near_ground_kernel(
+    heights: NDArray[np.float64], cells: NDArray[np.int32], sums: NDArray[np.float64]
+) -> None:
+    """Count the points of every cell, those near the ground, and sum their heights and squares.
+
+    ``sums`` (4, c). Unknown heights count as 0.
+    """
+    for point in range(cells.size):
+        cell, height = cells[point], heights[point]
+        if np.isnan(height):
+            height = 0.0
+        sums[0, cell] += 1
+        if abs(height) < _NEAR_M:
+            sums[1, cell] += 1
+            sums[2, cell] += height
+            sums[3, cell] += height * height
+
+
 def warm_up() -> None:
     """Compile the kernels of this file."""
-    ground_below(np.zeros((2, 3)), np.zeros(2, np.bool_), 1.0)
+    ground = ground_below(np.zeros((2, 3)), np.zeros(2, np.bool_), 1.0)
+    ground.features(np.zeros(1, np.int64))

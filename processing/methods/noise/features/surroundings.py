@@ -23,10 +23,11 @@ from processing.methods.noise.features.cell_kernels import (
     CellLevel,
     around_kernel,
     column_kernel,
+    held_kernel,
     mean_around_kernel,
     point_features_kernel,
 )
-from processing.methods.noise.features.cell_levels import cell_levels
+from processing.methods.noise.features.cell_levels import cell_levels, count_sure
 from processing.methods.noise.features.connected import Parts, parts_of, sure_counts
 from processing.methods.noise.features.ground_heights import GroundGrid, ground_below
 from processing.methods.noise.neighbours.morton import NestedCells, nested_cells
@@ -100,6 +101,8 @@ class CloudNeighbourhood:
         Where each point is along the cells' curve.
     spacings : (n,) float64
         m, of the points as given.
+    middle_m : float
+        Their median.
     levels : list of CellLevel
     numbers : list of (…,) int32
         Which cell holds what, as :func:`processing.methods.noise.features.cell_levels.cell_levels`.
@@ -118,6 +121,7 @@ class CloudNeighbourhood:
     cells: NestedCells
     position: _Integers
     spacings: _Floats
+    middle_m: float
     levels: list[CellLevel]
     numbers: list[NDArray[np.int32]]
     is_main: NDArray[np.bool_]
@@ -127,32 +131,35 @@ class CloudNeighbourhood:
     parts: dict[int, Parts] = field(default_factory=dict)
 
     @classmethod
-    def bare(
-        cls, xyz: _Floats, spacings: _Floats, is_sure: NDArray[np.bool_]
-    ) -> CloudNeighbourhood:
-        """Without what hangs together and without heights."""
+    def bare(cls, xyz: _Floats, spacings: _Floats) -> CloudNeighbourhood:
+        """Without what hangs together and without heights; no point is sure as yet."""
         finest = max(_FINEST_M, float(np.percentile(spacings, _FINEST_PERCENT)))
         cells = nested_cells(xyz, finest)
         position = np.empty(cells.order.size, np.int64)
         position[cells.order] = np.arange(cells.order.size)
-        levels, numbers = cell_levels(cells, is_sure[cells.order], _LEVELS)
+        levels, numbers = cell_levels(cells, _LEVELS)
         none = np.zeros(0, np.bool_)
-        return cls(cells, position, spacings, levels, numbers, none, GroundGrid.none())
+        middle = float(np.median(spacings))
+        return cls(cells, position, spacings, middle, levels, numbers, none, GroundGrid.none())
 
     @classmethod
     def of(cls, xyz: _Floats, spacings: _Floats, is_sure: NDArray[np.bool_]) -> CloudNeighbourhood:
         """With everything."""
-        bare = cls.bare(xyz, spacings, is_sure)
-        middle = float(np.median(spacings))
-        link = bare.level_of(max(_LINK_M, _LINK_SPACINGS * middle))
+        return cls.bare(xyz, spacings).completed(xyz, is_sure)
+
+    def completed(self, xyz: _Floats, is_sure: NDArray[np.bool_]) -> CloudNeighbourhood:
+        """A bare one with everything; it shares the levels, in which sure points are counted."""
+        count_sure(self.levels, self.numbers, is_sure[self.cells.order])
+        middle = self.middle_m
+        link = self.level_of(max(_LINK_M, _LINK_SPACINGS * middle))
         wide = min(link + _WIDER_LEVELS, _LEVELS - 1)
-        connected = (sure_counts(bare.levels[link]), sure_counts(bare.levels[wide]))
+        connected = (sure_counts(self.levels[link]), sure_counts(self.levels[wide]))
         is_main_cell = connected[0] >= _MAIN_SHARE * max(1, int(is_sure.sum()))
         is_main = np.empty(xyz.shape[0], np.bool_)
-        is_main[bare.cells.order] = is_main_cell[bare.held_by(link, slice(None))]
+        is_main[self.cells.order] = is_main_cell[self.held_by(link, slice(None))]
         cell_m = max(_GROUND_CELL_M, _GROUND_CELL_SPACINGS * middle)
         ground = ground_below(xyz, is_sure, cell_m)
-        return replace(bare, is_main=is_main, ground=ground, connected=connected, link=link)
+        return replace(self, is_main=is_main, ground=ground, connected=connected, link=link)
 
     @property
     def heights(self) -> _Floats:
@@ -200,11 +207,14 @@ class CloudNeighbourhood:
         """
         found = np.empty((points.size, len(scales) * PER_SCALE), np.float32)
         own, positions = self.own_levels(points), self.position[points]
+        at = [self.level_at(own, scale) for scale in scales]
+        held = [self.cells_at(levels, points) for levels in at]
         for level in range(_LEVELS):
-            of_scale = [np.flatnonzero(self.level_at(own, scale) == level) for scale in scales]
+            of_scale = [np.flatnonzero(levels == level) for levels in at]
             if not any(chosen.size for chosen in of_scale):
                 continue
-            around, slots = self._around(level, [points[one] for one in of_scale], monitor)
+            groups = [cells[chosen] for cells, chosen in zip(held, of_scale, strict=True)]
+            around, slots = self.around(level, groups, monitor)
             for number, (chosen, cells) in enumerate(zip(of_scale, slots, strict=True)):
                 block = np.empty((chosen.size, PER_SCALE), np.float32)
                 beams = np.empty((0, 3)) if directions is None else directions[chosen]
@@ -216,7 +226,7 @@ class CloudNeighbourhood:
     def means_around(self, level: int, points: _Integers, totals: _Floats) -> _Rows:
         """(k,): the mean of a value in the 27 cells around each point; ``totals`` per cell."""
         cells = self.levels[level]
-        used, (back,) = self._used_cells(level, [points])
+        used, (back,) = self._used_cells(level, [self.cells_of(level, points)])
         found = np.empty(used.size, np.float32)
         mean_around_kernel(cells, cells.codes[used], totals, found)
         return found[back]
@@ -230,10 +240,10 @@ class CloudNeighbourhood:
             levels = self.level_at(own, scale)
             for level in np.unique(levels):
                 chosen = np.flatnonzero(levels == level)
-                used, back = self._used_cells(level, [points[chosen]])
+                used, (back,) = self._used_cells(level, [self.cells_of(level, points[chosen])])
                 columns = np.empty((used.size, COLUMN), np.float32)
                 column_kernel(self.levels[level], self.levels[level].codes[used], columns)
-                found[chosen, block] = columns[back[0]]
+                found[chosen, block] = columns[back]
         return found
 
     def held_by(self, level: int, positions: _Integers | slice) -> NDArray[np.int32]:
@@ -247,30 +257,30 @@ class CloudNeighbourhood:
         """The cell of a level that holds each of some points."""
         return self.held_by(level, self.position[points])
 
+    def cells_at(self, levels: NDArray[np.int8], points: _Integers) -> NDArray[np.int32]:
+        """The cell that holds each of some points, each at a level of its own."""
+        found = np.empty(points.size, np.int32)
+        held_kernel(tuple(self.numbers), levels, self.position[points], found)
+        return found
+
     def own_levels(self, points: _Integers) -> _Integers:
         """(k,) level whose cells are about a spacing wide, below zero where none is so fine."""
         wanted = np.log2(self.spacings[points] / self.cells.cell_m)
         own: _Integers = np.rint(wanted).astype(np.int64)
         return own
 
-    def level_at(self, own: _Integers, scale: int) -> _Integers:
+    def level_at(self, own: _Integers, scale: int) -> NDArray[np.int8]:
         """The levels whose cells are 2 ** scale times as wide, as far as there are any."""
-        levels: _Integers = np.clip(own + scale, 0, _LEVELS - 1)
+        levels: NDArray[np.int8] = np.clip(own + scale, 0, _LEVELS - 1).astype(np.int8)
         return levels
 
-    def _used_cells(self, level: int, groups: list[_Integers]) -> tuple[_Integers, list[_Integers]]:
-        """The cells that hold any of some points, rising, and where each group's are in them."""
-        cells = [self.cells_of(level, points) for points in groups]
-        is_used = np.zeros(self.levels[level].codes.size, np.bool_)
-        for one in cells:
-            is_used[one] = True
-        positions = np.cumsum(is_used) - 1
-        return np.flatnonzero(is_used), [positions[one] for one in cells]
-
-    def _around(
-        self, level: int, groups: list[_Integers], monitor: Monitor
+    def around(
+        self, level: int, groups: list[NDArray[np.int32]], monitor: Monitor
     ) -> tuple[_Floats, list[_Integers]]:
-        """What lies around the cells that hold points, and where each group's are in it."""
+        """What lies around the cells of some groups, and where each group's are in it.
+
+        (k, AROUND), as :func:`~.cell_kernels.around_kernel` tells.
+        """
         cells = self.levels[level]
         used, positions = self._used_cells(level, groups)
         codes, around = cells.codes[used], np.empty((used.size, AROUND))
@@ -280,6 +290,16 @@ class CloudNeighbourhood:
 
         share_out(add_up, used.size, _CELLS_AT_ONCE, monitor)
         return around, positions
+
+    def _used_cells(
+        self, level: int, groups: list[NDArray[np.int32]]
+    ) -> tuple[_Integers, list[_Integers]]:
+        """The cells of some groups, rising, and where each group's are in them."""
+        is_used = np.zeros(self.levels[level].codes.size, np.bool_)
+        for one in groups:
+            is_used[one] = True
+        positions = np.cumsum(is_used) - 1
+        return np.flatnonzero(is_used), [positions[one] for one in groups]
 
     def _fill_features(
         self,

@@ -22,7 +22,10 @@ from processing.laboratory.noise_training.scanners import AIRBORNE, MOBILE, STAN
 from processing.laboratory.noise_training.scenes import TrainingScene, scene_of, thin_scene
 from processing.laboratory.noise_training.scores import f_measure, score_line
 from processing.laboratory.noise_training.streets import KINDS, ROAD
+from processing.methods.noise.combined import FIRST_LOOK_IN_SPACE, IN_SPACE, MODELS
+from processing.methods.noise.tree_files import read_trees
 from processing.methods.noise.trees import Trees, log_odds
+from resources import path_of
 
 
 @pytest.fixture(scope="module")
@@ -97,6 +100,19 @@ def test_every_pass_sees_the_same_examples(scene: TrainingScene) -> None:
 def _tree_of_one_leaf(odds: float) -> Trees:
     none = np.zeros(1, np.int32)
     return Trees(none - 1, np.array([odds]), none, none, none, 0.0)
+
+
+def test_the_first_look_in_space_keeps_what_is_called_noise_and_little_else(
+    scene: TrainingScene,
+) -> None:
+    own, again, first = (
+        read_trees(path_of(f"{MODELS}/{name}")) for name in (*IN_SPACE, FIRST_LOOK_IN_SPACE)
+    )
+    examples = case_in_space(scene, 2).said(own, again)
+    is_left = log_odds(first, examples.rows, SilentMonitor()) > 0
+    assert examples.is_noise.sum() > 100
+    assert is_left[examples.is_noise].mean() >= 0.99
+    assert is_left[~examples.is_noise].mean() < 0.8
 
 
 def test_a_score_names_every_kind_that_is_there(scene: TrainingScene) -> None:

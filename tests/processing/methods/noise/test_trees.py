@@ -8,7 +8,13 @@ import numpy as np
 import pytest
 
 from processing.core.monitor import SilentMonitor
-from processing.methods.noise.combined import FIRST_LOOK, IN_SPACE, MODELS, WITH_BEAMS
+from processing.methods.noise.combined import (
+    FIRST_LOOK,
+    FIRST_LOOK_IN_SPACE,
+    IN_SPACE,
+    MODELS,
+    WITH_BEAMS,
+)
 from processing.methods.noise.tree_files import read_trees, write_trees
 from processing.methods.noise.trees import Trees, log_odds
 from resources import path_of
@@ -61,7 +67,7 @@ def test_other_programs_read_the_same_from_the_file(trees: Trees, tmp_path: Path
     np.testing.assert_allclose(shares[:, 1], 1 / (1 + np.exp(-odds)), atol=1e-6)
 
 
-@pytest.mark.parametrize("name", [FIRST_LOOK, *WITH_BEAMS, *IN_SPACE])
+@pytest.mark.parametrize("name", [FIRST_LOOK, FIRST_LOOK_IN_SPACE, *WITH_BEAMS, *IN_SPACE])
 def test_delivered_models_are_small_and_whole(name: str) -> None:
     path = path_of(f"{MODELS}/{name}")
     trees = read_trees(path)
