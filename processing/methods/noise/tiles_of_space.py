@@ -119,12 +119,17 @@ class TiledCloud:
         wanted : (n,) bool, optional
             Parts without such points are left out.
         """
+        for tiles in self.tiles_of_parts(reach_m, most):
+            if wanted is None or wanted[self._in_tiles(*tiles)].any():
+                yield self.part(tiles, reach_m)
+
+    def tiles_of_parts(self, reach_m: float, most: int) -> Iterator[tuple[int, int, int, int]]:
+        """The tiles of parts, as :meth:`parts` and :meth:`part` take them."""
         pending = [(0, 0, *self.shape)]
         ring = int(np.ceil(reach_m / self._side))
         while pending:
             x0, y0, x1, y1 = pending.pop()
-            own = self._count_in(x0, y0, x1, y1)
-            if own == 0:
+            if self._count_in(x0, y0, x1, y1) == 0:
                 continue
             wide = self._count_in(x0 - ring, y0 - ring, x1 + ring, y1 + ring)
             if wide > most and max(x1 - x0, y1 - y0) > 1:
@@ -134,9 +139,7 @@ class TiledCloud:
                 else:
                     pending += [(x0, middle_y, x1, y1), (x0, y0, x1, middle_y)]
                 continue
-            if wanted is not None and not wanted[self._in_tiles(x0, y0, x1, y1)].any():
-                continue
-            yield self._part((x0, y0, x1, y1), ring, reach_m)
+            yield x0, y0, x1, y1
 
     def tiles_of(self, xyz: NDArray[np.float64]) -> NDArray[np.int64]:
         """(n,) int64: numbers of the tiles of positions, row by row of the tiles' `shape`."""
@@ -145,8 +148,10 @@ class TiledCloud:
         numbers: NDArray[np.int64] = tiles[:, 0] * self.shape[1] + tiles[:, 1]
         return numbers
 
-    def _part(self, tiles: tuple[int, int, int, int], ring: int, reach_m: float) -> SpacePart:
+    def part(self, tiles: tuple[int, int, int, int], reach_m: float) -> SpacePart:
+        """The part that some tiles are."""
         x0, y0, x1, y1 = tiles
+        ring = int(np.ceil(reach_m / self._side))
         own = np.sort(self._in_tiles(x0, y0, x1, y1))
         everything = self._in_tiles(x0 - ring, y0 - ring, x1 + ring, y1 + ring)
         around = np.setdiff1d(everything, own, assume_unique=True)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from processing.core.monitor import SilentMonitor
 from processing.core.owned_files import MARK
+from processing.methods.noise import drive_noise
 from processing.methods.noise.beams.beam_origins import beam_origins
 from processing.methods.noise.combined import noise_codes_in_space, noise_codes_with_beams
 from processing.methods.noise.drive_noise import NoiseSearch
@@ -111,6 +112,24 @@ def test_without_beams_most_noise_is_found_and_surfaces_stay(
     assert f_measure(codes > 0, is_noise) >= 0.6
     assert (codes[~is_noise] == 0).mean() >= 0.98
     assert codes_of(seen, NoiseParameters()).any()
+
+
+def test_without_beams_the_order_of_the_points_says_nothing(street: NoisyStreet) -> None:
+    xyz = street.drive.xyz
+    other = np.random.default_rng(3).permutation(len(xyz))
+    np.testing.assert_array_equal(
+        noise_codes_in_space(xyz[other]), noise_codes_in_space(xyz)[other]
+    )
+
+
+def test_without_beams_parts_of_a_cloud_find_what_the_whole_does(
+    street: NoisyStreet, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    seen = without_revolutions(drive_of(street.drive, tmp_path / "d"))
+    whole = codes_of(seen, NoiseParameters())
+    monkeypatch.setattr(drive_noise, "_POINTS_IN_SPACE", seen.count // 3)
+    parts = codes_of(seen, NoiseParameters())
+    assert f_measure(parts > 0, whole > 0) >= 0.9
 
 
 def test_spikes_of_kilometres_are_noise_and_change_nothing_else(drive: Drive) -> None:
