@@ -25,6 +25,10 @@ _ROWS_AT_ONCE = 16_384
 """Rows of a share of a core's work."""
 
 
+_ROWS_AT_A_TREE = 128
+"""Rows that one tree is shown after the other: its nodes and their features stay at hand."""
+
+
 class Trees(NamedTuple):
     """A sum of trees that gives the log-odds of a claim.
 
@@ -61,18 +65,41 @@ def log_odds_kernel(
 
     A row that the first third of the trees finds hopeless isn't shown to the others.
     """
-    third = trees.roots.size // 3
-    for row in range(first, stop):
-        total = trees.base
-        for tree in range(trees.roots.size):
-            if tree == third and total < _HOPELESS:
-                break
-            node = trees.roots[tree]
-            while trees.features[node] >= 0:
-                is_left = rows[row, trees.features[node]] <= trees.thresholds[node]
+    third, count = trees.roots.size // 3, trees.roots.size
+    left = np.empty(_ROWS_AT_A_TREE, np.int64)
+    for start in range(first, stop, _ROWS_AT_A_TREE):
+        end = min(start + _ROWS_AT_A_TREE, stop)
+        found[start:end] = trees.base
+        for row in range(start, end):
+            left[row - start] = row
+        _add_trees(trees, rows, (0, third), left[: end - start], found)
+        asked = 0
+        for row in range(start, end):
+            if not found[row] < _HOPELESS:
+                left[asked] = row
+                asked += 1
+        _add_trees(trees, rows, (third, count), left[:asked], found)
+
+
+@kernel
+def _add_trees(
+    trees: Trees,
+    rows: NDArray[np.float32],
+    some: tuple[int, int],
+    asked: NDArray[np.int64],
+    found: NDArray[np.float64],
+) -> None:
+    """Add what some trees, one after the other, say of rows."""
+    for tree in range(some[0], some[1]):
+        root = trees.roots[tree]
+        for row in asked:
+            node = root
+            feature = trees.features[node]
+            while feature >= 0:
+                is_left = rows[row, feature] <= trees.thresholds[node]
                 node = trees.lefts[node] if is_left else trees.rights[node]
-            total += trees.thresholds[node]
-        found[row] = total
+                feature = trees.features[node]
+            found[row] += trees.thresholds[node]
 
 
 def warm_up() -> None:
