@@ -42,15 +42,23 @@ class ClassColumns(NamedTuple):
 
     def noise_between(self, start: int, stop: int) -> NDArray[np.bool_]:
         """Which of the points ``start … stop − 1`` are noise: (n,)."""
-        part = ClassColumns(self.delivered[start:stop], self.labels[start:stop])
-        return part.are_noise(np.arange(stop - start))
+        codes = np.zeros(stop - start, np.uint8)
+        if self.delivered.size:
+            codes = self.delivered[start:stop]
+        if self.labels.size:
+            given = self.labels[start:stop]
+            codes = np.where(given > 0, given, codes)
+        return _are_noise(codes)
 
     def are_noise(self, points: PointIndices) -> NDArray[np.bool_]:
         """Which points are noise, of the points' shape."""
-        low, high = NOISE_CODES
-        codes = self.codes_of(points)
-        are_noise: NDArray[np.bool_] = (codes == low) | (codes == high)
-        return are_noise
+        return _are_noise(self.codes_of(points))
+
+
+def _are_noise(codes: Codes) -> NDArray[np.bool_]:
+    low, high = NOISE_CODES
+    are_noise: NDArray[np.bool_] = (codes == low) | (codes == high)
+    return are_noise
 
 
 def class_columns(columns: Columns) -> ClassColumns:
