@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +12,8 @@ from numpy.typing import NDArray
 from processing.core.arrays import Floats, Integers
 from processing.core.kernels import kernel
 from processing.core.monitor import Monitor
-from processing.methods.road.objects.drive_chunks import chunks_of
+from processing.core.worked_ahead import in_order
+from processing.methods.road.objects.drive_chunks import DriveChunk, chunks_of
 from processing.methods.road.objects.sparse_plan import (
     CELL_M,
     TILE,
@@ -62,30 +64,45 @@ def points_about(
         Of the columns, m about the origin of the plan.
     radius_m : float
     """
-    nearest = nearest_columns(plan, middles, radius_m)
-    parts: list[tuple[Integers, Floats, Integers, Integers]] = []
-    for chunk in chunks_of(drives, plan.origin, monitor):
+    nearest = nearest_columns(plan, middles, radius_m).reshape(-1)
+
+    def gathered(chunk: DriveChunk) -> _GatheredPoints:
         owners = np.empty(len(chunk.local), np.int32)
-        owners_kernel(chunk.local, plan.table, nearest.reshape(-1), middles, radius_m, owners)
+        owners_kernel(chunk.local, plan.table, nearest, middles, radius_m, owners)
         owners[chunk.is_noise] = -1
         kept = np.flatnonzero(owners >= 0)
-        numbers = np.full(kept.size, chunk.drive, np.int64)
-        parts.append(
-            (owners[kept].astype(np.int64), chunk.local[kept], numbers, chunk.start + kept)
+        return _GatheredPoints(
+            owners.take(kept), chunk.local.take(kept, axis=0), chunk.drive, chunk.start + kept
         )
-    if not parts:
-        none = np.empty(0, np.int64)
-        return ColumnPoints(np.zeros(len(middles) + 1, np.int64), np.empty((0, 3)), none, none)
-    owner = np.concatenate([one[0] for one in parts])
-    starts = np.concatenate([[0], np.cumsum(np.bincount(owner, minlength=len(middles)))])
-    order = np.empty(owner.size, np.int64)
-    order_kernel(owner, starts[:-1].copy(), order)
-    return ColumnPoints(
+
+    parts = list(in_order(gathered, chunks_of(drives, plan.origin, monitor)))
+    counts = np.zeros(len(middles), np.int64)
+    for part in parts:
+        counts += np.bincount(part.owners, minlength=len(middles))
+    starts = np.concatenate([[0], np.cumsum(counts)])
+    about = ColumnPoints(
         starts,
-        np.concatenate([one[1] for one in parts])[order],
-        np.concatenate([one[2] for one in parts])[order],
-        np.concatenate([one[3] for one in parts])[order],
+        np.empty((starts[-1], 3)),
+        np.empty(starts[-1], np.int64),
+        np.empty(starts[-1], np.int64),
     )
+    free = starts[:-1].copy()
+    for part in parts:
+        place_kernel(part, free, about.local, about.drives, about.points)
+    return about
+
+
+class _GatheredPoints(NamedTuple):
+    """Points of a chunk about columns.
+
+    ``owners``: the column of each; ``drive``, ``points``: which of the drives they are of, and
+    their numbers there.
+    """
+
+    owners: NDArray[np.int32]
+    local: Floats
+    drive: int
+    points: Integers
 
 
 @kernel
@@ -109,6 +126,25 @@ def owners_kernel(
         owners[point] = column
 
 
+@kernel
+def place_kernel(
+    part: _GatheredPoints, free: Integers, local: Floats, drives: Integers, points: Integers
+) -> None:
+    """Put points behind those of their column, in the order that they come in.
+
+    Parameters
+    ----------
+    free : (k,) int64
+        Where the next point of each column goes; moved on.
+    """
+    for point in range(part.owners.size):
+        place = free[part.owners[point]]
+        free[part.owners[point]] += 1
+        local[place] = part.local[point]
+        drives[place] = part.drive
+        points[place] = part.points[point]
+
+
 def nearest_columns(plan: SparsePlan, middles: Floats, radius_m: float) -> NDArray[np.int32]:
     """(tiles, 64, 64) the column nearest to each cell; −1 where none is near."""
     nearest = np.full((len(plan), TILE, TILE), -1, np.int32)
@@ -116,20 +152,6 @@ def nearest_columns(plan: SparsePlan, middles: Floats, radius_m: float) -> NDArr
     reach = int(np.ceil(radius_m / CELL_M)) + 1
     nearest_kernel(middles, reach, plan.table, nearest.reshape(-1), away.reshape(-1))
     return nearest
-
-
-@kernel
-def order_kernel(owner: Integers, free: Integers, order: Integers) -> None:
-    """Points by their column, those of a column in the order that they come in.
-
-    Parameters
-    ----------
-    free : (k,) int64
-        Where the next point of each column goes; moved on.
-    """
-    for point in range(owner.size):
-        order[free[owner[point]]] = point
-        free[owner[point]] += 1
 
 
 @kernel

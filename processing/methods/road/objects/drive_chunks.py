@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from processing.core.arrays import Floats
 from processing.core.monitor import Monitor
+from processing.core.worked_ahead import one_ahead
 from processing.recording.columns.counted_classes import class_columns
 from processing.recording.columns.ordering import chunk_ranges
 from processing.recording.drive import Drive
@@ -40,7 +41,7 @@ class DriveChunk:
 
 
 def chunks_of(drives: Sequence[Drive], origin: Floats, monitor: Monitor) -> Iterator[DriveChunk]:
-    """All points of drives, in their order.
+    """All points of drives, in their order; the next ones are read while these are looked at.
 
     Parameters
     ----------
@@ -49,6 +50,10 @@ def chunks_of(drives: Sequence[Drive], origin: Floats, monitor: Monitor) -> Iter
     monitor : Monitor
         Told how much was read.
     """
+    return one_ahead(_chunks_of(drives, origin, monitor))
+
+
+def _chunks_of(drives: Sequence[Drive], origin: Floats, monitor: Monitor) -> Iterator[DriveChunk]:
     total, done = max(1, sum(drive.count for drive in drives)), 0
     for number, drive in enumerate(drives):
         classes = class_columns(drive.columns)

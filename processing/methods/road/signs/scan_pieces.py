@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from processing.core.arrays import Floats, Integers
 from processing.core.monitor import Monitor
+from processing.core.worked_ahead import in_order
 from processing.methods.road.gutters.notches.head_position import head_position
 from processing.methods.road.objects.drive_chunks import DriveChunk, chunks_of
 from processing.methods.road.objects.sparse_plan import SparsePlan
@@ -184,12 +185,14 @@ def scan_pieces(
     values: list[Floats] = []
     owners: list[Integers] = []
     rows: list[Integers] = []
-    for chunk in chunks_of(drives, plan.origin, monitor):
-        head = heads[chunk.drive]
-        found, pulses = _pieces_of(chunk, head)
+
+    def of_chunk(chunk: DriveChunk) -> tuple[int, Floats, Integers]:
+        return chunk.drive, *_pieces_of(chunk, heads[chunk.drive])
+
+    for drive, found, pulses in in_order(of_chunk, chunks_of(drives, plan.origin, monitor)):
         values.append(found)
-        owners.append(np.full(len(found), chunk.drive, np.int64))
-        rows.append((pulses / head.pulses).astype(np.int64))
+        owners.append(np.full(len(found), drive, np.int64))
+        rows.append((pulses / heads[drive].pulses).astype(np.int64))
     if not values:
         none = np.empty(0, np.int64)
         return ScanPieces(np.empty((0, PIECE)), none, none, np.empty(0))

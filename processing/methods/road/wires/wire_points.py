@@ -16,7 +16,7 @@ from processing.core.arrays import Flags, Floats, Integers
 from processing.core.kernels import kernel
 from processing.core.monitor import Monitor
 from processing.core.worked_ahead import in_order
-from processing.methods.road.objects.drive_chunks import chunks_of
+from processing.methods.road.objects.drive_chunks import DriveChunk, chunks_of
 from processing.methods.road.objects.ground_heights import GROUND_CELLS
 from processing.methods.road.objects.sparse_plan import SparsePlan, cell_of
 from processing.methods.road.wires.wire_kernels import (
@@ -105,15 +105,17 @@ def wire_points(
     lowest_m : float
         Above the ground; lower lines are no wires.
     """
-    parts: list[tuple[Floats, Integers, Integers]] = []
     intervals = [pulse_interval(drive) for drive in drives]
-    for chunk in chunks_of(drives, plan.origin, monitor):
+
+    def high_and_thin(chunk: DriveChunk) -> tuple[Floats, Integers, Integers]:
         short = thin_points(drives[chunk.drive], intervals[chunk.drive], chunk.start, chunk.local)
         short &= ~chunk.is_noise
         high_kernel(chunk.local, plan.table, ground.reshape(-1), lowest_m, short)
         kept = np.flatnonzero(short)
         drive = np.full(kept.size, chunk.drive, np.int64)
-        parts.append((chunk.local[kept], drive, chunk.start + kept))
+        return chunk.local[kept], drive, chunk.start + kept
+
+    parts = list(in_order(high_and_thin, chunks_of(drives, plan.origin, monitor)))
     local = np.concatenate([np.empty((0, 3)), *(one[0] for one in parts)])
     which = np.concatenate([np.empty(0, np.int64), *(one[1] for one in parts)])
     numbers = np.concatenate([np.empty(0, np.int64), *(one[2] for one in parts)])
