@@ -129,7 +129,8 @@ def _member(one: TrueFeature, seen: RecordingEvidence, origin: Floats) -> TruthP
         facts.update(_wire(one, pieces, seen))
     else:
         facts.update(_SHOWN[one.file](pieces))
-        facts["in_span"] = seen.passes(one.xyz.mean(axis=0)[None])[0]
+        passed = seen.passes(one.xyz.mean(axis=0)[None])[0]
+        facts["in_span"] = bool(passed and one.facts.get("in_span", True))
     return {
         "type": "Feature",
         "geometry": {"type": one.geometry, "coordinates": coordinates},

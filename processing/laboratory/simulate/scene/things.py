@@ -50,7 +50,8 @@ class TrueFeature:
         m, the street's frame.
     facts : mapping
         Properties as the contract names them, and more; what was seen of it is added later from
-        the counts of points on its instance and pieces.
+        the counts of points on its instance and pieces. ``in_span`` false: too far off to be asked
+        for, wherever the vehicle drove.
     instance : int
         The thing whose points show it.
     chainage_m : float

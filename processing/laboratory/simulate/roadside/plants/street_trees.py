@@ -24,16 +24,17 @@ from processing.laboratory.simulate.roadside.plants.tree_pits import (
 from processing.laboratory.simulate.roadside.plants.trees import (
     CROWN,
     TRUNK,
-    TRUTH_WITHIN_M,
     Age,
     TreeOptions,
     add_tree,
+    is_asked_for,
     leaf_share,
 )
+from processing.laboratory.simulate.roadside.plants.trunks import TAPE_M
 from processing.laboratory.simulate.roadside.rods import rods
 from processing.laboratory.simulate.scene.chance import chance
 from processing.laboratory.simulate.scene.materials import Material
-from processing.laboratory.simulate.scene.things import SectionBuilder
+from processing.laboratory.simulate.scene.things import Fact, SectionBuilder, TrueFeature
 from processing.laboratory.simulate.street.free_positions import (
     FreePosition,
     FreePositions,
@@ -43,6 +44,7 @@ from processing.laboratory.simulate.street.free_positions import (
 from processing.laboratory.simulate.street.plan import SIDES, SectionPlan, SidePlan
 from processing.laboratory.simulate.street.styles import HIGHWAY, URBAN
 
+_COARSE_SIDES = 7  # of the trunks of trees deep in a wood
 _TRIANGLES, _BARK_TRIANGLES = 44_000, 2_000  # of all trees of a section, of one tree's wood
 _LEAST_LEAVES, _MOST_LEAVES = 250, 4_500
 _ROOM_M = 0.35  # about a trunk
@@ -195,7 +197,7 @@ def _add_wood(positions: FreePositions, built: SectionBuilder, side: int) -> Non
             continue
         own = section.chance("tree of a wood", number * side)
         high = float(own.uniform(*growth.high_m))
-        if abs(spot.offset_m) - plan.edge_m <= TRUTH_WITHIN_M:
+        if is_asked_for(positions, spot):
             add_tree(positions, built, TreeOptions(growth, spot, high, "wild", 350), own)
         else:
             _add_coarse_tree(positions, built, TreeOptions(growth, spot, high, "wild", 200), own)
@@ -210,8 +212,14 @@ def _add_coarse_tree(
     top = foot + np.array([*random.normal(0, 0.02, 2) * high, high])
     path = np.stack([foot - [0.0, 0.0, 0.3], foot, foot + (top - foot) * 0.5, top])
     radius = high / float(random.uniform(*options.growth.slenderness)) / 2
-    bark = rods(path[None], radius * np.array([1.1, 1.0, 0.7, 0.1]), 7)
+    bark = rods(path[None], radius * np.array([1.1, 1.0, 0.7, 0.1]), _COARSE_SIDES)
     built.mesh.add(bark, Material.BARK, TRUNK, instance, piece=1)
+    at_tape = radius * (1.0 - 0.3 * TAPE_M / (high / 2))
+    girth = 2 * _COARSE_SIDES * at_tape * np.sin(np.pi / _COARSE_SIDES)
+    facts: dict[str, Fact] = {"kind": "tree", "girth_m": girth, "dbh_m": girth / np.pi}
+    facts |= {"stems": 1, "stakes": 0, "height_m": high, "in_span": False}
+    at_m = options.spot.chainage_m
+    built.truth.append(TrueFeature("trees", "Point", foot[None], facts, instance, at_m))
     count = int(options.leaves * leaf_share(positions.section, options.growth))
     if count == 0:
         return

@@ -35,7 +35,7 @@ from processing.laboratory.simulate.street.section import StreetSection
 
 TRUNK, CROWN, SHRUB = 66, 5, 4
 TRUTH_WITHIN_M = 8.0
-"""Of the carriageway's edge: trees farther off are not asked for."""
+"""Of the carriageway's edge: trees farther off are in the truth, but not asked for."""
 
 _MANY_LEAVES, _FEW_LEAVES = 1_500, 600
 _COVER = 1.1  # area of all leaves by that of the crown as seen from beside
@@ -81,6 +81,12 @@ def leaf_share(section: StreetSection, growth: Growth) -> float:
     return 0.0 if season < 0.2 else 0.35 if season < 0.35 else 1.0
 
 
+def is_asked_for(positions: FreePositions, spot: FreePosition) -> bool:
+    """Whether a tree at a place is near enough to the road that a survey maps it."""
+    edge = positions.section.plan.side(spot.side).edge_m
+    return abs(spot.offset_m) - edge <= TRUTH_WITHIN_M
+
+
 def add_tree(
     positions: FreePositions, built: SectionBuilder, options: TreeOptions, random: Generator
 ) -> None:
@@ -111,8 +117,6 @@ def add_tree(
         wrapped = (guard[0] + foot, guard[1])
         built.mesh.add(wrapped, Material.PAINTED_METAL, TRUNK, built.thing("guard"))
     _add_undergrowth(built, random, stems[0], foot)
-    if abs(spot.offset_m) - section.plan.side(spot.side).edge_m > TRUTH_WITHIN_M:
-        return
     extent = np.concatenate([branches[0], leaves[0], stems[0].path[-1:]])
     girth = girths[0] if len(girths) == 1 else _SEVERAL_STEMS * sum(girths)
     built.truth.append(
@@ -131,6 +135,7 @@ def add_tree(
                 "crown_m": float(np.ptp(extent[:, :2], axis=0).mean()),
                 "growth": growth.name,
                 "leaf_share": leaf_share(section, growth),
+                "in_span": is_asked_for(positions, spot),
             },
             instance,
             spot.chainage_m,

@@ -16,7 +16,7 @@ from processing.laboratory.simulate.roadside.plants.trunks import (
 )
 from processing.laboratory.simulate.scene.mesh import Mesh
 from processing.laboratory.simulate.scene.things import TrueFeature
-from processing.laboratory.simulate.street.styles import URBAN
+from processing.laboratory.simulate.street.styles import RURAL, URBAN
 
 TRUNK = 66
 SOIL_OF_PITS_M = 0.035
@@ -118,3 +118,16 @@ def test_no_two_trees_grow_into_each_other(
     feet = np.array([tree.xyz[0] for tree, _, _ in trees])
     gaps = np.linalg.norm(feet[:, None] - feet[None], axis=2) + 9 * np.eye(len(feet))
     assert gaps.min() > 0.5
+
+
+def test_trees_of_woods_are_in_the_truth_and_not_asked_for() -> None:
+    street = Street(763, RURAL, 60.0)
+    feet = []
+    for row in street.within(0.0, 60.0):
+        built = street.section(row)
+        known = {one.instance for one in built.truth if one.file == "trees"}
+        assert known == {one.instance for one in built.things if one.kind == "tree"}
+        feet += [one for one in built.truth if one.file == "trees"]
+    far = [one for one in feet if one.facts.get("in_span") is False]
+    assert len(far) > 5
+    assert all(one.facts["dbh_m"] for one in far)
