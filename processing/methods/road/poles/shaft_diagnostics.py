@@ -20,7 +20,6 @@ from processing.methods.road.poles.shaft_kernels import (
     NOISE,
     NORTH,
     RADIUS,
-    SLAB_M,
     SLABS,
     TAPER,
     TOP,
@@ -34,6 +33,7 @@ from processing.methods.road.poles.shafts import (
     MOST_INSIDE,
     shafts_about,
 )
+from processing.methods.road.poles.surface_lines import SLAB_M
 from processing.methods.road.requested_position import RequestedPosition
 
 _LOWEST_SHARE = 0.02

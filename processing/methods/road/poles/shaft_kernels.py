@@ -8,12 +8,21 @@ heights on it is fitted by least squares and followed upwards and downwards.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 
 from processing.core.arrays import Flags, Floats, Integers
 from processing.core.kernels import kernel
+from processing.methods.road.poles.surface_lines import (
+    MOST_SLABS,
+    ON_LINE_M,
+    RISE,
+    SLAB_M,
+    ShaftLimits,
+    drawn_points,
+    strike,
+    surface_line,
+)
 
 (
     EAST,
@@ -49,33 +58,11 @@ SHAFT_WIDTH = 16
 LEVEL_M = 1.2
 """Height at which diameters are told, as of trees."""
 
-SLAB_M = 0.1
-"""Height of a slab: scan lines of a slow vehicle are no farther apart on an upright thing."""
-
 BESIDE_M = 0.3
 """About a shaft: what stands so near hides or holds it."""
 
-_SLABS = 160
-"""16 m: the tallest poles beside a road."""
-
-_LINES = 160
-"""Of two points each: with a seventh of the points on the shaft nine pairs in ten miss it, and one
-of these is good all the same in all but one case in a million."""
-
 _TRIES = 4
 """Lines of a column: edges of plates and twigs beside a post make some of their own."""
-
-_RISE = 0.25
-"""Between the two points of a line, of the height of all: nearer ones leave its lean open."""
-
-_MOST_DRAWN = 500
-"""Points that tell one line from another: enough for ten in each of fifty slabs."""
-
-_FACTOR, _INCREMENT, _MODULUS = 1_664_525, 1_013_904_223, 1 << 32
-"""Of the generator of draws (Press et al., Numerical Recipes, 7.1): the same ones each time."""
-
-_ON_LINE_M = 0.015
-"""How far a point may lie off a line along the surface: three times the noise of usual scanners."""
 
 _APART_M = 0.06
 """What is nearer to a shaft's surface is its own; a second one in its column stands farther off."""
@@ -87,9 +74,6 @@ _FLANK_M, _LEFT_OUT = 0.1, 0.5
 """What lies so near to the line along a shaft's surface is its flank: a circle that leaves it out
 may touch the shaft and the plate beside it and be neither. What such a point takes from a circle,
 of what one on it gives."""
-
-_MOST_OF_SLAB = 3.0
-"""Points that a slab may say for a line."""
 
 _SECTORS = 24
 """Of 15 degrees, in which an arc is covered or not."""
@@ -118,28 +102,19 @@ _LEAST_NOISE_M = 5e-4
 _GROUND_M = 0.2
 """Below, the ground lies beside every shaft."""
 
+_ROUND_SECTORS, _NO_PLATE = 8, 4
+"""Of 45 degrees about a shaft, and the one by whose points leaves are told, the emptiest first: a
+plate, rail or wall leaves half of them empty, twigs about a shaft fill more."""
+
+_CHANCE, _POOLED = 3.0, 3
+"""Times as many points as leaves alone would put on a shaft's surface, and slabs above and below
+that are asked together: single leaves lie on it in any slab."""
+
 _TURNS = 5
 """Steps of a fit; it ends within four."""
 
 _PARTS = 6
 """Numbers of a cone: the first six of a shaft."""
-
-
-class ShaftLimits(NamedTuple):
-    """What a shaft may be.
-
-    ``least_m``, ``most_m``: radius; ``steepest``: run over rise of its lean; ``low_m``,
-    ``high_m``: between which heights it is looked for first; ``gap_m``: how far it may be hidden;
-    ``noise_m``: how far points may lie off it.
-    """
-
-    least_m: float
-    most_m: float
-    steepest: float
-    low_m: float
-    high_m: float
-    gap_m: float
-    noise_m: float
 
 
 @kernel
@@ -160,10 +135,10 @@ def shafts_kernel(points: Floats, starts: Integers, limits: ShaftLimits, shafts:
         is_left = np.ones(len(part), np.bool_)
         line, number = np.zeros(4), 0
         for _ in range(_TRIES):
-            drawn = _drawn(part, is_left, limits)
-            if drawn.size < 8 or _surface_line(part, drawn, limits, line) < 4:
+            drawn = drawn_points(part, is_left, limits)
+            if drawn.size < 8 or surface_line(part, drawn, limits, line) < 4:
                 break
-            _strike(part, line, is_left)
+            strike(part, line, is_left)
             shaft = shafts[column, number]
             if _touching_circle(part, drawn, limits, line, shaft) and _settled(part, limits, shaft):
                 _thinner_above(part, limits, shaft)
@@ -232,164 +207,17 @@ def _thinner_above(points: Floats, limits: ShaftLimits, shaft: Floats) -> None:
 def _swell(points: Floats, shaft: Floats, low_m: float, high_m: float) -> float:
     """How far off a shaft's surface most points between two heights lie inwards; 1 without any."""
     counts = np.zeros(_STEPS, np.int64)
-    seen = np.zeros((_STEPS, _SLABS), np.bool_)
+    seen = np.zeros((_STEPS, MOST_SLABS), np.bool_)
     for point in range(len(points)):
         up = points[point, 2]
         step = int(-_off(points, point, shaft) / _STEP_M)
         if low_m <= up < high_m and 0 < step < _STEPS:
             counts[step] += 1
-            seen[step, min(int(up / SLAB_M), _SLABS - 1)] = True
+            seen[step, min(int(up / SLAB_M), MOST_SLABS - 1)] = True
     best = int(counts.argmax())
-    if seen[best].sum() < _RISE * (high_m - low_m) / SLAB_M:
+    if seen[best].sum() < RISE * (high_m - low_m) / SLAB_M:
         return 1.0
     return -(best + 0.5) * _STEP_M
-
-
-@kernel
-def _strike(points: Floats, line: Floats, is_left: Flags) -> None:
-    """Take the points on a line out of those that others are drawn from."""
-    for point in range(len(points)):
-        up = points[point, 2]
-        east = points[point, 0] - line[0] - line[2] * up
-        north = points[point, 1] - line[1] - line[3] * up
-        if east * east + north * north < _ON_LINE_M * _ON_LINE_M:
-            is_left[point] = False
-
-
-@kernel
-def _drawn(points: Floats, is_left: Flags, limits: ShaftLimits) -> Integers:
-    """Points between the first heights, evenly thinned."""
-    count = 0
-    for point in range(len(points)):
-        count += is_left[point] and limits.low_m <= points[point, 2] <= limits.high_m
-    step = count // _MOST_DRAWN + 1
-    drawn = np.empty(count // step + 1, np.int64)
-    kept, number = 0, 0
-    for point in range(len(points)):
-        if is_left[point] and limits.low_m <= points[point, 2] <= limits.high_m:
-            if number % step == 0:
-                drawn[kept] = point
-                kept += 1
-            number += 1
-    return drawn[:kept]
-
-
-@kernel
-def _surface_line(points: Floats, drawn: Integers, limits: ShaftLimits, line: Floats) -> int:
-    """The steep line that the most slabs have points on: place at height 0 and lean; how many."""
-    best, state = 0.0, 1
-    guess = np.zeros(4)
-    starts = np.zeros(_SLABS + 1, np.int64)
-    ordered = _by_slab(points, drawn, starts)
-    near = np.ascontiguousarray(points[ordered].T)
-    filled = np.flatnonzero(starts[1:] > starts[:-1])
-    if filled.size < 2:
-        return 0
-    least = max(2 * SLAB_M, _RISE * SLAB_M * (filled[-1] - filled[0]))
-    for _ in range(_LINES):
-        # Slabs first, then points: plates have more of these than posts.
-        state = (state * _FACTOR + _INCREMENT) % _MODULUS
-        slab = filled[state * filled.size // _MODULUS]
-        state = (state * _FACTOR + _INCREMENT) % _MODULUS
-        a = ordered[starts[slab] + state * (starts[slab + 1] - starts[slab]) // _MODULUS]
-        state = (state * _FACTOR + _INCREMENT) % _MODULUS
-        slab = filled[state * filled.size // _MODULUS]
-        state = (state * _FACTOR + _INCREMENT) % _MODULUS
-        b = ordered[starts[slab] + state * (starts[slab + 1] - starts[slab]) // _MODULUS]
-        rise = points[b, 2] - points[a, 2]
-        if abs(rise) < least:
-            continue
-        guess[2] = (points[b, 0] - points[a, 0]) / rise
-        guess[3] = (points[b, 1] - points[a, 1]) / rise
-        lean = math.hypot(guess[2], guess[3]) / limits.steepest
-        if lean > 1.0:
-            continue
-        guess[0] = points[a, 0] - guess[2] * points[a, 2]
-        guess[1] = points[a, 1] - guess[3] * points[a, 2]
-        # Most poles are upright; along a thick one many lines are as good.
-        score = _on_line(near, starts, guess)[0] * (1.0 - lean)
-        if score > best:
-            best = score
-            line[:] = guess
-    if best == 0.0:
-        return 0
-    for _ in range(2):
-        _straighten(points, drawn, line)
-    return _on_line(near, starts, line)[1]
-
-
-@kernel
-def _by_slab(points: Floats, drawn: Integers, starts: Integers) -> Integers:
-    """The drawn points slab after slab; where each begins is written."""
-    starts[:] = 0
-    for point in drawn:
-        starts[int(points[point, 2] / SLAB_M) + 1] += 1
-    for slab in range(_SLABS):
-        starts[slab + 1] += starts[slab]
-    free, ordered = starts.copy(), np.empty_like(drawn)
-    for point in drawn:
-        slab = int(points[point, 2] / SLAB_M)
-        ordered[free[slab]] = point
-        free[slab] += 1
-    return ordered
-
-
-@kernel
-def _on_line(near: Floats, starts: Integers, line: Floats) -> tuple[float, int]:
-    """How much speaks for a line, and how many slabs have points on it.
-
-    Each slab speaks as much as its points are near, `_MOST_OF_SLAB` at most.
-
-    Parameters
-    ----------
-    near : (3, n) float64
-        The drawn points, slab after slab.
-    starts : (_SLABS + 1,) int64
-    """
-    score, slabs = 0.0, 0
-    for slab in range(_SLABS):
-        on = 0.0
-        for point in range(starts[slab], starts[slab + 1]):
-            east = near[0, point] - line[0] - line[2] * near[2, point]
-            north = near[1, point] - line[1] - line[3] * near[2, point]
-            off = (east * east + north * north) / (_ON_LINE_M * _ON_LINE_M)
-            on += max(1.0 - off, 0.0)
-        score += min(on, _MOST_OF_SLAB)
-        slabs += on > 0.0
-    return score, slabs
-
-
-@kernel
-def _straighten(points: Floats, drawn: Integers, line: Floats) -> None:
-    """Least squares through the points on a line, each the less the more its slab has."""
-    count = np.zeros(_SLABS)
-    for step in range(2):
-        sums = np.zeros(7)
-        for point in drawn:
-            up = points[point, 2]
-            east = points[point, 0] - line[0] - line[2] * up
-            north = points[point, 1] - line[1] - line[3] * up
-            if east * east + north * north > _ON_LINE_M * _ON_LINE_M:
-                continue
-            slab = int(up / SLAB_M)
-            if step == 0:
-                count[slab] += 1.0
-                continue
-            weight = 1.0 / count[slab]
-            sums[0] += weight
-            sums[1] += weight * up
-            sums[2] += weight * up * up
-            sums[3] += weight * east
-            sums[4] += weight * east * up
-            sums[5] += weight * north
-            sums[6] += weight * north * up
-    spread = sums[0] * sums[2] - sums[1] * sums[1]
-    if spread <= 1e-6:
-        return
-    line[0] += (sums[2] * sums[3] - sums[1] * sums[4]) / spread
-    line[2] += (sums[0] * sums[4] - sums[1] * sums[3]) / spread
-    line[1] += (sums[2] * sums[5] - sums[1] * sums[6]) / spread
-    line[3] += (sums[0] * sums[6] - sums[1] * sums[5]) / spread
 
 
 @kernel
@@ -424,13 +252,13 @@ def _about_line(points: Floats, drawn: Integers, line: Floats) -> Floats:
     """(4, n) how far points lie to the east and north of a line and in plan; what each counts."""
     about = np.empty((4, drawn.size))
     slabs = np.empty(drawn.size, np.int64)
-    near = np.ones(_SLABS)
+    near = np.ones(MOST_SLABS)
     for number in range(drawn.size):
         up = points[drawn[number], 2]
         about[0, number] = points[drawn[number], 0] - line[0] - line[2] * up
         about[1, number] = points[drawn[number], 1] - line[1] - line[3] * up
         about[2, number] = math.sqrt(about[0, number] ** 2 + about[1, number] ** 2)
-        slabs[number] = min(max(int(up / SLAB_M), 0), _SLABS - 1)
+        slabs[number] = min(max(int(up / SLAB_M), 0), MOST_SLABS - 1)
         near[slabs[number]] += about[2, number] < BESIDE_M
     for number in range(drawn.size):
         about[3, number] = 1.0 / near[slabs[number]]
@@ -471,14 +299,14 @@ def _off(points: Floats, point: int, shaft: Floats) -> float:
 @kernel
 def _clear_slabs(points: Floats, shaft: Floats) -> Flags:
     """Slabs between its low and top that have more on it than beside it; all, if few have."""
-    on, beside = np.zeros(_SLABS, np.int64), np.zeros(_SLABS, np.int64)
-    low, top = int(shaft[LOW] / SLAB_M), min(int(shaft[TOP] / SLAB_M) + 1, _SLABS)
+    on, beside = np.zeros(MOST_SLABS, np.int64), np.zeros(MOST_SLABS, np.int64)
+    low, top = int(shaft[LOW] / SLAB_M), min(int(shaft[TOP] / SLAB_M) + 1, MOST_SLABS)
     for point in range(len(points)):
         slab = int(points[point, 2] / SLAB_M)
         if points[point, 2] < 0 or slab < low or slab >= top:
             continue
         off = abs(_off(points, point, shaft))
-        if off < _ON_LINE_M:
+        if off < ON_LINE_M:
             on[slab] += 1
         elif off < BESIDE_M:
             beside[slab] += 1
@@ -500,7 +328,7 @@ def _fit(points: Floats, is_clear: Flags, limits: ShaftLimits, shaft: Floats) ->
         squares, count = 0.0, 0
         for point in range(len(points)):
             up = points[point, 2]
-            if up < 0 or not is_clear[min(int(up / SLAB_M), _SLABS - 1)]:
+            if up < 0 or not is_clear[min(int(up / SLAB_M), MOST_SLABS - 1)]:
                 continue
             off = _off(points, point, shaft)
             if abs(off) > tolerance:
@@ -539,40 +367,70 @@ def _fit(points: Floats, is_clear: Flags, limits: ShaftLimits, shaft: Floats) ->
 @kernel
 def _followed(points: Floats, limits: ShaftLimits, shaft: Floats) -> float:
     """Write how far down and up the shaft was seen; its top."""
-    seen = np.zeros(_SLABS, np.int64)
+    seen = np.zeros(MOST_SLABS, np.int64)
+    about = np.zeros((MOST_SLABS, _ROUND_SECTORS), np.int64)
     tolerance = max(0.008, 3 * shaft[NOISE])
     middle, weight = 0.0, 0
     for point in range(len(points)):
         up = points[point, 2]
-        if 0.0 < up < _SLABS * SLAB_M and abs(_off(points, point, shaft)) < tolerance:
-            seen[int(up / SLAB_M)] += 1
-            if limits.low_m <= up <= limits.high_m:
-                middle += up
-                weight += 1
+        off = _off(points, point, shaft)
+        if not 0.0 < up < MOST_SLABS * SLAB_M or off < -tolerance or off > BESIDE_M:
+            continue
+        if off > tolerance:
+            about[int(up / SLAB_M), _sector(points, point, shaft, _ROUND_SECTORS)] += 1
+            continue
+        seen[int(up / SLAB_M)] += 1
+        if limits.low_m <= up <= limits.high_m:
+            middle += up
+            weight += 1
+    _without_leaves(seen, about, shaft, tolerance)
     start = int(middle / max(weight, 1) / SLAB_M)
     most = int(limits.gap_m / SLAB_M)
-    low, top, gap = start, start, 0
-    for slab in range(start, _SLABS):
-        gap = 0 if seen[slab] > 0 else gap + 1
-        if gap > most:
-            break
-        if seen[slab] > 0:
-            top = slab
-    gap = 0
-    for slab in range(start, -1, -1):
-        gap = 0 if seen[slab] > 0 else gap + 1
-        if gap > most:
-            break
-        if seen[slab] > 0:
-            low = slab
+    low, top = _last_seen(seen, start, -1, most), _last_seen(seen, start, 1, most)
     shaft[LOW], shaft[TOP] = low * SLAB_M, (top + 1) * SLAB_M
     return float(shaft[TOP])
 
 
 @kernel
+def _last_seen(seen: Integers, start: int, step: int, most: int) -> int:
+    """The last slab upwards or downwards before more are hidden than may be."""
+    last, slab = start, start
+    while 0 <= slab < MOST_SLABS and abs(slab - last) <= most:
+        if seen[slab] > 0:
+            last = slab
+        slab += step
+    return last
+
+
+@kernel
+def _without_leaves(seen: Integers, about: Integers, shaft: Floats, tolerance: float) -> None:
+    """Clear slabs that show no more on a shaft than the leaves about it put there by chance."""
+    ring = BESIDE_M * (2 * shaft[RADIUS] + BESIDE_M)
+    share = 4 * shaft[RADIUS] * tolerance / ring
+    leaves = np.empty(MOST_SLABS)
+    for slab in range(MOST_SLABS):
+        leaves[slab] = share * _ROUND_SECTORS * np.sort(about[slab])[_NO_PLATE]
+    on = seen.copy()
+    for slab in range(MOST_SLABS):
+        low, high = max(slab - _POOLED, 0), slab + _POOLED + 1
+        if on[low:high].sum() <= _CHANCE * leaves[low:high].sum():
+            seen[slab] = 0
+
+
+@kernel
+def _sector(points: Floats, point: int, shaft: Floats, sectors: int) -> int:
+    """In which of the sectors about a shaft's axis a point lies."""
+    up = points[point, 2] - LEVEL_M
+    east = points[point, 0] - shaft[EAST] - shaft[LEAN_EAST] * up
+    north = points[point, 1] - shaft[NORTH] - shaft[LEAN_NORTH] * up
+    turn = (math.atan2(north, east) / math.pi + 1) / 2
+    return int(min(int(turn * sectors), sectors - 1))
+
+
+@kernel
 def _tell(points: Floats, shaft: Floats) -> None:
     """Count what is on, in and beside the shaft."""
-    on, beside = np.zeros(_SLABS, np.int64), np.zeros(_SLABS, np.int64)
+    on, beside = np.zeros(MOST_SLABS, np.int64), np.zeros(MOST_SLABS, np.int64)
     arc = np.zeros(_SECTORS, np.bool_)
     inside = 0
     tolerance = max(0.008, 3 * shaft[NOISE])
@@ -582,15 +440,11 @@ def _tell(points: Floats, shaft: Floats) -> None:
         if up < shaft[LOW] or up >= shaft[TOP]:
             continue
         off = _off(points, point, shaft)
-        slab = min(int(up / SLAB_M), _SLABS - 1)
+        slab = min(int(up / SLAB_M), MOST_SLABS - 1)
         if abs(off) < tolerance:
             on[slab] += 1
             top = max(top, up)
-            east = points[point, 0] - shaft[EAST] - shaft[LEAN_EAST] * (up - LEVEL_M)
-            north = points[point, 1] - shaft[NORTH] - shaft[LEAN_NORTH] * (up - LEVEL_M)
-            arc[min(int((math.atan2(north, east) / math.pi + 1) / 2 * _SECTORS), _SECTORS - 1)] = (
-                True
-            )
+            arc[_sector(points, point, shaft, _SECTORS)] = True
         elif off < 0:
             inside += 1
         elif off < BESIDE_M:

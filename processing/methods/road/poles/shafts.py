@@ -32,9 +32,9 @@ from processing.methods.road.poles.shaft_kernels import (
     SLABS,
     TAPER,
     TOP,
-    ShaftLimits,
     shafts_kernel,
 )
+from processing.methods.road.poles.surface_lines import ShaftLimits
 from processing.recording.columns.ordering import chunk_ranges
 from processing.recording.drive import Drive
 
