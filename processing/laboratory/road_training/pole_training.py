@@ -43,6 +43,7 @@ from processing.methods.road.objects.survey import survey_columns
 from processing.methods.road.poles.pole_confidence import PoleFacts, facts_of, is_low
 from processing.methods.road.poles.roofs import fellows_of
 from processing.methods.road.poles.shaft_kernels import FREE
+from processing.methods.road.poles.shaft_sides import seen_sides
 from processing.methods.road.poles.shafts import Shaft, find_shafts
 from processing.methods.road.poles.street_poles import (
     REACH_M,
@@ -56,18 +57,26 @@ from processing.scoring.poles import POLES
 
 EXPECTED_LOW = WeightPrior(
     (
-        0.0,
-        *PoleFacts(
-            -3, 3, -5, 4, 3, 1.5, 1, -2, -8, -8, -4, -0.1, -1, -0.5, 1, -0.1, 0.1, 0.1, 0.1, -2, -8
-        ),
+        *(0.0, -3, 3, -5, 4, 3, 1.5, 1, -2, -8, -8, -4, -0.1),
+        *(-1, -0.5, 1, -0.1, 0.1, 0.1, 0.1, -2, -8, -3, -5),
     ),
-    (4.0, *PoleFacts(3, 3, 5, 4, 4, 1.5, 3, 2, 6, 6, 3, 0.1, 2, 1, 1, 0.1, 0.1, 0.1, 0.1, 2, 8)),
+    (
+        *(4.0, 3, 3, 5, 4, 4, 1.5, 3, 2, 6, 6, 3, 0.1),
+        *(2, 1, 1, 0.1, 0.1, 0.1, 0.1, 2, 8, 3, 5),
+    ),
 )
 EXPECTED_HIGH = WeightPrior(
-    (0.0, *PoleFacts(-3, 2, -4, 3, 3, 1, 1, -2, -1, -4, -2, -4, -1, -1, 1, -3, 2, 2, 3, -1, -5)),
-    (4.0, *PoleFacts(3, 2, 4, 3, 4, 1.5, 3, 2, 2, 5, 2, 3, 2, 2, 2, 3, 2, 2, 3, 2, 5)),
+    (
+        *(0.0, -3, 2, -4, 3, 3, 1, 1, -2, -1, -4, -2, -4),
+        *(-1, -1, 1, -3, 2, 2, 3, -1, -5, -5, -5),
+    ),
+    (
+        *(4.0, 3, 2, 4, 3, 4, 1.5, 3, 2, 2, 5, 2, 3),
+        *(2, 2, 2, 3, 2, 2, 3, 2, 5, 5, 5),
+    ),
 )
-"""Tens of streets have few poles of each kind, so much is left to what reasoning expects."""
+"""A constant, and in the order of `PoleFacts`: tens of streets have few poles of each kind, so much
+is left to what reasoning expects."""
 
 _SEEDS, _AVENUES, _CHECK = "900-917", "600-615", "918-923"
 """Streets that the weights were learnt from, usual ones and avenues, and others to check with."""
@@ -144,7 +153,8 @@ def _judge_shafts(scene: RoadScene) -> Iterator[tuple[bool, PoleFacts, bool]]:
             local = around.local[around.of(number)] - shaft.foot
             beside = surroundings_of(local, shaft, usual_m, fellows[number])
             carried = carried_if_likely(own_points(around, number, shaft), shaft, usual_m)
-            yield is_low(shaft), facts_of(shaft, beside, carried, usual_m), label
+            sides = seen_sides(scene.drives, shaft, plan.origin)
+            yield is_low(shaft), facts_of(shaft, beside, carried, sides, usual_m), label
 
 
 def _codes(scene: RoadScene) -> list[NDArray[np.uint8]]:

@@ -98,6 +98,8 @@ class Shaft:
         All that the kernel told of it, about its column.
     drives, points : (n,) int64
         Its points, the lowest first: of which drive each is, and its number there.
+    local : (n, 3) float64
+        The same points, m about its foot.
     """
 
     foot: Floats
@@ -111,6 +113,7 @@ class Shaft:
     told: Floats
     drives: Integers
     points: Integers
+    local: Floats
 
     def radius_at(self, height_m: float) -> float:
         """Radius at a height above the foot, m."""
@@ -221,8 +224,9 @@ def _standing(columns: FoundColumns, gathered: ColumnPoints, column: int, told: 
     is_on &= up <= told[TOP] - LEVEL_M
     lines = np.flatnonzero(is_on)
     lines = lines[np.argsort(up[lines], kind="stable")]
+    foot = np.array([*(middle + lean * rise), height])
     return Shaft(
-        foot=np.array([*(middle + lean * rise), height]),
+        foot=foot,
         lean=lean.copy(),
         radius_m=float(told[RADIUS] + told[TAPER] * (LEVEL_M - rise)),
         taper=float(told[TAPER]),
@@ -233,6 +237,7 @@ def _standing(columns: FoundColumns, gathered: ColumnPoints, column: int, told: 
         told=told.copy(),
         drives=gathered.drives[part][lines],
         points=gathered.points[part][lines],
+        local=local[lines] - foot,
     )
 
 

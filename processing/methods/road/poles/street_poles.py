@@ -16,10 +16,12 @@ from processing.core.monitor import Monitor, PartMonitor
 from processing.methods.road.objects.column_points import ColumnPoints, points_about
 from processing.methods.road.objects.survey import survey_columns
 from processing.methods.road.poles.carried import Carried, carried_of, is_short, type_of
+from processing.methods.road.poles.mirror_images import mirror_images
 from processing.methods.road.poles.pole_confidence import chance_of, facts_of, is_low
 from processing.methods.road.poles.reflectors import ReflectorSearch
 from processing.methods.road.poles.roofs import fellows_of
 from processing.methods.road.poles.shaft_kernels import LEVEL_M, POINTS
+from processing.methods.road.poles.shaft_sides import seen_sides
 from processing.methods.road.poles.shafts import Shaft, find_shafts
 from processing.methods.road.poles.surroundings import surroundings_of
 from processing.recording.drive import Drive
@@ -32,6 +34,9 @@ _APART_M = 0.4
 
 _LEAST_CHANCE = 0.05
 """What is less likely a pole is measured no further."""
+
+_LIKELY = 0.3
+"""Of what is less likely a pole nobody asks whether a pane mirrors it."""
 
 _ROUGH = 2.5
 """Noise over the usual one beyond which nobody asks what a shaft carries."""
@@ -110,10 +115,14 @@ def street_poles(drives: Sequence[Drive], monitor: Monitor) -> tuple[StreetPole,
         local = around.local[around.of(number)] - shaft.foot
         carried = carried_if_likely(own_points(around, number, shaft), shaft, usual_m)
         beside = surroundings_of(local, shaft, usual_m, fellows[number])
-        facts = facts_of(shaft, beside, carried, usual_m)
+        sides = seen_sides(drives, shaft, plan.origin)
+        facts = facts_of(shaft, beside, carried, sides, usual_m)
         chance = chance_of(facts, is_low=is_low(shaft))
         if chance >= _LEAST_CHANCE:
             sure.append((chance, number, carried))
+    asked = [number for chance, number, _ in sure if chance >= _LIKELY]
+    images = mirror_images(drives, plan, shafts, asked, PartMonitor(monitor, 0.9, 1.0))
+    sure = [one for one in sure if one[1] not in images]
     reflectors = ReflectorSearch(drives, shafts, around, plan.origin)
     poles: list[StreetPole] = []
     for chance, number, carried in sorted(sure, key=lambda one: (-one[0], one[1])):

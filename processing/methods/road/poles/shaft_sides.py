@@ -1,0 +1,120 @@
+"""Which sides of a shaft were seen: round bodies show the half that faces the scanner.
+
+What a circle was fitted to may be the corner of a house, a square post, or two edges of a wall, of
+which one turns its back. Noise and distance change neither measure.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from processing.core.arrays import Floats
+from processing.methods.road.poles.shafts import Shaft
+from processing.recording.drive import Drive
+
+_FEWEST = 12
+"""Points from which a section's shape is told: twice what is fitted to them, and more."""
+
+_SURE = 2.0
+"""Standard deviations taken off a section's corners: what noise alone makes."""
+
+_BEHIND = 0.2
+"""Sine of the angle beyond its rim at which a point is on the side turned away: the head stands a
+metre beside the place of the vehicle that is known, and points are off by their noise."""
+
+_SQUARE = 0.1
+"""Of the radius by which corners of square posts, which go four times in and out about the axis,
+stand off a circle fitted to them; 0.14 by integration, less where edges are rounded."""
+
+
+@dataclass(frozen=True)
+class SeenSides:
+    """How the points of a shaft lie about its axis.
+
+    Attributes
+    ----------
+    square : float
+        How far its section goes in and out four times about the axis, over what a square does, 0
+        to 1.
+    behind : float
+        Share of its points on the side that is turned away from the vehicle; 0 where its way is
+        not known.
+    """
+
+    square: float
+    behind: float
+
+
+def seen_sides(drives: Sequence[Drive], shaft: Shaft, origin: Floats) -> SeenSides:
+    """How the points of a shaft lie about its axis.
+
+    Parameters
+    ----------
+    origin : (3,) float64
+        Of the plan, m, project CRS.
+    """
+    up = shaft.local[:, 2]
+    beside = shaft.local[:, :2] - up[:, None] * shaft.lean
+    radii = shaft.radius_m - shaft.taper * up
+    return SeenSides(
+        _square(beside, radii), _behind(towards_vehicle(drives, shaft, origin), beside)
+    )
+
+
+def _square(beside: Floats, radii: Floats) -> float:
+    """Amplitude of the fourth harmonic of a section's radius, sure of, over a square's."""
+    if len(beside) < _FEWEST:
+        return 0.0
+    turn = np.arctan2(beside[:, 1], beside[:, 0])
+    off = np.hypot(beside[:, 0], beside[:, 1]) - radii
+    # A circle a little aside or too wide is none of it.
+    waves = [np.ones(len(off))]
+    for times in (1, 4):
+        waves += [np.cos(times * turn), np.sin(times * turn)]
+    design = np.column_stack(waves)
+    cofactors = np.linalg.inv(design.T @ design + 1e-6 * np.eye(len(waves)))
+    found = cofactors @ design.T @ off
+    scatter = float(((off - design @ found) ** 2).sum()) / (len(off) - len(waves))
+    unsure = float(np.sqrt(scatter * np.trace(cofactors[3:, 3:])))
+    sure = float(np.hypot(found[3], found[4])) - _SURE * unsure
+    return min(max(sure / float(np.median(radii)), 0.0) / _SQUARE, 1.0)
+
+
+def _behind(towards: Floats, beside: Floats) -> float:
+    """Share of the points that the shaft itself would have hidden."""
+    is_known = np.isfinite(towards[:, 0])
+    if not is_known.any():
+        return 0.0
+    side = (beside * towards)[is_known].sum(axis=1)
+    lengths = np.linalg.norm(towards[is_known], axis=1) * np.linalg.norm(beside[is_known], axis=1)
+    return float((side < -_BEHIND * lengths).mean())
+
+
+def towards_vehicle(drives: Sequence[Drive], shaft: Shaft, origin: Floats) -> Floats:
+    """The way from a shaft's axis to where the vehicle was when each point was measured.
+
+    Parameters
+    ----------
+    origin : (3,) float64
+        Of the plan, m, project CRS.
+
+    Returns
+    -------
+    (n, 2) float64
+        In plan, m; NaN where its way is not known.
+    """
+    towards = np.full((shaft.points.size, 2), np.nan)
+    axis = shaft.foot[:2] + origin[:2] + shaft.lean * shaft.local[:, 2:]
+    for number in np.unique(shaft.drives).tolist():
+        trajectory = drives[number].trajectory
+        if trajectory is None:
+            continue
+        mine = np.flatnonzero(shaft.drives == number)
+        times = np.asarray(drives[number].columns["time"][shaft.points[mine]])
+        is_known = trajectory.covers(times)
+        mine = mine[is_known]
+        towards[mine] = trajectory.positions_at(times[is_known])[:, :2] - axis[mine]
+    return towards
