@@ -80,7 +80,6 @@ def surface_line(points: Floats, drawn: Integers, limits: ShaftLimits, line: Flo
     """The steep line that the most slabs have points on: place at height 0 and lean; how many."""
     best, state = 0.0, 1
     guess = np.zeros(4)
-    on = np.zeros(MOST_SLABS)
     starts = np.zeros(MOST_SLABS + 1, np.int64)
     ordered = _by_slab(points, drawn, starts)
     near = np.ascontiguousarray(points[ordered].T)
