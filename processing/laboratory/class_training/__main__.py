@@ -4,8 +4,9 @@
 
 Needs the extra ``train``. Streets of ``--seeds`` and, recorded by heads of any height, tilt and
 rate, of ``--mounted`` are learnt from, each head thinned, shaken and brightened in ``--variants``
-ways; those of ``--check`` are not. Of the avenues ``--kept``, which aren't either, a sample is
-shipped for learning from corrections; ``--sample-only`` makes nothing else.
+ways, every third as one scan from one place; those of ``--check`` are not. Of the avenues
+``--kept``, which aren't either, a sample is shipped for learning from corrections;
+``--sample-only`` makes nothing else.
 ``--deliveries`` are folders with truths that are only scored.
 ``--score-only`` leaves the models as they are. ``--pictures`` is a folder for the confusion matrix
 of each street that is scored, and for images of its true and found classes. The same seeds give the
@@ -88,7 +89,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--kept", default="600-609", help="avenues a sample is shipped of")
     parser.add_argument("--check", default="3100-3103", help="streets that are only scored")
     parser.add_argument("--length", type=float, default=60.0, help="m of each")
-    parser.add_argument("--variants", type=int, default=2, help="of each head")
+    parser.add_argument("--variants", type=int, default=3, help="of each head")
     parser.add_argument("--deliveries", type=Path, nargs="*", default=[])
     parser.add_argument("--pictures", type=Path)
     parser.add_argument("--score-only", action="store_true")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -37,6 +37,17 @@ handheld ones."""
 _LEAST_GAIN, _MOST_GAIN, _OFFSET = 0.5, 1.6, 0.5
 """Contrast, and doublings by which all intensities are brighter: scanners count light as they
 please."""
+
+
+_DARK = 0.2
+"""Share of the variants without intensity, as some deliveries are."""
+
+_EVERY, _STANDING = 3, 2
+"""Every third variant is thinned as one scan from one place would be."""
+
+_EYE_M, _NEAREST_M, _FARTHEST_M = 2.0, 1.0, 10.0
+"""Height of that place above a point of the street, and range within which all points stay: beyond
+it their number falls with the squared range, from 1 m (a few hundred points of a house) to 10 m."""
 
 
 @dataclass(frozen=True)
@@ -76,7 +87,9 @@ def labelled_cells(scene: RoadScene, variants: int, seed: int) -> Iterator[Label
         around = DriveSurroundings.of(drive, SilentMonitor())
         for variant in range(variants):
             rng = np.random.default_rng((seed, number, variant))
-            yield _variant(around, labels, rng)
+            is_standing = variant % _EVERY == _STANDING
+            thinned = _as_one_scan if is_standing else _as_slower_scanner
+            yield _variant(around, labels, thinned(drive, rng), rng)
 
 
 def labels_of_drive(drive: Drive, truth: Path) -> NDArray[np.uint8]:
@@ -100,9 +113,10 @@ def codes_of_cells(cells: ClassCells, labels: NDArray[np.uint8]) -> NDArray[np.u
     return codes
 
 
-def _variant(around: DriveSurroundings, labels: NDArray[np.uint8], rng: Generator) -> LabelledCells:
+def _variant(
+    around: DriveSurroundings, labels: NDArray[np.uint8], points: Integers, rng: Generator
+) -> LabelledCells:
     drive = around.drive
-    points = _thinned(drive, rng.choice(np.array(_THINNINGS)))
     if points.size > _MOST_POINTS:
         first = int(rng.integers(points.size - _MOST_POINTS))
         points = points[first : first + _MOST_POINTS]
@@ -113,15 +127,26 @@ def _variant(around: DriveSurroundings, labels: NDArray[np.uint8], rng: Generato
     gain, offset = rng.uniform(_LEAST_GAIN, _MOST_GAIN), rng.normal(0.0, _OFFSET)
     relative = (intensity + 1) / (around.ground_intensity + 1)
     changed = (around.ground_intensity + 1) * relative**gain * 2**offset - 1
+    if rng.random() < _DARK:
+        changed[:] = around.ground_intensity
     bright = np.clip(np.rint(changed), 0, np.iinfo(np.uint16).max).astype(np.uint16)
     cells = around.cells_of(local, bright, SilentMonitor())
     return LabelledCells(cells, codes_of_cells(cells, labels[points]))
 
 
-def _thinned(drive: Drive, steps: Sequence[int] | NDArray[np.int64]) -> Integers:
+def _as_slower_scanner(drive: Drive, rng: Generator) -> Integers:
     """Every so many rows, and of these every so many points."""
     starts = np.asarray(image_of(drive, drive.pixel_kind).row_starts)
     rows = np.repeat(np.arange(starts.size - 1), np.diff(starts))
     places = np.arange(drive.count) - starts[rows]
-    every_row, every_point = int(steps[0]), int(steps[1])
+    every_row, every_point = rng.choice(np.array(_THINNINGS)).tolist()
     return np.flatnonzero((rows % every_row == 0) & (places % every_point == 0))
+
+
+def _as_one_scan(drive: Drive, rng: Generator) -> Integers:
+    """As many as a scanner would measure from one place of the street."""
+    xyz = drive.xyz(slice(0, drive.count))
+    eye = xyz[rng.integers(drive.count)] + (0.0, 0.0, _EYE_M)
+    near_m = np.exp(rng.uniform(np.log(_NEAREST_M), np.log(_FARTHEST_M)))
+    squared = ((xyz - eye) ** 2).sum(axis=1)
+    return np.flatnonzero(rng.random(drive.count) * squared < near_m**2)
