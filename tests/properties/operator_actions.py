@@ -19,6 +19,8 @@ from PySide6.QtWidgets import (
 )
 
 from processing.image.attributes.attributes import available
+from processing.recording.columns.point_features import POINT_FEATURES
+from processing.recording.kinds import ImageKind
 from tests.properties.operator_input import CTRL, FREE, RIGHT, SHIFT, Operator
 from tests.properties.operator_views import review, stand_otherwise
 
@@ -312,10 +314,15 @@ def work_on_plane(operator: Operator, choice: random.Random) -> None:
 
 
 def change_look(operator: Operator, choice: random.Random) -> None:
-    drive = operator.parts.document.drive(operator.parts.document.shared.view_settings.drive_id)
-    names = [f"show-{one}" for one in available(drive)]
-    names += [f"image-{kind.value}" for kind in drive.image_kinds]
-    operator.trigger(choice.choice(names))
+    settings = operator.parts.document.shared.view_settings
+    drive = operator.parts.document.drive(settings.drive_id)
+    chosen = choice.choice((*available(drive), *drive.image_kinds))
+    if isinstance(chosen, ImageKind):
+        operator.trigger(f"image-{chosen.value}")
+    elif chosen in POINT_FEATURES:  # they have no actions, only entries above the image
+        settings.change_look(attribute=chosen)
+    else:
+        operator.trigger(f"show-{chosen}")
 
 
 def change_drive(operator: Operator, choice: random.Random) -> None:
