@@ -44,6 +44,7 @@ from processing.laboratory.class_training.examples import (
 from processing.laboratory.class_training.fitting import ForestSize, fit_forest
 from processing.laboratory.class_training.pictures import write_confusion, write_label_image
 from processing.laboratory.class_training.sample import kept_sample
+from processing.laboratory.seed_ranges import seeds_of
 from processing.methods.classes.class_models import AGAIN, ALONE, MODELS, SAMPLE, shipped_models
 from processing.methods.classes.class_trees import class_shares
 from processing.methods.classes.drive_classes import classify_drive
@@ -75,7 +76,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         _make(options)
     if not options.score_only:
         _keep_sample(options)
-    checked = simulated_scenes(_seeds(options.check), options.length)
+    checked = simulated_scenes(seeds_of(options.check), options.length)
     for scene in itertools.chain(checked, given_scenes(options.deliveries)):
         _say(_score_line(scene, options.pictures))
     return 0
@@ -128,7 +129,7 @@ def _make(options: argparse.Namespace) -> None:
 
 
 def _keep_sample(options: argparse.Namespace) -> None:
-    scenes = avenue_scenes(_seeds(options.kept), options.length)
+    scenes = avenue_scenes(seeds_of(options.kept), options.length)
     path = path_of("models") / Path(MODELS).name / SAMPLE
     write_examples(kept_sample(scenes, shipped_models()), path)
     _say(f"{path.name}: {path.stat().st_size / 1e3:,.0f} kB")
@@ -136,9 +137,9 @@ def _keep_sample(options: argparse.Namespace) -> None:
 
 def _learnt(options: argparse.Namespace) -> Iterator[RoadScene]:
     return itertools.chain(
-        simulated_scenes(_seeds(options.seeds), options.length),
-        simulated_scenes(_seeds(options.worn), options.length, worn_options_of),
-        mounted_scenes(_seeds(options.mounted), options.length),
+        simulated_scenes(seeds_of(options.seeds), options.length),
+        simulated_scenes(seeds_of(options.worn), options.length, worn_options_of),
+        mounted_scenes(seeds_of(options.mounted), options.length),
     )
 
 
@@ -225,11 +226,6 @@ def _reliability_words(reliability: Reliability) -> str:
         if one.accepted.of
     )
     return f"calibration error {reliability.calibration_error:.3f}, {bins}"
-
-
-def _seeds(text: str) -> range:
-    first, _, last = text.partition("-")
-    return range(int(first), int(last or first) + 1) if first else range(0)
 
 
 def _say(line: str) -> None:

@@ -37,6 +37,7 @@ from processing.laboratory.accuracy.road.road_scenes import (
     simulated_scenes,
 )
 from processing.laboratory.class_training.examples import NOISE, labels_of_drive
+from processing.laboratory.seed_ranges import seeds_of
 from processing.methods.point_features.drive_features import computable_features, drive_features
 from processing.recording.columns.point_features import POINT_FEATURES, SELECTED
 from processing.recording.drive import Drive
@@ -91,9 +92,9 @@ class PointSample:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Print the tables."""
     options = _parser().parse_args(arguments)
-    learnt = _joined(_samples(simulated_scenes(_seeds(options.seeds), options.length)))
-    valid = _joined(_samples(simulated_scenes(_seeds(options.validation), options.length)))
-    tested = dict(_samples(simulated_scenes(_seeds(options.check), options.length)))
+    learnt = _joined(_samples(simulated_scenes(seeds_of(options.seeds), options.length)))
+    valid = _joined(_samples(simulated_scenes(seeds_of(options.validation), options.length)))
+    tested = dict(_samples(simulated_scenes(seeds_of(options.check), options.length)))
     tested |= dict(_samples(given_scenes(options.samples)))
     importance = _importance(_forest(valid, range(len(NAMES))))
     _say_importance(importance)
@@ -252,11 +253,6 @@ def _say_importance(importance: NDArray[np.float64]) -> None:
     kept = [at for at in order if importance[at] >= _LEAST_IMPORTANCE]
     words = ", ".join(f"{NAMES[at]} {importance[at]:.1%}" for at in kept)
     _say(f"{len(kept)} features of at least 1.5 %: {words}")
-
-
-def _seeds(text: str) -> range:
-    first, _, last = text.partition("-")
-    return range(int(first), int(last or first) + 1) if first else range(0)
 
 
 def _say(line: str) -> None:

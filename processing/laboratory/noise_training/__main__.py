@@ -31,6 +31,7 @@ from processing.laboratory.noise_training.relief import on_relief
 from processing.laboratory.noise_training.scanners import AIRBORNE, MOBILE, STANDING
 from processing.laboratory.noise_training.scenes import TrainingScene, scene_of, thin_scene
 from processing.laboratory.noise_training.scores import score_line
+from processing.laboratory.seed_ranges import seeds_of
 from processing.methods.noise.combined import (
     FIRST_LOOK,
     FIRST_LOOK_IN_SPACE,
@@ -78,7 +79,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             _make(what, options)
         if what == "space" and not options.score_only:
             _make_first_look_in_space(options)
-        for seed in _seeds(options.held_out):
+        for seed in seeds_of(options.held_out):
             for scene, turn, name in [*_scenes(what, (seed,)), *_on_relief(what, (seed,))]:
                 _say(score_line(f"{what} {name}", _classify_scene(what, scene, turn), scene))
     return 0
@@ -173,12 +174,12 @@ def _but(folds: Sequence[Examples], fold: int) -> Examples:
 
 def _cases(what: str, options: argparse.Namespace) -> Iterator[tuple[int, str, LabelledCloud]]:
     """Scenes and recordings that are learned from, each of a fold; the same at every pass."""
-    for seed in _seeds(options.seeds):
+    for seed in seeds_of(options.seeds):
         for scene, turn, name in _scenes(what, (seed,)):
             is_space = what == "space"
             case = case_in_space(scene, seed) if is_space else case_with_beams(scene, turn, seed)
             yield seed // 12 % _FOLDS, name, case
-    for seed in _seeds(options.relief_seeds):
+    for seed in seeds_of(options.relief_seeds):
         for scene, _, name in _on_relief(what, (seed,)):
             yield seed // 12 % _FOLDS, name, case_in_space(scene, seed)
     folders = options.kept_in_space if what == "space" else options.kept_with_beams
@@ -210,9 +211,9 @@ def _on_relief(what: str, seeds: Sequence[int]) -> Iterator[tuple[TrainingScene,
 
 def _quiet_cases(options: argparse.Namespace) -> Iterator[LabelledCloud]:
     """On relief with much grass and little noise, the last as dense as a tripod's own scans."""
-    few = ((seed, _scene("space", seed)[0]) for seed in _seeds(options.quiet_seeds))
+    few = ((seed, _scene("space", seed)[0]) for seed in seeds_of(options.quiet_seeds))
     dense = (
-        (seed, scene_of(seed, STANDING, _DENSE_BUDGET)[0]) for seed in _seeds(options.dense_seeds)
+        (seed, scene_of(seed, STANDING, _DENSE_BUDGET)[0]) for seed in seeds_of(options.dense_seeds)
     )
     for seed, scene in chain(few, dense):
         meadow = on_relief(grow_grass(scene, seed), seed)
@@ -232,11 +233,6 @@ def _classify_scene(
     if what == "beams":
         return noise_codes_with_beams(scene.beams(turn), scene.intensity) > 0
     return noise_codes_in_space(scene.xyz) > 0
-
-
-def _seeds(text: str) -> range:
-    first, _, last = text.partition("-")
-    return range(int(first), int(last or first) + 1)
 
 
 def _write(name: str, trees: Trees, columns: int) -> None:

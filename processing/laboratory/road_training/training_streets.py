@@ -13,6 +13,7 @@ from processing.laboratory.accuracy.road.road_scenes import (
     given_scenes,
     simulated_scenes,
 )
+from processing.laboratory.seed_ranges import seeds_of
 from processing.laboratory.simulate.requests import StreetRequest
 
 RequestOf = Callable[[int, int, float], StreetRequest]
@@ -54,18 +55,12 @@ def training_streets(
         parser.add_argument(f"--{name}", default=default, help=f"{name} streets to learn from")
     parser.add_argument("--deliveries", type=Path, nargs="*", default=[])
     asked = parser.parse_args(arguments)
-    laid = scenes(_seeds(asked.seeds), asked.length)
+    laid = scenes(seeds_of(asked.seeds), asked.length)
     more = (
-        simulated_scenes(_seeds(getattr(asked, name)), asked.length, request_of)
+        simulated_scenes(seeds_of(getattr(asked, name)), asked.length, request_of)
         for name, (_, request_of) in (others or {}).items()
     )
     return TrainingStreets(
         itertools.chain(laid, *more, given_scenes(asked.deliveries)),
-        scenes(_seeds(asked.check), asked.length),
+        scenes(seeds_of(asked.check), asked.length),
     )
-
-
-def _seeds(text: str) -> range:
-    """Numbers from one to another; of nothing none."""
-    first, _, last = text.partition("-")
-    return range(int(first), int(last or first) + 1) if first else range(0)

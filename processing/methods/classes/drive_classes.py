@@ -187,7 +187,8 @@ def classify_drive(
     """
     near = NearThings(things)
     for one in cells_of_drive(drive, scratch, monitor, most=_POINTS_PER_PART):
-        found = classes_of_cells(one.cells, models, near.told(one.xyz), things.sought, monitor)
+        told = near.told(one.xyz[: one.own])
+        found = classes_of_cells(one.cells, models, told, things.sought, monitor)
         asked = one.points[: one.own]
         codes[asked] = found.codes[: one.own]
         confidence[asked] = found.confidence[: one.own]
@@ -257,7 +258,7 @@ def classes_of_cells(
     Parameters
     ----------
     told : ToldPoints
-        What things say of the points.
+        What things say of the first of the points; the others are on nothing.
     sought : frozenset of int
         The classes that were looked for.
     """
