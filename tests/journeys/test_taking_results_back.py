@@ -53,8 +53,8 @@ def test_columns_that_are_shown_go_and_come_back_with_undo_and_redo(
     surveyor.open_sample_street(tmp_path / "street.zuka")
     document, drive = surveyor.document, surveyor.drive
     _use(surveyor)
-    (drive.folder / "segment.bin").unlink()
-    drive.columns.release("segment")
+    with drive.columns.replacing("segment"):
+        (drive.folder / "segment.bin").unlink()
     settings = document.shared.view_settings
     without = _picture(surveyor, lambda: settings.change_look(attribute="segment"))
 

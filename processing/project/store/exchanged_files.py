@@ -7,7 +7,7 @@ the two, opening the project goes on with them: to do it twice does no harm.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection
-from contextlib import suppress
+from contextlib import AbstractContextManager, nullcontext, suppress
 from dataclasses import replace
 from pathlib import Path
 from uuid import uuid4
@@ -145,23 +145,8 @@ class ExchangedFiles:
             leaves = place.exists() and (comes or not files.comes(file)) and not leaving.exists()
             if leaves or comes:
                 self._refuse_links(coming, leaving, place)
-                self._release(file)
-            if leaves and is_link(place):
-                # A column that somebody keeps on another disk stays there.
-                if not comes:
-                    place.unlink()
-            elif leaves:
-                leaving.parent.mkdir(parents=True, exist_ok=True)
-                place.rename(leaving)
-            if comes:
-                try:
-                    place.parent.mkdir(parents=True, exist_ok=True)
-                    coming.replace(place)
-                except OSError:
-                    if leaves and leaving.exists():
-                        leaving.rename(place)
-                    raise
-            if leaves or comes:
+                with self._replacing(file):
+                    _exchange_files(place, coming if comes else None, leaving if leaves else None)
                 # The next step's note replaces this one's: by then the new names must be safe.
                 flush_names(place.parent)
 
@@ -177,8 +162,30 @@ class ExchangedFiles:
         home = self._drive_of(file.drive).folder if file.drive else self._project
         return home / file.name
 
-    def _release(self, file: StepFile) -> None:
+    def _replacing(self, file: StepFile) -> AbstractContextManager[None]:
         if file.drive:
             drive, name = self._drive_of(file.drive), Path(file.name).stem
             if column_path(drive.folder, name).name == file.name:
-                drive.columns.release(name)
+                return drive.columns.replacing(name)
+        return nullcontext()
+
+
+def _exchange_files(place: Path, coming: Path | None, leaving: Path | None) -> None:
+    """Move the file that has a place away, or another one there; or both, or neither of them."""
+    if leaving is not None:
+        if is_link(place):
+            # A column that somebody keeps on another disk stays there.
+            if coming is None:
+                place.unlink()
+        else:
+            leaving.parent.mkdir(parents=True, exist_ok=True)
+            place.rename(leaving)
+    if coming is None:
+        return
+    try:
+        place.parent.mkdir(parents=True, exist_ok=True)
+        coming.replace(place)
+    except OSError:
+        if leaving is not None and leaving.exists():
+            leaving.rename(place)
+        raise

@@ -6,8 +6,9 @@ A column is a raw little-endian file, one value or vector per point; LAS integer
 from __future__ import annotations
 
 import mmap
-from collections.abc import Mapping
-from contextlib import suppress
+import threading
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, BinaryIO, Self
 
@@ -111,7 +112,7 @@ class ColumnWriter:
 
 
 class Columns:
-    """The columns of a drive folder, read only, mapped when first asked for.
+    """The columns of a drive folder, read only, mapped when first asked for; thread-safe.
 
     Parameters
     ----------
@@ -130,6 +131,7 @@ class Columns:
         self._files: dict[str, mmap.mmap] = {}
         self._held: dict[str, NDArray[Any]] = {}
         self._varying: dict[str, VaryingColumn] = {}
+        self._opening = threading.Lock()
 
     @property
     def count(self) -> int:
@@ -156,9 +158,13 @@ class Columns:
             There is no such column.
         """
         self._pages.look()
-        if name not in self._maps:
-            self._maps[name] = self._map_column(name)
-        return self._maps[name]
+        known = self._maps.get(name)
+        if known is not None:
+            return known
+        with self._opening:
+            if name not in self._maps:
+                self._maps[name] = self._map_column(name)
+            return self._maps[name]
 
     def has_varying(self, name: str) -> bool:
         """Whether the recording has this column of varying length."""
@@ -172,9 +178,10 @@ class Columns:
         BadFile, MissingInput
             As :class:`VaryingColumn` says.
         """
-        if name not in self._varying:
-            self._varying[name] = VaryingColumn(self._folder, name, self._count, self._pages)
-        return self._varying[name]
+        with self._opening:
+            if name not in self._varying:
+                self._varying[name] = VaryingColumn(self._folder, name, self._count, self._pages)
+            return self._varying[name]
 
     def expect(self, name: str, starts: NDArray[np.int64], stops: NDArray[np.int64]) -> None:
         """Tell the system which points of a column are read next, so that the disk begins now.
@@ -216,8 +223,8 @@ class Columns:
             try:
                 with new_file(temporary) as part:
                     part.write(np.ascontiguousarray(values, dtype=dtype).data)
-                self.release(name)
-                temporary.replace(path)
+                with self.replacing(name):
+                    temporary.replace(path)
             finally:
                 temporary.unlink(missing_ok=True)
 
@@ -240,8 +247,8 @@ class Columns:
             if file.stat().st_size != self._count * width * np.dtype(dtype).itemsize:
                 message = f"column {name}: a file for other points than {self._count}"
                 raise ValueError(message)
-            self.release(name)
-            file.replace(path)
+            with self.replacing(name):
+                file.replace(path)
 
     def hold(self, name: str, values: NDArray[Any]) -> None:
         """Let a column be these values, in memory only: (n,) or (n, k), not to be changed."""
@@ -255,11 +262,18 @@ class Columns:
         """Let maps hold no more memory than they should; for long work, between its stretches."""
         self._pages.look()
 
-    def release(self, name: str) -> None:
-        """Forget the map of a column; arrays already handed out stay valid."""
-        self._maps.pop(name, None)
-        self._files.pop(name, None)
-        self._varying.pop(name, None)
+    @contextmanager
+    def replacing(self, name: str) -> Iterator[None]:
+        """While the file of a column gives way to another one: its map is forgotten.
+
+        Nobody maps a column meanwhile: a thread that did so just before the new file is in place
+        would go on reading the old one. Arrays already handed out stay valid.
+        """
+        with self._opening:
+            self._maps.pop(name, None)
+            self._files.pop(name, None)
+            self._varying.pop(name, None)
+            yield
 
     def _map_column(self, name: str) -> NDArray[Any]:
         dtype, width = COLUMN_TYPES[name]

@@ -65,8 +65,8 @@ def drive(project: Project) -> Drive:
 
 def label(drive: Drive, points: NDArray[np.int64], code: int) -> None:
     make_column(drive)
-    write_labels(drive, points, np.full(points.size, code, np.uint8))
-    drive.columns.release("label")
+    with drive.columns.replacing("label"):
+        write_labels(drive, points, np.full(points.size, code, np.uint8))
 
 
 def keep(

@@ -1,5 +1,7 @@
 """Columns hold what was appended, refuse damaged files and are replaced whole."""
 
+import threading
+
 import numpy as np
 import pytest
 
@@ -52,3 +54,24 @@ def test_a_tools_column_replaces_an_older_one_and_maps_in_use_stay_valid(tmp_pat
 def test_a_column_of_no_points_is_empty(tmp_path):
     column_path(tmp_path, "xyz").write_bytes(b"")
     assert Columns(tmp_path, 0)["xyz"].shape == (0, 3)
+
+
+def test_a_column_that_is_replaced_while_another_thread_reads_is_the_new_one_for_both(tmp_path):
+    """A view that looks at labels at the moment of an undo must not keep the old ones."""
+    columns = Columns(tmp_path, 8)
+    columns.add("label", np.zeros(8, np.uint8))
+    is_over = threading.Event()
+
+    def look() -> None:
+        while not is_over.is_set():
+            columns["label"].sum()
+
+    reader = threading.Thread(target=look)
+    reader.start()
+    try:
+        for code in range(1, 200):
+            columns.add("label", np.full(8, code, np.uint8))
+            assert columns["label"].tolist() == [code] * 8
+    finally:
+        is_over.set()
+        reader.join()
