@@ -16,6 +16,7 @@ from processing.core.scratch_arrays import scratch_array
 from processing.core.text import Text
 from processing.labels.label_column import LABEL
 from processing.map.change import Change
+from processing.methods.classes.aerial_cells import is_from_air
 from processing.methods.classes.class_models import shipped_models, shipped_sample
 from processing.methods.classes.learning import Gain, gain_of, learnt_forest
 from processing.methods.classes.own_model import ModelFacts, write_own_model
@@ -124,7 +125,7 @@ def learn(drives: Sequence[Drive], into: Path, monitor: Monitor) -> LearntModel:
     Raises
     ------
     Unsuitable
-        Too little was painted, or one class only.
+        Too little was painted, or one class only, or all of it on clouds from the air.
     NoSpace, Cancelled
     """
     with report_as_user_error(into):
@@ -163,7 +164,20 @@ def store_model(project: Project, learnt: LearntModel) -> Change:
 
 def _painted(drives: Sequence[Drive], into: Path, monitor: Monitor) -> tuple[int, PaintedCells]:
     """How many points were painted by hand, and the cells that they are of."""
-    painted = [one for one in drives if one.count and one.columns.has(LABEL)]
+    labelled = [one for one in drives if one.count and one.columns.has(LABEL)]
+    painted = [one for one in labelled if not is_from_air(one)]
+    if labelled and not painted:
+        raise Unsuitable(
+            Text(
+                "The model for clouds from the air does not learn from corrections.",
+                "上空からの点群用のモデルは、修正から学習できません。",
+            ),
+            _where(labelled),
+            Text(
+                "What you painted stays as it is.",
+                "塗ったラベルはそのまま残ります。",
+            ),
+        )
     points, found = 0, list[PaintedCells]()
     for number, part in enumerate(parts_of(monitor, [one.count for one in painted])):
         drive, scratch = painted[number], into / "scratch"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,7 +14,9 @@ from processing.core.owned_files import remove_folder
 from processing.core.parameters import ParameterChoice, choice, file, ratio, switch
 from processing.core.scratch_arrays import scratch_array
 from processing.core.text import Text
-from processing.methods.classes.class_models import ClassModels, shipped_models
+from processing.methods.classes.aerial_cells import is_from_air, spacing_m
+from processing.methods.classes.aerial_classes import classify_from_air
+from processing.methods.classes.class_models import ClassModels, aerial_models, shipped_models
 from processing.methods.classes.drive_classes import FoundClasses, classify_drive
 from processing.methods.classes.found_things import FoundThings
 from processing.methods.classes.own_model import ModelFacts, read_own_model
@@ -39,6 +42,10 @@ _OTHER = 1
 CLASSES = (2, 3, 4, 5, 6, 11, 14, 64, 65, 66, 67)
 """Ground, grass, low plants, crowns, buildings, roads, wires, what moves, signs, poles, curbs."""
 
+_TOWER = 15
+"""Of clouds from the air only: their model knows power lines' towers, and neither grass, roads,
+signs nor curbs."""
+
 
 OWN, SHIPPED = "own", "shipped"
 
@@ -49,6 +56,10 @@ _SHIPPED = Text("the program's own model", "付属のモデル")
 _WORSE = Text(
     "the program's own model; what was learnt on {date} is no better",
     "付属のモデル。{date}の学習結果は改善していません",
+)
+_FROM_AIR = Text(
+    "points lie {spacing} m apart, so the model for clouds from the air says what they are",
+    "点間隔が{spacing} mのため、上空からの点群用のモデルで分類しました",
 )
 _UNREADABLE = Text("the program's own model: {why}", "付属のモデル: {why}")
 
@@ -130,16 +141,26 @@ def mark_classes(
         for folder in folders[1:]:
             folder.mkdir()
     models, note = models_of(parameters)
+    from_air = tuple(drive for drive in drives if is_from_air(drive))
+    on_street = tuple(drive for drive in drives if drive not in from_air)
     looked, start = _NOTHING, 0.0
-    if parameters.looks_for_things:
-        looked, start = look_for_things(drives, PartMonitor(monitor, 0.0, _LOOKING)), _LOOKING
-    parts = parts_of(PartMonitor(monitor, start, 1.0), [drive.count for drive in drives])
+    if parameters.looks_for_things and on_street:
+        looked, start = look_for_things(on_street, PartMonitor(monitor, 0.0, _LOOKING)), _LOOKING
+    groups = [(drive,) for drive in on_street] + ([from_air] if from_air else [])
+    sizes = [sum(drive.count for drive in group) for group in groups]
     known = _Known(models, looked.things, parameters.least_confidence)
-    columns = tuple(
-        _mark_drive(drive, known, folder, part)
-        for drive, folder, part in zip(drives, folders, parts, strict=True)
+    folder_of = dict(zip((drive.id for drive in drives), folders, strict=True))
+    columns: dict[str, FinishedColumns] = {}
+    parts = parts_of(PartMonitor(monitor, start, 1.0), sizes)
+    for group, part in zip(groups, parts, strict=True):
+        own = [folder_of[drive.id] for drive in group]
+        for drive, found in zip(group, _mark(group, known, own, part), strict=True):
+            columns[drive.id] = found
+    if from_air:
+        note = _joined(note, _FROM_AIR.filled(spacing=f"{spacing_m(from_air):.2f}"))
+    return TogetherResult(
+        tuple(columns[drive.id] for drive in drives), note=_joined(note, looked.note)
     )
-    return TogetherResult(columns, note=_joined(note, looked.note))
 
 
 @dataclass(frozen=True)
@@ -151,20 +172,39 @@ class _Known:
     least_confidence: float
 
 
-def _mark_drive(drive: Drive, known: _Known, into: Path, monitor: Monitor) -> FinishedColumns:
-    scratch = into / "scratch"
-    with report_as_user_error(into):
+def _mark(
+    drives: tuple[Drive, ...], known: _Known, folders: Sequence[Path], monitor: Monitor
+) -> Iterator[FinishedColumns]:
+    """Classify a street's drive, or all strips of a flight together."""
+    scratch = folders[0] / "scratch"
+    with report_as_user_error(scratch):
         scratch.mkdir()
-        codes = scratch_array(scratch / "codes", np.uint8, drive.count)
-        sure = scratch_array(scratch / "confidence", np.float32, drive.count)
-        if drive.count:
-            finding = PartMonitor(monitor, 0.0, _FINDING)
+        codes = [
+            scratch_array(scratch / f"codes {n}", np.uint8, drive.count)
+            for n, drive in enumerate(drives)
+        ]
+        sure = [
+            scratch_array(scratch / f"confidence {n}", np.float32, drive.count)
+            for n, drive in enumerate(drives)
+        ]
+        finding = PartMonitor(monitor, 0.0, _FINDING)
+        if is_from_air(drives[0]):
+            classify_from_air(drives, codes, sure, scratch, finding, models=aerial_models())
+        elif drives[0].count:
             classify_drive(
-                drive, codes, sure, scratch, finding, models=known.models, things=known.things
+                drives[0],
+                codes[0],
+                sure[0],
+                scratch,
+                finding,
+                models=known.models,
+                things=known.things,
             )
-        _write(drive, FoundClasses(codes, sure), known.least_confidence, into, monitor)
+        for number, drive in enumerate(drives):
+            found = FoundClasses(codes[number], sure[number])
+            _write(drive, found, known.least_confidence, folders[number], monitor)
+            yield FinishedColumns(folders[number], (_CLASS, _CONFIDENCE), drive.count)
         remove_folder(scratch)
-    return FinishedColumns(into, (_CLASS, _CONFIDENCE), drive.count)
 
 
 def _joined(*notes: Text) -> Text:
@@ -219,10 +259,13 @@ CLASSIFY = Tool(
         "Gives every point a class with a confidence: ground (2), grass (3), low plants (4), "
         "crowns (5), buildings (6), roads (11), wires (14), vehicles and people (64), signs (65), "
         "poles and trunks (66), curbs (67), other (1). Noise keeps its class. It asks for neither "
-        "trajectory nor rows.",
+        "trajectory nor rows. Clouds from the air have a model of their own: ground, low plants, "
+        "crowns, buildings, wires, towers (15), poles and vehicles.",
         "各点にクラスと信頼度を付けます。地面（2）、草地（3）、低木（4）、樹冠（5）、建物（6）、"
         "路面（11）、電線（14）、移動体（64）、標識（65）、柱状物・幹（66）、縁石（67）、その他（1）。"
-        "ノイズのクラスはそのままです。走行軌跡もスキャンの並びも必要ありません。",
+        "ノイズのクラスはそのままです。走行軌跡もスキャンの並びも必要ありません。"
+        "上空からの点群には専用のモデルを使い、地面・低木・樹冠・建物・電線・鉄塔（15）・柱状物・"
+        "移動体に分けます。",
     ),
     group=Text("Points", "点群"),
     needs=Needs.POINTS,
@@ -234,6 +277,6 @@ CLASSIFY = Tool(
             OutputColumn(_CONFIDENCE, "float32", 1, Text("Confidence", "信頼度")),
         ),
     ),
-    gives_classes=(_OTHER, *CLASSES),
+    gives_classes=(_OTHER, *CLASSES, _TOWER),
     scorer=CLASS_SCORER,
 )

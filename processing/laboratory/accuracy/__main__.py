@@ -57,6 +57,7 @@ TABLES = {
     "removal": AccuracyTable("accuracy.filters.removal_study"),
     "street-ground": AccuracyTable("accuracy.filters.street_ground", "data"),
     "real-classes": AccuracyTable("accuracy.real_street_classes", "data"),
+    "aerial-classes": AccuracyTable("accuracy.aerial_classes", "data"),
     "landscapes": AccuracyTable("accuracy.filters.landscape_ground"),
     "volumes": AccuracyTable("accuracy.site_volumes", "sites"),
     "edges": AccuracyTable("accuracy.road.road_edges", paints=True),
@@ -67,6 +68,7 @@ TABLES = {
     "trees": AccuracyTable("accuracy.road.trees", "trees"),
     "signs": AccuracyTable("accuracy.road.signs", "streets"),
     "poles": AccuracyTable("accuracy.road.poles", "streets"),
+    "labels": AccuracyTable("accuracy.road.labels_against_tools", "streets"),
 }
 """By name, in the order in which they are made."""
 

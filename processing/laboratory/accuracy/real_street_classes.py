@@ -11,23 +11,15 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from pathlib import Path
-from tempfile import TemporaryDirectory
 
 import numpy as np
-from numpy.typing import NDArray
 
-from processing.core.monitor import SilentMonitor
 from processing.core.output_streams import write_every_character
+from processing.laboratory.accuracy.class_groups import classes_of, f_measures, groups_of
 from processing.laboratory.accuracy.filters.filter_tables import markdown_table
 from processing.laboratory.accuracy.filters.filters import write_sections
-from processing.project.importing.import_request import ImportRequest
-from processing.project.importing.importing import import_drives
-from processing.recording.columns.source_order import sources_of
-from processing.recording.drive import Drive
-from processing.tools.classify import ClassifyParameters
-from processing.tools.runner import RunRequest, columns_of, run
 
 HEADING = "### Classes of real streets"
 
@@ -80,46 +72,12 @@ def _rows(data: Path) -> Iterator[list[str]]:
         counts = np.zeros((_NONE, _NONE + 1), np.int64)
         for cloud in sorted(data.glob(f"**/{name}/*.laz")):
             with np.load(cloud.parent / "truth" / f"{cloud.stem}.npz") as truth:
-                true = _groups_of(truth["label"].astype(np.int64), labels)
-            said = _groups_of(_classes_of(cloud).astype(np.int64), GROUPS)
+                true = groups_of(truth["label"].astype(np.int64), labels, GROUPS)
+            said = groups_of(classes_of(cloud), GROUPS, GROUPS)
             known = true < _NONE
             np.add.at(counts, (true[known], said[known]), 1)
         if counts.any():
-            yield [name, f"{counts.sum():,}", *_f_measures(counts)]
-
-
-def _groups_of(codes: NDArray[np.int64], groups: Mapping[str, Sequence[int]]) -> NDArray[np.int64]:
-    """(n,) the number of each one's group; the last number for what is in none."""
-    numbers = list(GROUPS)
-    found = np.full(codes.size, _NONE)
-    for name, own in groups.items():
-        found[np.isin(codes, own)] = numbers.index(name)
-    return found
-
-
-def _classes_of(cloud: Path) -> NDArray[np.uint8]:
-    """(n,) the classes of a file's points, in its order."""
-    with TemporaryDirectory(prefix="zuka-") as position:
-        request = ImportRequest((cloud,))
-        (folder,) = import_drives(request, Path(position) / "drives", SilentMonitor())
-        drive = Drive(folder)
-        asked = RunRequest("classify", drive, ClassifyParameters())
-        result = run(asked, SilentMonitor(), into=Path(position) / "classes")
-        found = np.array(columns_of(result)["classification"])
-        _, indices = sources_of(drive.columns, drive.info.source_runs, 0, drive.count, sources=1)
-    in_order = np.zeros(found.size, np.uint8)
-    in_order[indices] = found
-    return in_order
-
-
-def _f_measures(counts: NDArray[np.int64]) -> list[str]:
-    """Mean F over the groups that there are, and F of each."""
-    hits = np.diagonal(counts)
-    true, said = counts.sum(axis=1), counts[:, :_NONE].sum(axis=0)
-    f = 2 * hits / np.maximum(true + said, 1)
-    is_there = true > 0
-    each = [f"{one:.3f}" if there else "–" for one, there in zip(f, is_there, strict=True)]
-    return [f"{f[is_there].mean():.3f}", *each]
+            yield [name, f"{counts.sum():,}", *f_measures(counts)]
 
 
 _ABOUT = """\

@@ -41,7 +41,7 @@ from processing.laboratory.class_training.examples import (
     labelled_cells,
     labels_of_drive,
 )
-from processing.laboratory.class_training.fitting import ForestSize, fit_forest
+from processing.laboratory.class_training.fitting import ForestSize, fit_forest, in_order_of
 from processing.laboratory.class_training.pictures import write_confusion, write_label_image
 from processing.laboratory.class_training.sample import kept_sample
 from processing.laboratory.seed_ranges import seeds_of
@@ -123,7 +123,7 @@ def _make(options: argparse.Namespace) -> None:
         judge = _fit(others, _ALONE_SIZE)
         for one, (chosen, stands) in zip(folds[fold], samples[fold], strict=True):
             shares = class_shares(judge, one.cells.rows, SilentMonitor())
-            rows = one.cells.with_neighbours(_in_order(shares, judge, own))[chosen]
+            rows = one.cells.with_neighbours(in_order_of(shares, judge, own))[chosen]
             again.append((rows, one.codes[chosen], stands))
     _write(_fit(again, _AGAIN_SIZE), AGAIN, again[0][0].shape[1])
 
@@ -150,16 +150,6 @@ def _fit(parts: Sequence[_Part], size: ForestSize) -> Forest:
     rows, codes, stands = (np.concatenate(column) for column in zip(*parts, strict=True))
     _say(f"fitting {len(rows):,} rows of {rows.shape[1]}")
     return fit_forest(rows, codes, stands, size)
-
-
-def _in_order(shares: NDArray[np.float32], judge: Forest, wanted: Forest) -> NDArray[np.float32]:
-    """Shares in the order of another forest's classes; none of a class that it didn't meet."""
-    ordered = np.zeros((shares.shape[0], wanted.codes.size), np.float32)
-    known = {code: column for column, code in enumerate(judge.codes.tolist())}
-    for column, code in enumerate(wanted.codes.tolist()):
-        if code in known:
-            ordered[:, column] = shares[:, known[code]]
-    return ordered
 
 
 def _write(forest: Forest, name: str, columns: int) -> None:

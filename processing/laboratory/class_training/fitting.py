@@ -62,6 +62,16 @@ def fit_forest(
     return _forest_of(model)
 
 
+def in_order_of(shares: NDArray[np.float32], judge: Forest, wanted: Forest) -> NDArray[np.float32]:
+    """Shares in the order of another forest's classes; none of a class that it didn't meet."""
+    ordered = np.zeros((shares.shape[0], wanted.codes.size), np.float32)
+    known = {code: column for column, code in enumerate(judge.codes.tolist())}
+    for column, code in enumerate(wanted.codes.tolist()):
+        if code in known:
+            ordered[:, column] = shares[:, known[code]]
+    return ordered
+
+
 # scikit-learn has no types here.
 def _forest_of(model: Any) -> Forest:
     rounds = model._predictors  # noqa: SLF001 - the only way to the nodes

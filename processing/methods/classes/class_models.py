@@ -14,6 +14,7 @@ from resources import path_of
 
 MODELS = "models/classes"
 ALONE, AGAIN, SAMPLE = "alone.onnx", "again.onnx", "sample.npz"
+AERIAL_ALONE, AERIAL_AGAIN = "aerial_alone.onnx", "aerial_again.onnx"
 
 
 @dataclass(frozen=True)
@@ -23,10 +24,14 @@ class ClassModels:
     Attributes
     ----------
     alone, again : Forest
+    is_own : bool
+        Whether the second trees learnt from somebody's corrections: they may contradict what the
+        first are sure of.
     """
 
     alone: Forest
     again: Forest
+    is_own: bool = False
 
     @property
     def again_columns(self) -> int:
@@ -38,6 +43,15 @@ class ClassModels:
 def shipped_models() -> ClassModels:
     """The models that come with the program."""
     alone, again = (read_forest(path_of(f"{MODELS}/{name}")) for name in (ALONE, AGAIN))
+    return ClassModels(alone, again)
+
+
+@cache
+def aerial_models() -> ClassModels:
+    """The models for clouds from the air."""
+    alone, again = (
+        read_forest(path_of(f"{MODELS}/{name}")) for name in (AERIAL_ALONE, AERIAL_AGAIN)
+    )
     return ClassModels(alone, again)
 
 

@@ -71,8 +71,8 @@ _CELLS_AT_ONCE = 4_096
 _HEIGHT_BITS = 0x1249249249249249 << 2
 """Every third binary digit of a cube's number: its height."""
 
-REACH_M = 1.5 * CELL_M * 2 ** (_LEVELS - 1)
-"""How far from a point others are looked at: 4.8 m."""
+REACH: float = 1.5 * 2 ** (_LEVELS - 1)
+"""How far from a point others are looked at, in cells: 4.8 m where these are as fine as usual."""
 
 
 @dataclass(frozen=True)
@@ -125,7 +125,11 @@ class ClassCells:
 
 
 def class_cells(
-    local: Floats, heights: Floats, intensity: NDArray[np.float32], monitor: Monitor
+    local: Floats,
+    heights: Floats,
+    intensity: NDArray[np.float32],
+    monitor: Monitor,
+    cell_m: float = CELL_M,
 ) -> ClassCells:
     """Cells of points with their features.
 
@@ -137,8 +141,10 @@ def class_cells(
         m above the ground.
     intensity : (n,) float32
         log2 of the intensity over that of the ground; 0 where a recording has none.
+    cell_m : float
+        Side of the finest cells.
     """
-    cells = nested_cells(local, CELL_M)
+    cells = nested_cells(local, cell_m)
     positions = np.empty(cells.codes.size, np.int32)
     used = number_kernel(cells.codes, positions)
     sums, codes = np.zeros((used, SUMS)), np.empty(used, np.int64)

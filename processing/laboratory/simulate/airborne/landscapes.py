@@ -21,6 +21,9 @@ CELL_M = 0.25
 
 _KERB_M = 0.5
 
+BUILDING, VEHICLE, BRIDGE = 6, 64, 1
+"""Classes of what stands on the ground; the contract has none for bridges."""
+
 
 @dataclass
 class Landscape:
@@ -31,6 +34,8 @@ class Landscape:
     ground : (rows, columns) float64
     solid : (rows, columns) float64
         Tops of roofs, decks and vehicles; NaN without.
+    solid_code : (rows, columns) uint8
+        What they belong to, by the classes' numbers.
     crown_top, crown_base : (rows, columns) float64
         Between these heights leaves give returns; NaN without.
     water : (rows, columns) bool
@@ -39,6 +44,7 @@ class Landscape:
 
     ground: Floats
     solid: Floats
+    solid_code: NDArray[np.uint8]
     crown_top: Floats
     crown_base: Floats
     water: NDArray[np.bool_]
@@ -47,7 +53,16 @@ class Landscape:
     def bare(cls, ground: Floats) -> Landscape:
         """Ground with nothing on it."""
         free = np.full(ground.shape, np.nan)
-        return cls(ground, free, free.copy(), free.copy(), np.zeros(ground.shape, np.bool_))
+        nothing = np.zeros(ground.shape, np.uint8)
+        return cls(ground, free, nothing, free.copy(), free.copy(), nothing.astype(np.bool_))
+
+    def add_solid(
+        self, where: tuple[slice, slice] | NDArray[np.bool_], top: Floats | float, code: int
+    ) -> None:
+        """Something of a class stands there; the higher of two things is seen."""
+        before = self.solid[where].copy()
+        self.solid[where] = np.fmax(before, top)
+        self.solid_code[where] = np.where(self.solid[where] == before, self.solid_code[where], code)
 
 
 def landscape_of(kind: str, seed: int, extent_m: float) -> Landscape:
@@ -119,7 +134,7 @@ def _add_building(
     eaves = np.median(land.ground[inside]) + random.uniform(*floors_m)
     pitch = 0.0 if half > 12.0 else random.choice([0.0, 0.5, 0.8])
     roof = eaves + pitch * (wide - np.abs(v))
-    land.solid[inside] = np.fmax(land.solid[inside], roof[inside])
+    land.add_solid(inside, roof[inside], BUILDING)
     # Roofs may meet the hill behind them, not sink into it.
     buried = inside & (land.solid < land.ground + 0.3)
     land.solid[buried] = np.nan
@@ -160,14 +175,14 @@ def _add_vehicles(land: Landscape, random: Generator, count: int) -> None:
     for _ in range(count):
         row, column = (random.uniform(0, extent_m - 6.0, 2) / CELL_M).astype(int)
         part = np.s_[row : row + round(1.8 / CELL_M), column : column + round(4.5 / CELL_M)]
-        land.solid[part] = np.fmax(land.solid[part], land.ground[part] + 1.5)
+        land.add_solid(part, land.ground[part] + 1.5, VEHICLE)
 
 
 def _add_bridge(land: Landscape, random: Generator, level_m: float, wide_m: float) -> None:
     """A deck at one height where the ground below falls away from it."""
     off = _across(random, land.ground.shape[0] * CELL_M, 0.0)
     deck = (np.abs(off) < wide_m / 2) & (land.ground < level_m - _KERB_M)
-    land.solid[deck] = level_m
+    land.solid[deck], land.solid_code[deck] = level_m, BRIDGE
 
 
 def _hillside(random: Generator, extent_m: float) -> Landscape:
@@ -255,6 +270,15 @@ def _bridge(random: Generator, extent_m: float) -> Landscape:
     return land
 
 
+def _village(random: Generator, extent_m: float) -> Landscape:
+    land = Landscape.bare(_rolling(random, extent_m, 1.5, 120.0))
+    for _ in range(int(extent_m**2 / 450)):
+        _add_building(land, random, (7.0, 18.0), (2.2, 6.5))
+    _add_trees(land, random, 0.15, 10.0)
+    _add_vehicles(land, random, int(extent_m**2 / 900))
+    return land
+
+
 KINDS: Mapping[str, Callable[[Generator, float], Landscape]] = {
     "bridge": _bridge,
     "embankment": _embankment,
@@ -263,5 +287,6 @@ KINDS: Mapping[str, Callable[[Generator, float], Landscape]] = {
     "river": _river,
     "station": _station,
     "town": _town,
+    "village": _village,
 }
 """Name of a kind of terrain to what draws it."""
