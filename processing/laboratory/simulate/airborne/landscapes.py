@@ -2,8 +2,8 @@
 
 Sithole and Vosselman 2003 describe what each of its samples is hard for: steep slopes under
 buildings and trees, gaps and low outliers, large roofs, terraces and quarry faces, embankments
-with little on them, bridges. Each kind is drawn anew from a seed; no height, width or angle is one
-of a sample.
+with little on them, bridges. A village of small houses is easier, and is what most land is. Each
+kind is drawn anew from a seed; no height, width or angle is one of a sample.
 """
 
 from __future__ import annotations

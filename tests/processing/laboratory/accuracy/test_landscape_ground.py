@@ -10,8 +10,9 @@ from processing.laboratory.accuracy.filters.landscape_ground import (
 from processing.laboratory.simulate.airborne.landscapes import KINDS
 
 
-def test_every_kind_of_landscape_is_flown_over() -> None:
-    assert set(FLIGHTS) == set(KINDS)
+def test_every_kind_of_landscape_that_is_hard_for_filters_is_flown_over() -> None:
+    # A village is easy ground: only classes are learnt from it.
+    assert set(FLIGHTS) == set(KINDS) - {"village"}
 
 
 def test_the_ground_of_a_river_and_an_embankment_is_found() -> None:
