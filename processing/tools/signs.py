@@ -114,7 +114,8 @@ def _by_positions(
     signs, without = asked_signs(found, here)
     nothing = tuple(one.line for one in without)
     whole = MissedPositions(missed.outside, missed.swapped, missed.degrees, nothing)
-    return _with_pictures(signs, drives, whole.note(), PartMonitor(monitor, _FOUND, 1.0))
+    note = _joined(whole.note(), _unsure_facing(signs))
+    return _with_pictures(signs, drives, note, PartMonitor(monitor, _FOUND, 1.0))
 
 
 def _with_pictures(
@@ -136,7 +137,7 @@ def _with_pictures(
             "Camera images that can't be read: {count}; signs on them have no picture.",
             "読み込めないカメラ画像が{count}枚あり、写っている標識の写真はありません。",
         ).filled(count=cut.unread)
-        note = Text(f"{note.en} {unread.en}".strip(), f"{note.ja}{unread.ja}")
+        note = _joined(note, unread)
     return CandidateResult(tuple(pictured), note)
 
 
@@ -151,7 +152,7 @@ def _note(drives: Sequence[Drive], found: Sequence[RoadSign], signs: Sequence[Ro
             "反射強度がない（または一定の）ため、標識板の表と裏を区別できません: {names}",
         ).filled(names=", ".join(dull))
     if signs:
-        return Text("", "")
+        return _unsure_facing(signs)
     if not found:
         return Text(
             "No upright plate was measured beside the road.",
@@ -161,6 +162,21 @@ def _note(drives: Sequence[Drive], found: Sequence[RoadSign], signs: Sequence[Ro
         f"None of {len(found)} flat things looks like a sign.",
         f"平らな物{len(found)}件のうち、標識とみなせるものはありませんでした。",
     )
+
+
+def _joined(one: Text, other: Text) -> Text:
+    return Text(f"{one.en} {other.en}".strip(), f"{one.ja}{other.ja}")
+
+
+def _unsure_facing(signs: Sequence[RoadSign]) -> Text:
+    """How many signs might as well face the other way; empty where none does."""
+    count = sum(not one.plate.evidence.is_facing_sure for one in signs)
+    if not count:
+        return Text("", "")
+    return Text(
+        "Signs whose front and back can't be told apart by their brightness: {count} of {all}.",
+        "明るさから表裏を判別できない標識があります（{all}件中{count}件）。",
+    ).filled(count=count, all=len(signs))
 
 
 def _has_no_intensity(drive: Drive) -> bool:
@@ -192,7 +208,8 @@ def _candidate(sign: RoadSign, plates: int) -> Candidate:
         "supplementary": sign.is_supplement,
         "plates": plates,
         "scan_lines": plate.evidence.turns,
-        "front_seen": plate.evidence.bright > 0.5,
+        "front_seen": plate.evidence.front_seen,
+        "facing_sure": plate.evidence.is_facing_sure,
     }
     if sign.post is not None:
         attributes["post"] = sign.post

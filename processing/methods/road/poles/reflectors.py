@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from processing.core.arrays import Floats, Integers
 from processing.methods.road.objects.column_points import ColumnPoints
 from processing.methods.road.poles.shafts import Shaft
-from processing.methods.road.signs.brightness import CLASSES, bright_bounds
+from processing.methods.road.signs.brightness import CLASSES, brightness_of
 from processing.methods.road.signs.piece_kernels import range_classes
 from processing.recording.drive import Drive
 
@@ -82,7 +82,8 @@ class ReflectorSearch:
         high = mine[above[mine] > _UPRIGHT_M]
         chosen = high if high.size >= _LEAST_HIGH * mine.size else mine
         chosen = chosen[:: chosen.size // _SAMPLE + 1]
-        return bright_bounds(self._intensity(drive, chosen), self._classes(drive, chosen))
+        brightness = brightness_of(self._intensity(drive, chosen), self._classes(drive, chosen))
+        return brightness.bounds()
 
     def _intensity(self, drive: int, lines: Integers) -> NDArray[np.uint16]:
         column = self._drives[drive].columns["intensity"]

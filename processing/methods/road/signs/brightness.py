@@ -7,6 +7,8 @@ at that range.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -36,15 +38,39 @@ _OTHER = 1.5
 are darker. Where signs are most of what was met at a range, it looks brighter still; where it looks
 darker, panes and tyres are most of it and what else stands there is as bright as elsewhere."""
 
-_SPREADS = 4.5
+SHINING = 4.5
 """How many standard deviations of all intensities lies above their middle what nothing diffuse
 reaches. Reflectances beside a road run from 0.1 to 0.6 about 0.35: white is
 about two steps above the middle, a sign's face of the least class at a thirtieth of its design
 value (JIS Z 9117: 70 cd/lx/m² against 0.3 of a white wall) twenty and more."""
 
 
-def bright_bounds(intensity: NDArray[np.uint16], classes: NDArray[np.int64]) -> Floats:
-    """The least intensity of a bright point, for each class of ranges.
+class Brightness(NamedTuple):
+    """What a head measures on diffuse things that stand, for each class of ranges.
+
+    Attributes
+    ----------
+    middles : (CLASSES,) float64
+        Intensity of the middle one.
+    steps : (CLASSES,) float64
+        Their standard deviation; infinite where nothing was measured or a recording has no
+        intensity.
+    """
+
+    middles: Floats
+    steps: Floats
+
+    def bounds(self) -> Floats:
+        """(CLASSES,) float64: the least intensity of a bright point; infinite: none is."""
+        return np.asarray(self.middles + SHINING * self.steps)
+
+
+NO_BRIGHTNESS = Brightness(np.zeros(CLASSES), np.full(CLASSES, np.inf))
+"""Of a head that measures no intensity."""
+
+
+def brightness_of(intensity: NDArray[np.uint16], classes: NDArray[np.int64]) -> Brightness:
+    """What is usual to a head, and how far things differ.
 
     Parameters
     ----------
@@ -52,20 +78,14 @@ def bright_bounds(intensity: NDArray[np.uint16], classes: NDArray[np.int64]) -> 
         Of points of upright things.
     classes : (n,) int64
         Range class of each.
-
-    Returns
-    -------
-    (CLASSES,) float64
-        Infinite where nothing was measured or a recording has no intensity.
     """
-    bounds = np.full(CLASSES, np.inf)
     if intensity.size == 0 or not intensity.any():
-        return bounds
+        return NO_BRIGHTNESS
     middles = _middles(intensity, classes)
     # One spread for all: far away a single wall may be all that there is.
     low, middle, high = np.quantile(intensity / middles[classes], (_LOW, _MIDDLE, _HIGH)).tolist()
     step = (high - low) / _STEPS
-    return np.asarray(middles * (middle + _SPREADS * step)) if step > 0 else bounds
+    return Brightness(middles * middle, middles * step) if step > 0 else NO_BRIGHTNESS
 
 
 def _middles(intensity: NDArray[np.uint16], classes: NDArray[np.int64]) -> Floats:

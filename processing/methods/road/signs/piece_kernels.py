@@ -12,6 +12,7 @@ from processing.core.arrays import Floats, Integers
 from processing.core.kernels import kernel
 from processing.methods.road.objects.ground_heights import GROUND_CELLS
 from processing.methods.road.objects.sparse_plan import cell_of
+from processing.methods.road.signs.brightness import NO_BRIGHTNESS, SHINING, Brightness
 
 ORIGIN_EVERY = 256
 """Points that share a place of the scanner: a thousandth of a second, 3 cm of the way."""
@@ -23,11 +24,17 @@ FREE, STEP, HIDDEN, GOES_ON = 0, 1, 2, 3
 """What lies beyond the end of a piece: nothing or something far behind; something a little behind;
 something nearer; the same thing."""
 
-PIECE = 18
+PIECE = 19
 FROM, TO, COUNT, BRIGHTS, BEFORE, BEHIND, FIRST, LAST, SPACING, NOISE, VIEW = (
     0, 3, 6, 7, 8, 9, 10, 11, 12, 13, 14,
 )  # fmt: skip
-"""Values of a piece; `FROM`, `TO` (its ends, m) and `VIEW` (from the scanner) take three."""
+SHINE = 18
+"""Values of a piece; `FROM`, `TO` (its ends, m) take three, `VIEW` (from the scanner, and how far)
+four; `SHINE` is the sum of how many standard deviations its points are brighter than the middle of
+diffuse things at their range."""
+
+_MOST_SHINE = 2 * SHINING
+"""Of a point: twice what a face has at least, so that one mirror on a back doesn't outshine it."""
 
 _OPEN_RUNS = 4
 """Runs that are followed at a time: a plate, the leaves before it and what shows between them."""
@@ -48,7 +55,7 @@ class PieceLimits(NamedTuple):
 
     ``lowest_m``: above the ground; ``radians``: between pulses; ``straight_m``: off a line;
     ``shortest_m``, ``longest_m``: of a piece; ``has_origin``: whether the scanner's place is known;
-    ``usual_m``: range where it is not.
+    ``usual_m``: range where it is not; ``brightness``: of diffuse things.
     """
 
     lowest_m: float
@@ -58,6 +65,7 @@ class PieceLimits(NamedTuple):
     longest_m: float
     has_origin: bool
     usual_m: float
+    brightness: Brightness = NO_BRIGHTNESS
 
 
 class ChunkPoints(NamedTuple):
@@ -110,17 +118,25 @@ def heights_kernel(
 def brightness_kernel(
     chunk: ChunkPoints,
     heights: NDArray[np.float32],
-    bounds: Floats,
     limits: PieceLimits,
     kinds: NDArray[np.uint8],
 ) -> None:
-    """Whether points are low, dull or bright, `bounds` for each range class of `range_class`."""
+    """Whether points are low, dull or bright."""
     for point in range(len(heights)):
         kinds[point] = LOW
         if chunk.is_noise[point] or not heights[point] >= limits.lowest_m:
             continue
-        number = range_class(range_of(chunk, point, limits), len(bounds))
-        kinds[point] = BRIGHT if chunk.intensity[point] >= bounds[number] else DULL
+        kinds[point] = BRIGHT if shine_of(chunk, point, limits) >= SHINING else DULL
+
+
+@kernel
+def shine_of(chunk: ChunkPoints, point: int, limits: PieceLimits) -> float:
+    """How many standard deviations a point is brighter than the middle of diffuse things."""
+    brightness = limits.brightness
+    number = range_class(range_of(chunk, point, limits), len(brightness.steps))
+    above = chunk.intensity[point] - brightness.middles[number]
+    shine: float = above / brightness.steps[number]
+    return shine
 
 
 @kernel
@@ -361,6 +377,10 @@ def _keep(
         place = chunk.origins[middle // ORIGIN_EVERY, axis]
         piece[VIEW + axis] = (chunk.local[middle, axis] - place) / range_m
     piece[VIEW + 3] = range_m
+    shine = 0.0
+    for k in range(count):
+        shine += min(shine_of(chunk, points[k], limits), _MOST_SHINE)
+    piece[SHINE] = shine
     return 1
 
 
@@ -448,7 +468,7 @@ def warm_up() -> None:
     )
     heights, kinds = np.full(2, 2.0, np.float32), np.zeros(2, np.uint8)
     heights_kernel(none, np.zeros((1, 1), np.int32), np.zeros(256, np.float32), heights.copy())
-    brightness_kernel(chunk, heights, np.ones(4), limits, kinds)
+    brightness_kernel(chunk, heights, limits, kinds)
     runs = np.zeros(2, np.int32)
     runs_kernel(chunk, kinds, limits, runs)
     pieces_kernel(chunk, kinds, runs, limits, np.empty((2, PIECE)))

@@ -21,15 +21,14 @@ from processing.methods.road.signs.fit_kernels import (
 from processing.methods.road.signs.piece_kernels import (
     BEFORE,
     BEHIND,
-    BRIGHTS,
     COUNT,
     FREE,
     HIDDEN,
     NOISE,
-    VIEW,
 )
 from processing.methods.road.signs.plate_fit import Fit, FittedPlate, hangs_below
 from processing.methods.road.signs.plate_groups import PlateGroup, group_of
+from processing.methods.road.signs.plate_sides import sides_of
 from processing.methods.road.signs.scan_pieces import ScanPieces
 from processing.methods.road.signs.sign_shapes import SignShape, centroid_of, outline_of
 
@@ -66,8 +65,10 @@ class PlateEvidence(NamedTuple):
     roll_rad : float
     tilt : float
         Sine of the angle by which it looks up or down.
-    seen_sides : int
-        1, or 2 where scanners saw front and back.
+    front_seen : bool
+        Whether a scanner saw the side that is taken for the face.
+    is_facing_sure : bool
+        Whether what was measured tells the face from the back.
     thick : float
         By how much more of the scan lines go on at its left edge than at its right one, or the
         reverse, 0 to 1: they cross over to the side of a thick board or a box.
@@ -83,7 +84,8 @@ class PlateEvidence(NamedTuple):
     noise_m: float
     roll_rad: float
     tilt: float
-    seen_sides: int
+    front_seen: bool
+    is_facing_sure: bool
     thick: float
 
 
@@ -170,11 +172,11 @@ def _plate(
         noise, sign = own.noise_m, np.sign(own.normal @ group.normal)
         depth = (own.middle - xyz) @ own.normal / (group.normal @ own.normal)
         xyz, normal = xyz + depth[:, None] * group.normal, sign * own.normal
-    facing, bright, sides = _facing(pieces, members, normal)
+    sides = sides_of(pieces, members, normal)
     open_ends, sectors = _rim(fitted, lines[on])
     rows = pieces.drive[members] * (pieces.row.max() + 1) + pieces.row[members]
     evidence = PlateEvidence(
-        bright=bright,
+        bright=sides.bright,
         cost=fitted.cost / max(1, fitted.ends),
         explained=1.0 - fit.cost / max(fit.nothing, 1e-9),
         open_ends=open_ends,
@@ -183,30 +185,12 @@ def _plate(
         points=int(pieces.values[members, COUNT].sum()),
         noise_m=max(noise, float(np.median(pieces.values[members, NOISE]))),
         roll_rad=float(fitted.pose[2]),
-        tilt=float(facing[2]),
-        seen_sides=sides,
+        tilt=float(sides.facing[2]),
+        front_seen=sides.front_seen,
+        is_facing_sure=sides.is_sure,
         thick=_thick(fitted, lines[on], pieces.values[members]),
     )
-    return Plate(fitted.shape, xyz[0], xyz[1:], facing, evidence, upper, members)
-
-
-def _facing(pieces: ScanPieces, members: Integers, normal: Floats) -> tuple[Floats, float, int]:
-    """Where a plate's face looks, the share of bright points on it, how many sides were seen.
-
-    A bright side is the face; a dull one is the back of a face that looks away.
-    """
-    values = pieces.values[members]
-    counts, brights = values[:, COUNT], values[:, BRIGHTS]
-    towards = values[:, VIEW : VIEW + 3] @ normal < 0
-    shares, seen = [], []
-    for side in (towards, ~towards):
-        seen.append(float(counts[side].sum()))
-        shares.append(float(brights[side].sum()) / seen[-1] if seen[-1] else 0.0)
-    sides = sum(count > 0 for count in seen)
-    best = int(np.argmax(shares))
-    if shares[best] > 0.5:
-        return (normal if best == 0 else -normal), shares[best], sides
-    return (-normal if seen[0] >= seen[1] else normal), shares[best], sides
+    return Plate(fitted.shape, xyz[0], xyz[1:], sides.facing, evidence, upper, members)
 
 
 def _thick(fitted: FittedPlate, lines: Floats, values: Floats) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,8 +15,10 @@ from processing.core.worked_ahead import in_order
 from processing.methods.road.gutters.notches.head_position import head_position
 from processing.methods.road.objects.drive_chunks import DriveChunk, chunks_of
 from processing.methods.road.objects.sparse_plan import SparsePlan
-from processing.methods.road.signs.brightness import CLASSES, bright_bounds
+from processing.methods.road.signs.brightness import CLASSES, Brightness, brightness_of
 from processing.methods.road.signs.piece_kernels import (
+    BRIGHTS,
+    COUNT,
     ORIGIN_EVERY,
     PIECE,
     ChunkPoints,
@@ -74,6 +77,11 @@ was bent by a few millimetres adds."""
 _MOST_STRAIGHT_M = 0.04
 
 
+_FEWEST_SHINING = 10
+"""Points that shine, from which a recording is known to show faces: as many as a sign has that is
+asked for."""
+
+
 @dataclass(frozen=True)
 class ScanPieces:
     """Straight pieces.
@@ -93,6 +101,15 @@ class ScanPieces:
     drive: Integers
     row: Integers
     ground: Floats
+
+    @cached_property
+    def shows_faces(self) -> NDArray[np.bool_]:
+        """(drives,) whether anything shone: what is dull then is no face."""
+        is_bright = 2 * self.values[:, BRIGHTS] > self.values[:, COUNT]
+        points = np.bincount(self.drive[is_bright], self.values[is_bright, COUNT])
+        shown = np.zeros(int(self.drive.max(initial=-1)) + 1, np.bool_)
+        shown[: points.size] = points >= _FEWEST_SHINING
+        return shown
 
     def __len__(self) -> int:
         return len(self.values)
@@ -114,8 +131,8 @@ class _Head:
         samples = self._samples()
         straight = _STRAIGHT_NOISES * _noise([one.local for one, _ in samples])
         limit = min(max(straight, _FEWEST_STRAIGHT_M), _MOST_STRAIGHT_M)
-        self.limits = self.limits._replace(straight_m=limit)
-        self.bounds = self._bright(samples)
+        brightness = self._brightness(samples)
+        self.limits = self.limits._replace(straight_m=limit, brightness=brightness)
 
     def points(self, start: int, local: Floats, is_noise: NDArray[np.bool_]) -> ChunkPoints:
         """Points as the kernels take them."""
@@ -165,7 +182,7 @@ class _Head:
             found.append((self.points(start, local, none), self.heights(local)))
         return found
 
-    def _bright(self, samples: Sequence[tuple[ChunkPoints, NDArray[np.float32]]]) -> Floats:
+    def _brightness(self, samples: Sequence[tuple[ChunkPoints, NDArray[np.float32]]]) -> Brightness:
         high = np.concatenate([heights >= self.limits.lowest_m for _, heights in samples])
         intensity = np.concatenate([chunk.intensity for chunk, _ in samples])
         ranges = np.concatenate([ranges_of(chunk, self.limits) for chunk, _ in samples])
@@ -174,7 +191,7 @@ class _Head:
             high &= intensity <= _OVER_ROAD * np.median(intensity[near])
         if np.count_nonzero(high) < _FEWEST_HIGH:
             high[:] = True
-        return bright_bounds(intensity[high], range_classes(ranges[high], CLASSES))
+        return brightness_of(intensity[high], range_classes(ranges[high], CLASSES))
 
 
 def scan_pieces(
@@ -217,7 +234,7 @@ def _pieces_of(chunk: DriveChunk, head: _Head) -> tuple[Floats, Integers]:
     """Pieces of a chunk, and the pulse of the first point of each."""
     points = head.points(chunk.start, chunk.local, chunk.is_noise)
     kinds = np.empty(len(chunk.local), np.uint8)
-    brightness_kernel(points, head.heights(chunk.local), head.bounds, head.limits, kinds)
+    brightness_kernel(points, head.heights(chunk.local), head.limits, kinds)
     runs = np.empty(len(kinds), np.int32)
     runs_kernel(points, kinds, head.limits, runs)
     room = np.empty((int(np.count_nonzero(kinds)) // 2 + 1, PIECE))
