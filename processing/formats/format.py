@@ -86,6 +86,8 @@ class Format:
         Declared parameters that writing a map takes.
     needs_crs : bool
         Whether nothing can be done with it without a reference system.
+    has_attributes : bool
+        Whether a map in it says the features' attributes, which name their pictures.
     """
 
     id: str
@@ -101,6 +103,7 @@ class Format:
     writes_map: str = ""
     options: type[object] | None = None
     needs_crs: bool = False
+    has_attributes: bool = True
 
     @property
     def ending(self) -> str:

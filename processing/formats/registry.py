@@ -32,6 +32,7 @@ _POINT_FORMATS = (
         magic=b"LASF",
         map_title=Text("Labelled points (LAS)", "ラベル付き点群（LAS）"),
         writes_map=f"{_POINTS}.las_results:write_points_map",
+        has_attributes=False,
     ),
     Format(
         "laz",

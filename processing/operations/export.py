@@ -3,13 +3,20 @@
 from __future__ import annotations
 
 import math
+import shutil
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 
-from processing.core.errors import MissingInput, OutOfRange, Unsuitable, use_one_of
+from processing.core.errors import (
+    MissingInput,
+    OutOfRange,
+    Unsuitable,
+    report_as_user_error,
+    use_one_of,
+)
 from processing.core.monitor import Monitor, PartMonitor, SilentMonitor
 from processing.core.parameters import ParameterValue, fill_parameters, parameters_of
 from processing.core.safe_write import write_safely
@@ -20,6 +27,7 @@ from processing.formats.map_delivery import MapDelivery
 from processing.formats.registry import FORMATS
 from processing.map.catalogue import Catalogue, Geometry
 from processing.map.feature import Feature, Status
+from processing.project.photos import photos_to_hand_in
 from processing.project.results.label_export import write_labelled_points
 from processing.recording.drive import Drive
 
@@ -66,6 +74,7 @@ def export(
     monitor: Monitor | None = None,
     *,
     drives: tuple[Drive, ...] = (),
+    project: Path | None = None,
     formats: FormatList = FORMATS,
 ) -> tuple[Path, ...]:
     """Write the map's accepted features in each format that is asked for.
@@ -82,13 +91,16 @@ def export(
         ``EPSG:n``; empty where it is not known: the files then say so, nothing is guessed.
     drives : tuple of Drive
         Whose points are written with their labels.
+    project : Path, optional
+        Folder of the project whose pictures are handed in with the features that they show: in the
+        folder ``photos`` beside files that say attributes, which then name them there.
     formats : FormatList
         Those that can be asked for.
 
     Returns
     -------
     tuple of Path
-        The files, in the order of the formats.
+        The files, in the order of the formats, and the pictures.
 
     Raises
     ------
@@ -109,6 +121,9 @@ def export(
     wanted = tuple(feature for feature in features if _is_wanted(feature, request))
     for feature in wanted:
         _check_feature(feature, catalogue)
+    pictures: dict[str, Path] = {}
+    if project is not None and any(one.has_attributes for one in chosen):
+        wanted, pictures = photos_to_hand_in(wanted, project)
     delivery = MapDelivery(
         wanted,
         catalogue,
@@ -117,7 +132,7 @@ def export(
         request.options,
         partial(write_labelled_points, drives),
     )
-    return _write(delivery, chosen, request, monitor)
+    return _write(delivery, chosen, request, monitor, pictures)
 
 
 def check_formats(ids: Sequence[str], formats: FormatList = FORMATS) -> tuple[Format, ...]:
@@ -140,7 +155,11 @@ def check_formats(ids: Sequence[str], formats: FormatList = FORMATS) -> tuple[Fo
 
 
 def _write(
-    delivery: MapDelivery, chosen: Sequence[Format], request: ExportRequest, monitor: Monitor
+    delivery: MapDelivery,
+    chosen: Sequence[Format],
+    request: ExportRequest,
+    monitor: Monitor,
+    pictures: Mapping[str, Path],
 ) -> tuple[Path, ...]:
     """Write the files under temporary names, and give them their own in the end."""
     paths: list[Path] = []
@@ -161,6 +180,11 @@ def _write(
             else:
                 path = position(f"{MAP}{one.ending}")
                 one.writer(Content.FEATURES)(path, delivery, part)
+        for name, picture in pictures.items():
+            monitor.check()
+            copy = position(name)
+            with report_as_user_error(picture):
+                shutil.copyfile(picture, copy)
     return tuple(paths)
 
 

@@ -77,10 +77,11 @@ def export_of(project: Project, request: ExportRequest) -> Callable[[Monitor], t
     """
     features = tuple(project.features.all())
     catalogue, crs, drives = project.catalogue, project.crs, project.drives
+    folder = project.folder
     delivered = (path for drive in drives for path in drive.delivered_files)
     request = replace(request, never=(*request.never, *delivered))
 
     def work(monitor: Monitor) -> tuple[Path, ...]:
-        return export(features, catalogue, crs, request, monitor, drives=drives)
+        return export(features, catalogue, crs, request, monitor, drives=drives, project=folder)
 
     return work

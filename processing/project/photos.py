@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from pathlib import Path, PurePosixPath
 
 import numpy as np
@@ -13,6 +14,9 @@ from processing.map.feature import Feature
 
 PHOTOS = "results/photos"
 """Folder of a project."""
+
+HANDED_IN = "photos"
+"""Folder beside the files of an exported map."""
 
 FIELD = "photo"
 """Attribute that names a feature's picture: its way from the project's folder, with slashes."""
@@ -53,3 +57,31 @@ def photo_of(feature: Feature, project: Path) -> Path | None:
     way = PurePosixPath(name)
     path = project.joinpath(*way.parts)
     return path if ".." not in way.parts and path.is_file() else None
+
+
+def photos_to_hand_in(
+    features: Iterable[Feature], project: Path
+) -> tuple[tuple[Feature, ...], dict[str, Path]]:
+    """Features that name their pictures as they lie beside an exported map, and those pictures.
+
+    A picture is called by its feature's id. What a person wrote in place of a picture stays as it
+    is; the name of a picture that the project no longer has goes.
+
+    Returns
+    -------
+    features : tuple of Feature
+        In their order.
+    pictures : dict of str to Path
+        Files of the project by their names beside the map, with slashes.
+    """
+    named: list[Feature] = []
+    pictures: dict[str, Path] = {}
+    for feature in features:
+        photo, attributes = photo_of(feature, project), dict(feature.attributes)
+        if photo is not None:
+            name = f"{HANDED_IN}/{feature.id}{photo.suffix}"
+            attributes[FIELD], pictures[name] = name, photo
+        elif str(attributes.get(FIELD, "")).startswith(f"{PHOTOS}/"):
+            del attributes[FIELD]
+        named.append(replace(feature, attributes=attributes))
+    return tuple(named), pictures
