@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from processing.core.text import Language, Text
 from processing.map.catalogue import AttributeField, Catalogue, Geometry
 from processing.map.feature import AttributeValue, Feature, Position
+from processing.map.measured_fields import field_of
 from processing.map.measures import length_m, plan_area_m2, plan_length_m
 
 _GUARDED = tuple("=+-@'\t\r＝＋－＠")
@@ -247,9 +248,7 @@ def fields_of(features: Iterable[Feature], catalogue: Catalogue) -> tuple[Attrib
     for feature in features:
         for name in feature.attributes:
             if name not in fields:
-                known = (
-                    catalogue[feature.kind].attribute(name) if feature.kind in catalogue else None
-                )
+                known = field_of(catalogue, feature.kind, name)
                 fields[name] = known or AttributeField(name, Text.same(name), "text")
     return tuple(fields.values())
 
@@ -260,7 +259,7 @@ def attribute_column(
     """An attribute; each kind's own choices are called by their names."""
 
     def cell(feature: Feature) -> str:
-        known = catalogue[feature.kind].attribute(field.id) if feature.kind in catalogue else None
+        known = field_of(catalogue, feature.kind, field.id)
         return attribute_cell(feature.attributes.get(field.id), known or field, style)
 
     return LedgerColumn(field.id, field.name, field.unit, cell)

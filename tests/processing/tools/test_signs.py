@@ -237,6 +237,8 @@ def test_the_ledger_of_signs_says_what_is_true(told: RunOutcome, tmp_path: Path)
         rows = list(csv.DictReader(file, strict=True))
     assert len(rows) == len(PLATES)
     names = {one.name.ja: one for one in catalogue["sign"].attributes}
+    ids = {id_ for one in told.candidates for id_ in one.attributes}
+    assert not ids & rows[0].keys(), "columns are called by their names"
     shapes = names["板形状"]
     for plate, form in POSTS:
         place = plate.centroid + ORIGIN

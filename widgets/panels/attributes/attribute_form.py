@@ -8,8 +8,9 @@ from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QComboBox, QFormLayout, QLabel, QSizePolicy, QWidget
 
 from processing.core.text import Language
-from processing.map.catalogue import Catalogue
+from processing.map.catalogue import AttributeField, Catalogue
 from processing.map.feature import AttributeValue, Feature, Status
+from processing.map.measured_fields import field_of
 from processing.map.sign_numbers import FIELD as NUMBER_FIELD
 from widgets.feature_drawing.swatch import swatch_of
 from widgets.panels.attributes.attribute_field import (
@@ -195,13 +196,20 @@ class AttributeForm(QWidget):
             editor.edited.connect(self.attribute_edited)
             if field.id == NUMBER_FIELD:
                 self._offer_numbers(editor)
-            name = field.name.in_language(self._language)
-            self._add_row(f"{name} ({field.unit})" if field.unit else name, editor.widget)
+            self._add_row(self._title_of(field, field.id), editor.widget)
             self._editors[field.id] = editor
         if len(self._features) == 1:
-            # Attributes that the catalogue doesn't know: shown as they are.
+            # Attributes that the kind doesn't list: shown, and not to be changed.
             for id_, value in self._others(self._features[0]).items():
-                self._add_row(id_, _wrap_words(words_of_value(value, None, self._language)))
+                known = field_of(self._catalogue, self._features[0].kind, id_)
+                words = words_of_value(value, known, self._language)
+                self._add_row(self._title_of(known, id_), _wrap_words(words))
+
+    def _title_of(self, field: AttributeField | None, id_: str) -> str:
+        if field is None:
+            return id_
+        name = field.name.in_language(self._language)
+        return f"{name} ({field.unit})" if field.unit else name
 
     def _offer_numbers(self, editor: AttributeEditor) -> None:
         """Legal numbers of signs are chosen among the plates of that shape, with their pictures."""
@@ -210,7 +218,8 @@ class AttributeForm(QWidget):
             menu = SignNumberMenu(self._features, self._language, editor.widget)
             menu.number_chosen.connect(editor.take)
             menu.aboutToHide.connect(menu.deleteLater)
-            menu.popup(editor.widget.mapToGlobal(editor.widget.rect().bottomLeft()))
+            # Beside the field: below it a long list would cover the picture of the sign.
+            menu.popup(editor.widget.mapToGlobal(editor.widget.rect().topRight()))
 
         words = self.tr("Choose the sign's number by the shape of its plate (Alt+Down)")
         editor.offer(words, plate_picture("diamond", "yellow"), ask)

@@ -18,6 +18,7 @@ from typing_extensions import override
 from processing.core.text import Language
 from processing.map.catalogue import Catalogue
 from processing.map.feature import Feature
+from processing.map.measured_fields import field_of
 from widgets.feature_drawing.feature_style import colour_of_kind
 from widgets.feature_drawing.swatch import SWATCH_PX, swatch_of
 from widgets.panels.feature_words import (
@@ -30,6 +31,10 @@ from widgets.panels.geometry_facts import facts_of
 from widgets.parts.elided_label import ElidedLabel
 
 _MOST_ROWS = 12
+
+_WIDEST_TITLE_PX = 150
+"""Longer names are written in two lines, so that the value beside them is seen whole in a narrow
+panel."""
 
 
 class ConfidenceBar(QWidget):
@@ -137,8 +142,7 @@ class CandidateCard(QFrame):
     def _facts(self, feature: Feature, catalogue: Catalogue) -> list[tuple[str, str]]:
         facts = []
         for id_, value in feature.attributes.items():
-            is_known = feature.kind in catalogue
-            field = catalogue[feature.kind].attribute(id_) if is_known else None
+            field = field_of(catalogue, feature.kind, id_)
             words = words_of_value(value, field, self._language)
             if words:
                 name = id_ if field is None else field.name.in_language(self._language)
@@ -152,6 +156,9 @@ class CandidateCard(QFrame):
     def _add_row(self, name: str, words: str) -> None:
         title = QLabel(name, self)
         title.setForegroundRole(QPalette.ColorRole.PlaceholderText)
+        title.setWordWrap(True)
+        width = title.fontMetrics().horizontalAdvance(name) + 2
+        title.setFixedWidth(min(width, _WIDEST_TITLE_PX))
         value = ElidedLabel(self)
         value.setText(words)
         self._rows.addRow(title, value)

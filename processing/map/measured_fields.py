@@ -1,0 +1,45 @@
+"""What attributes are called that tools measure and a kind of the catalogue doesn't list.
+
+An office's catalogue lists what its ledgers ask for; what else was measured of a feature is shown
+and written all the same, by these names.
+"""
+
+from __future__ import annotations
+
+from processing.core.text import Text
+from processing.map.catalogue import AttributeField, Catalogue
+
+_NO_YES = (Text("no", "いいえ"), Text("yes", "はい"))
+
+_MEASURED = {
+    one.id: one
+    for one in (
+        AttributeField("width_m", Text("Width of the plate", "板の幅"), "number", "m"),
+        AttributeField("plate_high_m", Text("Height of the plate", "板の高さ"), "number", "m"),
+        AttributeField("lower_edge_m", Text("Lower edge", "下端高"), "number", "m"),
+        AttributeField("tilt_deg", Text("Tilt (up: +)", "上下の傾き（上向き+）"), "number", "°"),
+        AttributeField("roll_deg", Text("Roll", "板面内の傾き"), "number", "°"),
+        AttributeField("supplementary", Text("Supplementary plate", "補助標識"), "text"),
+        AttributeField("scan_lines", Text("Scan lines on it", "走査線数"), "count"),
+        AttributeField("front_seen", Text("Front measured", "表面の計測"), "text"),
+        AttributeField("facing_sure", Text("Facing certain", "向きは確実"), "text"),
+        AttributeField(
+            "diameter_within_m", Text("Diameter within (95 %)", "直径の誤差範囲（95 %）"),
+            "number", "m",
+        ),
+        AttributeField("taper_m_per_m", Text("Taper", "先細り"), "number", "m/m"),
+        AttributeField("arm_m", Text("Length of the arm", "アームの長さ"), "number", "m"),
+        AttributeField("arm_height_m", Text("Height of the arm", "アームの高さ"), "number", "m"),
+        AttributeField("residual_m", Text("Residual", "残差"), "number", "m"),
+        AttributeField(
+            "is_low", Text("Lower than allowed", "離隔不足"), "choice",
+            choices=("no", "yes"), choice_names=_NO_YES,
+        ),
+    )
+}  # fmt: skip
+
+
+def field_of(catalogue: Catalogue, kind: str, id_: str) -> AttributeField | None:
+    """An attribute as a kind lists it, or as it is called otherwise; None if nobody knows it."""
+    listed = catalogue[kind].attribute(id_) if kind in catalogue else None
+    return listed or _MEASURED.get(id_)
