@@ -11,7 +11,19 @@ from processing.methods.road.signs.plates import Plate, PlateEvidence
 from processing.methods.road.signs.sign_shapes import RECTANGLE, SignShape, shape_of
 
 EVIDENCE = PlateEvidence(
-    1.0, 0.0, 1.0, 8, 1.0, 8, 100, 0.002, 0.0, 0.0, front_seen=True, is_facing_sure=True, thick=0.0
+    1.0,
+    0.0,
+    1.0,
+    8,
+    1.0,
+    8,
+    100,
+    0.002,
+    0.0,
+    0.0,
+    front_seen=True,
+    is_facing_sure=True,
+    thick=0.0,
 )
 LIKELY = 0.1
 
