@@ -92,8 +92,7 @@ def export(
     drives : tuple of Drive
         Whose points are written with their labels.
     project : Path, optional
-        Folder of the project whose pictures are handed in with the features that they show: in the
-        folder ``photos`` beside files that say attributes, which then name them there.
+        Folder of the project whose pictures are handed in beside files that name them.
     formats : FormatList
         Those that can be asked for.
 
@@ -121,18 +120,19 @@ def export(
     wanted = tuple(feature for feature in features if _is_wanted(feature, request))
     for feature in wanted:
         _check_feature(feature, catalogue)
-    pictures: dict[str, Path] = {}
-    if project is not None and any(one.has_attributes for one in chosen):
-        wanted, pictures = photos_to_hand_in(wanted, project)
-    delivery = MapDelivery(
-        wanted,
-        catalogue,
-        crs,
-        request.language,
-        request.options,
-        partial(write_labelled_points, drives),
-    )
+    wanted, pictures = _with_pictures(wanted, chosen, project)
+    points = partial(write_labelled_points, drives)
+    delivery = MapDelivery(wanted, catalogue, crs, request.language, request.options, points)
     return _write(delivery, chosen, request, monitor, pictures)
+
+
+def _with_pictures(
+    features: tuple[Feature, ...], chosen: Sequence[Format], project: Path | None
+) -> tuple[tuple[Feature, ...], dict[str, Path]]:
+    """Features as the files name their pictures, and these; points alone name none."""
+    if project is None or not any(one.has_attributes for one in chosen):
+        return features, {}
+    return photos_to_hand_in(features, project)
 
 
 def check_formats(ids: Sequence[str], formats: FormatList = FORMATS) -> tuple[Format, ...]:
