@@ -24,7 +24,7 @@ from processing.recording.drive import Drive
 from processing.scoring.class_scores import class_score
 from processing.scoring.confusion_matrix import ConfusionMatrix
 from processing.tools.classify import ClassifyParameters
-from processing.tools.runner import RunRequest, columns_of, run
+from processing.tools.runner import RunRequest, columns_of, run_together
 
 SPACING_M = 0.6
 
@@ -68,10 +68,9 @@ def test_a_flight_is_classified_and_the_result_says_by_which_model(
     flight: tuple[Drive, NDArray[np.uint8]], tmp_path: Path
 ) -> None:
     drive, codes = flight
-    result = run(
-        RunRequest("classify", drive, ClassifyParameters()), SilentMonitor(), into=tmp_path / "air"
-    )
-    found = np.array(columns_of(result)["classification"])
+    request = RunRequest("classify", drive, ClassifyParameters())
+    result = run_together(request, SilentMonitor(), into=tmp_path / "air")
+    found = np.array(columns_of(result.columns[0])["classification"])
     score = class_score(ConfusionMatrix.of(codes, found))
     assert score.class_of("2").f_measure > 0.97
     assert score.class_of("5").f_measure > 0.85
