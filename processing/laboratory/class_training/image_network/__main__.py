@@ -1,0 +1,265 @@
+"""The thesis' image network beside its forests: M, M&A, M&A&I, and the choice for each class.
+
+``python -m processing.laboratory.class_training.image_network --folder FOLDER --samples FOLDER…``
+
+Needs the extra ``train``. Networks learn from streets of ``--seeds`` and ``--mounted``, from the
+street ``--street`` alone, and from it after the others (pre-training); of the first kind one learns
+with empty pixels left as they are. Forests learn from the points of the same streets with the
+network's intermediate features; the streets of ``--validation`` choose features (importance,
+Boruta) and the kind of forest for each class; those of ``--check`` and ``--samples`` are scored.
+All are the middle of the first head's recording. What takes long stays in ``--folder`` and is made
+once: rasters, samples, networks.
+
+References
+----------
+Takahashi 2022, sections 4.5 to 4.7.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.core.arrays import Integers
+from processing.core.output_streams import write_every_character
+from processing.laboratory.class_training.forests import (
+    LEAST_IMPORTANCE,
+    boruta,
+    fitted_forest,
+    importance_of,
+)
+from processing.laboratory.class_training.image_network.comparison import (
+    Described,
+    Forests,
+    best_kinds,
+    chosen_shares,
+    f_of_classes,
+    mean_f_of,
+    score_of,
+)
+from processing.laboratory.class_training.image_network.kept_streets import (
+    LEARNT_OF_A_CLASS,
+    SCORED_OF_A_CLASS,
+    KeptStreet,
+    delivered_streets,
+    simulated_streets,
+)
+from processing.laboratory.class_training.image_network.network_training import (
+    ChannelScale,
+    intermediate_features,
+    read_network,
+    train_network,
+    write_network,
+)
+from processing.laboratory.class_training.point_samples import ABSOLUTE, MMS, NAMES, PointSample
+from processing.laboratory.seed_ranges import seeds_of
+from processing.scoring.point_scores import PointScore
+
+_M, _MA, _MAI, _CHOICE = "M", "M&A", "M&A&I", "chosen"
+_KINDS = (_M, _MA, _MAI)
+
+
+@dataclass(frozen=True)
+class Streets:
+    """What is learnt from, chosen by, and scored."""
+
+    alone: KeptStreet
+    many: Sequence[KeptStreet]
+    validation: Sequence[KeptStreet]
+    scored: Sequence[KeptStreet]
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """How a network is made.
+
+    Attributes
+    ----------
+    name : str
+    learns_from_many : bool
+        Else from one street alone.
+    start : str
+        The name of the network that it goes on from; empty: it knows nothing.
+    fills_holes : bool
+    """
+
+    name: str
+    learns_from_many: bool
+    start: str = ""
+    fills_holes: bool = True
+
+
+_RECIPES = (
+    Recipe("many streets", learns_from_many=True),
+    Recipe("many streets, holes left", learns_from_many=True, fills_holes=False),
+    Recipe("one street", learns_from_many=False),
+    Recipe("one street, pre-trained", learns_from_many=False, start="many streets"),
+)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Make what isn't there, and print the tables."""
+    options = _parser().parse_args(arguments)
+    options.folder.mkdir(parents=True, exist_ok=True)
+    streets = _streets(options)
+    for recipe in _RECIPES:
+        if recipe.name in options.networks:
+            _say(f"\nnetwork: {recipe.name}")
+            network, scale = _network(recipe, streets, options)
+            _compare(recipe, streets, network, scale)
+    return 0
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="python -m processing.laboratory.class_training.image_network"
+    )
+    names = [one.name for one in _RECIPES]
+    parser.add_argument("--folder", type=Path, required=True, help="where work is kept")
+    parser.add_argument("--street", type=int, default=3000, help="seed of the one street")
+    parser.add_argument("--seeds", default="3003-3004", help="of more streets")
+    parser.add_argument("--mounted", default="3040-3044", help="of those by heads of any mounting")
+    parser.add_argument("--validation", default="3006-3007")
+    parser.add_argument("--check", default="3100-3101", help="streets that are only scored")
+    parser.add_argument("--samples", type=Path, nargs="*", default=[])
+    parser.add_argument("--length", type=float, default=40.0, help="m of each simulated street")
+    parser.add_argument("--steps", type=int, default=400, help="batches of four crops")
+    parser.add_argument("--networks", nargs="*", default=names, choices=names)
+    return parser
+
+
+def _streets(options: argparse.Namespace) -> Streets:
+    folder, length = options.folder, options.length
+    (alone,) = simulated_streets(folder, [options.street], length, LEARNT_OF_A_CLASS)
+    others = simulated_streets(folder, seeds_of(options.seeds), length, LEARNT_OF_A_CLASS)
+    mounted = seeds_of(options.mounted)
+    others += simulated_streets(folder, mounted, length, LEARNT_OF_A_CLASS, is_mounted=True)
+    valid = simulated_streets(folder, seeds_of(options.validation), length, SCORED_OF_A_CLASS)
+    scored = simulated_streets(folder, seeds_of(options.check), length, SCORED_OF_A_CLASS)
+    scored += delivered_streets(folder, options.samples, SCORED_OF_A_CLASS)
+    return Streets(alone, [alone, *others], valid, scored)
+
+
+def _learnt(recipe: Recipe, streets: Streets) -> Sequence[KeptStreet]:
+    return streets.many if recipe.learns_from_many else [streets.alone]
+
+
+# torch is an extra: what it gives has no types where it is missing.
+def _network(
+    recipe: Recipe, streets: Streets, options: argparse.Namespace
+) -> tuple[Any, ChannelScale]:
+    """The network of a recipe, made if the folder lacks it; a third of the steps go on from one."""
+    path = options.folder / f"{recipe.name.replace(',', '').replace(' ', '_')}.pt"
+    if path.exists():
+        return read_network(path)
+    rasters = [one.raster for one in _learnt(recipe, streets)]
+    if recipe.fills_holes:
+        rasters = [one.without_holes(by_labels=True) for one in rasters]
+    start, scale, steps = None, ChannelScale.of(rasters), options.steps
+    if recipe.start:
+        (before,) = (one for one in _RECIPES if one.name == recipe.start)
+        start, scale = _network(before, streets, options)
+        steps //= 3
+    images = [scale.image_of(one) for one in rasters]
+    network = train_network(images, steps, _say, start)
+    write_network(network, scale, path)
+    return network, scale
+
+
+def _compare(recipe: Recipe, streets: Streets, network: Any, scale: ChannelScale) -> None:
+    """Forests on M, M&A and M&A&I by this network, and the choice between them."""
+
+    def seen(street: KeptStreet) -> NDArray[np.float32]:
+        raster = street.raster
+        if recipe.fills_holes:
+            raster = raster.without_holes(by_labels=False)
+        pixels = raster.pixels_of(street.sample.points)
+        return intermediate_features(network, scale.image_of(raster), *pixels)
+
+    valid_seen = [seen(one) for one in streets.validation]
+    valid = PointSample.joined([one.sample for one in streets.validation])
+    rng = np.random.default_rng(0)
+    kept = boruta(np.concatenate(valid_seen), valid.codes, rng)
+    columns = _columns(valid)
+    _say(f"Boruta keeps {kept.size} of {valid_seen[0].shape[1]} intermediate features; "
+         f"M&A at 1.5 %: {', '.join(NAMES[at] for at in columns[_MAI])}")  # fmt: skip
+    forests = Forests.of(
+        [_described(one.sample, seen(one), columns, kept) for one in _learnt(recipe, streets)]
+    )
+    described = [
+        _described(one.sample, own, columns, kept)
+        for one, own in zip(streets.validation, valid_seen, strict=True)
+    ]
+    whole = Described(
+        valid,
+        {kind: np.concatenate([one.rows[kind] for one in described]) for kind in _KINDS},
+    )
+    shares = forests.shares(whole)
+    scores = {kind: score_of(valid, forests.codes, shares[kind]) for kind in _KINDS}
+    chosen = best_kinds(scores, forests.codes.tolist(), _KINDS)
+    _say("chosen: " + ", ".join(
+        f"{code} {kind}" for code, kind in zip(forests.codes.tolist(), chosen, strict=True)
+    ))  # fmt: skip
+    for line in _table(forests, chosen, streets.scored, lambda one: _described(
+        one.sample, seen(one), columns, kept
+    )):  # fmt: skip
+        _say(line)
+
+
+def _columns(valid: PointSample) -> dict[str, list[int]]:
+    """M, M&A and the part of it that counts (1.5 %), without heights above the sea.
+
+    Intensities are those over a recording's median.
+    """
+    both = [at for at, name in enumerate(NAMES) if name not in (*ABSOLUTE, "intensity")]
+    importance = importance_of(fitted_forest(valid.values(both), valid.codes))
+    some = [at for at, share in zip(both, importance, strict=True) if share >= LEAST_IMPORTANCE]
+    return {_M: [at for at in both if NAMES[at] not in MMS], _MA: both, _MAI: some}
+
+
+def _described(
+    sample: PointSample,
+    seen: NDArray[np.float32],
+    columns: Mapping[str, Sequence[int]],
+    kept: Integers,
+) -> Described:
+    rows = {kind: sample.values(columns[kind]) for kind in _KINDS}
+    rows[_MAI] = np.hstack([rows[_MAI], seen[:, kept]])
+    return Described(sample, rows)
+
+
+def _table(forests: Forests, chosen: Sequence[str], streets: Sequence[KeptStreet],
+           describe: Any) -> Iterator[str]:  # fmt: skip
+    """F of each street and class, by kind."""
+    codes = [str(one) for one in forests.codes]
+    yield f"| street | features | mean F | {' | '.join(codes)} |"
+    yield "|---" * (len(codes) + 3) + "|"
+    for street in streets:
+        asked = describe(street)
+        shares = forests.shares(asked)
+        shares[_CHOICE] = chosen_shares(shares, chosen)
+        for kind, own in shares.items():
+            yield _line(street.name, kind, score_of(street.sample, forests.codes, own), codes)
+
+
+def _line(street: str, kind: str, score: PointScore, codes: Sequence[str]) -> str:
+    f_of = f_of_classes(score)
+    words = " | ".join(f"{f_of[int(one)]:.2f}" if int(one) in f_of else "–" for one in codes)
+    return f"| {street} | {kind} | {mean_f_of(score):.3f} | {words} |"
+
+
+def _say(line: str) -> None:
+    sys.stdout.write(f"{line}\n")
+    sys.stdout.flush()
+
+
+if __name__ == "__main__":
+    write_every_character()
+    raise SystemExit(main())
