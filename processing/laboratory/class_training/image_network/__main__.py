@@ -19,7 +19,7 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -65,6 +65,9 @@ from processing.scoring.point_scores import PointScore
 _M, _MA, _MAI, _CHOICE = "M", "M&A", "M&A&I", "chosen"
 _KINDS = (_M, _MA, _MAI)
 
+_FOR_IMPORTANCE = 25_000
+"""Points of the streets of validation that importance is taken of."""
+
 
 @dataclass(frozen=True)
 class Streets:
@@ -109,11 +112,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options = _parser().parse_args(arguments)
     options.folder.mkdir(parents=True, exist_ok=True)
     streets = _streets(options)
+    columns = _columns(PointSample.joined([one.sample for one in streets.validation]))
+    known: dict[bool, Forests] = {}
     for recipe in _RECIPES:
         if recipe.name in options.networks:
             _say(f"\nnetwork: {recipe.name}")
             network, scale = _network(recipe, streets, options)
-            _compare(recipe, streets, network, scale)
+            comparison = _Comparison(recipe, streets, columns, network, scale)
+            before = known.get(recipe.learns_from_many)
+            known[recipe.learns_from_many] = comparison.say(before).without(_MAI)
     return 0
 
 
@@ -126,8 +133,8 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--street", type=int, default=3000, help="seed of the one street")
     parser.add_argument("--seeds", default="3003-3004", help="of more streets")
     parser.add_argument("--mounted", default="3040-3044", help="of those by heads of any mounting")
-    parser.add_argument("--validation", default="3006-3007")
-    parser.add_argument("--check", default="3100-3101", help="streets that are only scored")
+    parser.add_argument("--validation", default="3006")
+    parser.add_argument("--check", default="3100", help="streets that are only scored")
     parser.add_argument("--samples", type=Path, nargs="*", default=[])
     parser.add_argument("--length", type=float, default=40.0, help="m of each simulated street")
     parser.add_argument("--steps", type=int, default=400, help="batches of four crops")
@@ -173,44 +180,66 @@ def _network(
     return network, scale
 
 
-def _compare(recipe: Recipe, streets: Streets, network: Any, scale: ChannelScale) -> None:
-    """Forests on M, M&A and M&A&I by this network, and the choice between them."""
+@dataclass(frozen=True)
+class _Comparison:
+    """Forests on M, M&A and M&A&I by one network, and the choice between them."""
 
-    def seen(street: KeptStreet) -> NDArray[np.float32]:
+    recipe: Recipe
+    streets: Streets
+    columns: Mapping[str, Sequence[int]]
+    network: Any  # torch's, see above
+    scale: ChannelScale
+
+    def say(self, known: Forests | None) -> Forests:
+        """Print the table of the streets; forests that are known aren't grown again."""
+        valid = [(one.sample, self._seen(one)) for one in self.streets.validation]
+        rows = np.concatenate([seen for _, seen in valid])
+        codes = np.concatenate([sample.codes for sample, _ in valid])
+        kept = boruta(rows, codes, np.random.default_rng(0))
+        _say(f"Boruta keeps {kept.size} of {rows.shape[1]} intermediate features")
+        learnt = [
+            self._described(one.sample, self._seen(one), kept)
+            for one in _learnt(self.recipe, self.streets)
+        ]
+        forests = Forests.of(learnt, known)
+        asked = _as_one([self._described(sample, seen, kept) for sample, seen in valid])
+        shares = forests.shares(asked)
+        scores = {kind: score_of(asked.sample, forests.codes, shares[kind]) for kind in _KINDS}
+        chosen = best_kinds(scores, forests.codes.tolist(), _KINDS)
+        words = zip(forests.codes.tolist(), chosen, strict=True)
+        _say("chosen: " + ", ".join(f"{code} {kind}" for code, kind in words))
+        numbers = [str(one) for one in forests.codes]
+        _say(f"| street | features | mean F | {' | '.join(numbers)} |")
+        _say("|---" * (len(numbers) + 3) + "|")
+        for street in self.streets.scored:
+            shares = forests.shares(self._described(street.sample, self._seen(street), kept))
+            shares[_CHOICE] = chosen_shares(shares, chosen)
+            for kind, own in shares.items():
+                score = score_of(street.sample, forests.codes, own)
+                _say(_line(street.name, kind, score, numbers))
+        return forests
+
+    def _seen(self, street: KeptStreet) -> NDArray[np.float32]:
+        """(k, 256) the network's intermediate features at the street's points."""
         raster = street.raster
-        if recipe.fills_holes:
+        if self.recipe.fills_holes:
             raster = raster.without_holes(by_labels=False)
         pixels = raster.pixels_of(street.sample.points)
-        return intermediate_features(network, scale.image_of(raster), *pixels)
+        return intermediate_features(self.network, self.scale.image_of(raster), *pixels)
 
-    valid_seen = [seen(one) for one in streets.validation]
-    valid = PointSample.joined([one.sample for one in streets.validation])
-    rng = np.random.default_rng(0)
-    kept = boruta(np.concatenate(valid_seen), valid.codes, rng)
-    columns = _columns(valid)
-    _say(f"Boruta keeps {kept.size} of {valid_seen[0].shape[1]} intermediate features; "
-         f"M&A at 1.5 %: {', '.join(NAMES[at] for at in columns[_MAI])}")  # fmt: skip
-    forests = Forests.of(
-        [_described(one.sample, seen(one), columns, kept) for one in _learnt(recipe, streets)]
+    def _described(
+        self, sample: PointSample, seen: NDArray[np.float32], kept: Integers
+    ) -> Described:
+        rows = {kind: sample.values(self.columns[kind]) for kind in _KINDS}
+        rows[_MAI] = np.hstack([rows[_MAI], seen[:, kept]])
+        return Described(sample, rows)
+
+
+def _as_one(parts: Sequence[Described]) -> Described:
+    return Described(
+        PointSample.joined([one.sample for one in parts]),
+        {kind: np.concatenate([one.rows[kind] for one in parts]) for kind in _KINDS},
     )
-    described = [
-        _described(one.sample, own, columns, kept)
-        for one, own in zip(streets.validation, valid_seen, strict=True)
-    ]
-    whole = Described(
-        valid,
-        {kind: np.concatenate([one.rows[kind] for one in described]) for kind in _KINDS},
-    )
-    shares = forests.shares(whole)
-    scores = {kind: score_of(valid, forests.codes, shares[kind]) for kind in _KINDS}
-    chosen = best_kinds(scores, forests.codes.tolist(), _KINDS)
-    _say("chosen: " + ", ".join(
-        f"{code} {kind}" for code, kind in zip(forests.codes.tolist(), chosen, strict=True)
-    ))  # fmt: skip
-    for line in _table(forests, chosen, streets.scored, lambda one: _described(
-        one.sample, seen(one), columns, kept
-    )):  # fmt: skip
-        _say(line)
 
 
 def _columns(valid: PointSample) -> dict[str, list[int]]:
@@ -219,34 +248,14 @@ def _columns(valid: PointSample) -> dict[str, list[int]]:
     Intensities are those over a recording's median.
     """
     both = [at for at, name in enumerate(NAMES) if name not in (*ABSOLUTE, "intensity")]
-    importance = importance_of(fitted_forest(valid.values(both), valid.codes))
+    rows, rng = valid.values(both), np.random.default_rng(0)
+    kept = boruta(rows, valid.codes, rng)
+    _say(f"Boruta keeps {kept.size} of {len(both)} inputs")
+    few = rng.permutation(valid.codes.size)[:_FOR_IMPORTANCE]
+    importance = importance_of(fitted_forest(rows[few], valid.codes[few]))
     some = [at for at, share in zip(both, importance, strict=True) if share >= LEAST_IMPORTANCE]
+    _say(f"M&A of 1.5 % and more: {', '.join(NAMES[at] for at in some)}")
     return {_M: [at for at in both if NAMES[at] not in MMS], _MA: both, _MAI: some}
-
-
-def _described(
-    sample: PointSample,
-    seen: NDArray[np.float32],
-    columns: Mapping[str, Sequence[int]],
-    kept: Integers,
-) -> Described:
-    rows = {kind: sample.values(columns[kind]) for kind in _KINDS}
-    rows[_MAI] = np.hstack([rows[_MAI], seen[:, kept]])
-    return Described(sample, rows)
-
-
-def _table(forests: Forests, chosen: Sequence[str], streets: Sequence[KeptStreet],
-           describe: Any) -> Iterator[str]:  # fmt: skip
-    """F of each street and class, by kind."""
-    codes = [str(one) for one in forests.codes]
-    yield f"| street | features | mean F | {' | '.join(codes)} |"
-    yield "|---" * (len(codes) + 3) + "|"
-    for street in streets:
-        asked = describe(street)
-        shares = forests.shares(asked)
-        shares[_CHOICE] = chosen_shares(shares, chosen)
-        for kind, own in shares.items():
-            yield _line(street.name, kind, score_of(street.sample, forests.codes, own), codes)
 
 
 def _line(street: str, kind: str, score: PointScore, codes: Sequence[str]) -> str:

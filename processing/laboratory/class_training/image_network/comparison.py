@@ -21,6 +21,9 @@ from processing.scoring.point_scores import PointScore
 
 _GROUND, _ROAD = 2, 11
 
+_MOST_LEARNT = 25_000
+"""Points of a forest: one of 300 features then takes a minute of a core."""
+
 
 @dataclass(frozen=True)
 class Described:
@@ -51,14 +54,22 @@ class Forests:
     forests: Mapping[str, Any]  # scikit-learn's classes have no types
 
     @staticmethod
-    def of(learnt: Sequence[Described]) -> Forests:
-        """Learn from samples of streets."""
+    def of(learnt: Sequence[Described], known: Forests | None = None) -> Forests:
+        """Learn from samples of streets; kinds that are known needn't be learnt again."""
         codes = np.concatenate([_joined(one.sample.codes) for one in learnt])
-        forests = {
-            kind: fitted_forest(np.concatenate([one.rows[kind] for one in learnt]), codes)
-            for kind in learnt[0].rows
-        }
-        return Forests(np.unique(codes), forests)
+        some = np.random.default_rng(0).permutation(codes.size)[:_MOST_LEARNT]
+        forests = dict(known.forests) if known else {}
+        for kind in learnt[0].rows:
+            if kind not in forests:
+                rows = np.concatenate([one.rows[kind] for one in learnt])
+                forests[kind] = fitted_forest(rows[some], codes[some])
+        return Forests(np.unique(codes[some]), forests)
+
+    def without(self, kind: str) -> Forests:
+        """The others."""
+        return Forests(
+            self.codes, {name: one for name, one in self.forests.items() if name != kind}
+        )
 
     def shares(self, asked: Described) -> dict[str, Floats]:
         """By kind, (k, c): how likely each class is for each point."""
