@@ -27,7 +27,7 @@ _TREES, _LEAST_LEAF = 100, 5
 LEAST_IMPORTANCE = 0.015
 """Table 4-1."""
 
-_BORUTA_ROUNDS, _BORUTA_ROWS, _BORUTA_TREES = 20, 5_000, 30
+_BORUTA_ROUNDS, _BORUTA_ROWS, _BORUTA_TREES = 20, 3_000, 30
 _SURE = 0.05
 """Rounds in which a feature beats the best shadow follow a binomial distribution; kept is what does
 so more often than half at this level, with Bonferroni's correction for all features."""

@@ -65,7 +65,7 @@ from processing.scoring.point_scores import PointScore
 _M, _MA, _MAI, _CHOICE = "M", "M&A", "M&A&I", "chosen"
 _KINDS = (_M, _MA, _MAI)
 
-_FOR_IMPORTANCE = 25_000
+_FOR_IMPORTANCE = 12_000
 """Points of the streets of validation that importance is taken of."""
 
 

@@ -21,8 +21,8 @@ from processing.scoring.point_scores import PointScore
 
 _GROUND, _ROAD = 2, 11
 
-_MOST_LEARNT = 25_000
-"""Points of a forest: one of 300 features then takes a minute of a core."""
+_MOST_LEARNT = 12_000
+"""Points of a forest: one of 250 features then takes half a minute of a core."""
 
 
 @dataclass(frozen=True)
