@@ -137,7 +137,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--check", default="3100", help="streets that are only scored")
     parser.add_argument("--samples", type=Path, nargs="*", default=[])
     parser.add_argument("--length", type=float, default=40.0, help="m of each simulated street")
-    parser.add_argument("--steps", type=int, default=400, help="batches of four crops")
+    parser.add_argument("--steps", type=int, default=360, help="batches of four crops")
     parser.add_argument("--networks", nargs="*", default=names, choices=names)
     return parser
 
