@@ -6,6 +6,7 @@ columns and wires. Where a thing meets the ground exactly is measured about its 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -16,6 +17,11 @@ from processing.core.arrays import Floats
 from processing.core.kernels import kernel
 from processing.core.monitor import Monitor
 from processing.methods.road.objects.drive_chunks import chunks_of
+from processing.methods.road.objects.opaque_ground import (
+    LAYER_M,
+    LAYERS,
+    cells_below_ground,
+)
 from processing.methods.road.objects.sparse_plan import (
     CELL_M,
     TILE,
@@ -49,6 +55,8 @@ lorry."""
 
 _EMPTY = 1e9
 
+_MOST_COUNTED = np.iinfo(np.uint16).max
+
 
 def ground_heights(
     drives: Sequence[Drive], plan: SparsePlan, monitor: Monitor
@@ -68,21 +76,32 @@ def ground_heights(
     Notes
     -----
     1. Each cell keeps the third lowest of its points.
-    2. A cell is no ground if one within 3.2 m lies lower by more than a bank of 1 : 1.5 and a step
+    2. Cells that lie below a layer which no beam passes are none
+       (:mod:`processing.methods.road.objects.opaque_ground`).
+    3. A cell is no ground if one within 3.2 m lies lower by more than a bank of 1 : 1.5 and a step
        of 0.35 m: tops of vehicles, hedges, edges of roofs, crowns without ground under them.
-    3. Other cells take the ground of the nearest within 6.4 m.
+    4. Other cells take the ground of the nearest within 6.4 m.
     """
     lowest: NDArray[np.float32] = np.empty((0, GROUND_CELLS, GROUND_CELLS, _LOWEST), np.float32)
+    counts: NDArray[np.uint16] = np.zeros((1, GROUND_CELLS, GROUND_CELLS, LAYERS), np.uint16)
     for chunk in chunks_of(drives, plan.origin, monitor):
         plan.add(chunk.local)
-        lowest = plan.grown(lowest, _EMPTY)
-        lowest_kernel(chunk.local, chunk.is_noise, plan.table, lowest.reshape(-1, _LOWEST))
-    third = lowest[..., -1]
+        lowest, counts = plan.grown(lowest, _EMPTY), _with_room(counts, len(plan))
+        lowest_kernel(
+            chunk.local,
+            chunk.is_noise,
+            plan.table,
+            lowest.reshape(-1, _LOWEST),
+            counts.reshape(-1, LAYERS),
+        )
+    third = np.where(lowest[..., -1] < _EMPTY, lowest[..., -1], np.float32(np.inf))
+    rises = (_STEP_M, _STEEPEST * GROUND_M)
+    third[cells_below_ground(third, counts, plan, rises, monitor)] = np.inf
     ground = np.empty_like(third)
     for tile in range(len(plan)):
         monitor.check()
         halo = _REACH_CELLS + _FILL_CELLS
-        heights = plan.window(third, tile, halo, _EMPTY)
+        heights = plan.window(third, tile, halo, np.inf)
         ground[tile] = _filled(heights, _are_ground(heights))[halo:-halo, halo:-halo]
     return ground
 
@@ -93,8 +112,9 @@ def lowest_kernel(
     is_noise: NDArray[np.bool_],
     table: NDArray[np.int32],
     lowest: NDArray[np.float32],
+    counts: NDArray[np.uint16],
 ) -> None:
-    """Keep the lowest heights of each cell, rising."""
+    """Keep the lowest heights of each cell, rising, and count the points of its layers."""
     for point in range(len(local)):
         if is_noise[point]:
             continue
@@ -105,6 +125,22 @@ def lowest_kernel(
         for rank in range(_LOWEST):
             if height < lowest[cell, rank]:
                 height, lowest[cell, rank] = lowest[cell, rank], height
+        above = local[point, 2] - lowest[cell, _LOWEST - 1]
+        layer = math.floor(local[point, 2] / LAYER_M) % LAYERS
+        if above < LAYERS * LAYER_M and counts[cell, layer] < _MOST_COUNTED:
+            counts[cell, layer] += 1
+
+
+def _with_room(counts: NDArray[np.uint16], tiles: int) -> NDArray[np.uint16]:
+    """Counts of so many tiles or more, doubled whenever they are too few.
+
+    They are copied seldom, since they are large; room that nobody counts in takes no memory.
+    """
+    if tiles <= len(counts):
+        return counts
+    more = np.zeros((max(tiles, 2 * len(counts)), *counts.shape[1:]), np.uint16)
+    more[: len(counts)] = counts
+    return more
 
 
 def height_of(ground: NDArray[np.float32], plan: SparsePlan, east: float, north: float) -> float:
@@ -115,7 +151,7 @@ def height_of(ground: NDArray[np.float32], plan: SparsePlan, east: float, north:
 
 def _are_ground(heights: NDArray[np.float32]) -> NDArray[np.bool_]:
     """Cells that no nearby ground lies far below."""
-    is_ground = heights < _EMPTY
+    is_ground = np.isfinite(heights)
     side = np.arange(-_REACH_CELLS, _REACH_CELLS + 1)
     away = np.hypot(side[:, None], side[None, :])
     for radius in range(1, _REACH_CELLS + 1):
