@@ -16,6 +16,7 @@ POLES: dict[str, dict[str, object]] = {
     "power_pole": {},
     "street_light": {"type": "street_light"},
     "security_light": {},
+    "mirror": {"type": "mirror_pole"},
 }
 """Kinds of features that are poles, with the type that a kind implies."""
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -100,8 +101,11 @@ def _candidate(pole: StreetPole) -> Candidate:
     if carried.arm_m > 0 and pole.type in ("street_light", "signal_pole", "arm_pole"):
         attributes["arm_m"] = round(carried.arm_m, 1)
         attributes["arm_height_m"] = round(carried.arm_height_m, 1)
+    is_mirror = pole.type == "mirror_pole"
+    if is_mirror and math.isfinite(carried.mirror_deg):
+        attributes["direction_deg"] = round(carried.mirror_deg) % 360
     return Candidate(
-        "pole",
+        "mirror" if is_mirror else "pole",
         "point",
         pole.foot[None],
         np.array([-1], np.int64),  # the foot lies on no measured point
@@ -124,7 +128,7 @@ POLES = Tool(
     needs=Needs.POINTS,
     parameters=PoleParameters,
     method=SurveyFinder(find_poles),
-    makes=("pole",),
+    makes=("pole", "mirror"),
     button=ToolButton(Text("Find poles", "柱状物を抽出"), "Ctrl+Shift+F11", "mdi6.post-lamp"),
     diagnostics=diagnose_poles,
     scorer=POLE_SCORER,

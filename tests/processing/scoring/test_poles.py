@@ -44,10 +44,15 @@ def test_places_types_and_measures_fall_one_by_one() -> None:
     assert pole_score(thin, TRUTH).errors_of("diameter").mean == pytest.approx(-0.02)
 
 
-def test_a_kind_can_say_the_type() -> None:
-    lights = with_facts(TRUTH, lambda _: {"type": "street_light"})
-    kinds = map_of([point(30.0 * n, 0.0, kind="street_light") for n in range(9)])
-    assert pole_score(kinds, lights).share_of("type") == 1
+@pytest.mark.parametrize(
+    ("kind", "implied"), [("street_light", "street_light"), ("mirror", "mirror_pole")]
+)
+def test_a_kind_can_say_the_type(kind: str, implied: str) -> None:
+    truth = with_facts(TRUTH, lambda _: {"type": implied})
+    kinds = map_of([point(30.0 * n, 0.0, kind=kind) for n in range(9)])
+    score = pole_score(kinds, truth)
+    assert score.counts_of("poles") == BinaryConfusionMatrix(9, 0, 0, 0)
+    assert score.share_of("type") == 1
 
 
 def test_missing_added_and_unseen_poles_are_counted() -> None:

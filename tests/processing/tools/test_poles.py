@@ -63,6 +63,9 @@ FEET = {
     for number, kind in enumerate(HEIGHTS_M)
 }
 LEAN = 0.05
+LOOKS_DEG = 270.0
+"""Where the mirror looks: back along the road, which leads to the east."""
+
 TREE = np.array([44.0, 5.5, GROUND_M])
 FENCE = np.array([14.0, 6.5, GROUND_M])
 
@@ -223,7 +226,13 @@ def test_a_pole_tells_how_it_leans_and_tapers(told: RunOutcome) -> None:
 
 def test_trees_and_posts_of_fences_are_no_poles(told: RunOutcome) -> None:
     assert len(told.candidates) == len(HEIGHTS_M)
-    assert all(one.kind == "pole" for one in told.candidates)
+
+
+def test_a_mirror_is_a_kind_of_its_own_and_tells_where_it_looks(told: RunOutcome) -> None:
+    mirror = pole_at(told, FEET["mirror_pole"])
+    assert [one for one in told.candidates if one.kind == "mirror"] == [mirror]
+    assert {one.kind for one in told.candidates if one is not mirror} == {"pole"}
+    assert measure(mirror, "direction_deg") == pytest.approx(LOOKS_DEG, abs=4)
 
 
 def test_the_circles_of_a_pole_are_told_where_they_are(drives: tuple[Drive, ...]) -> None:
@@ -240,20 +249,39 @@ def test_the_circles_of_a_pole_are_told_where_they_are(drives: tuple[Drive, ...]
         assert math.dist(one.xyz[:2], (place[0] + leant, place[1])) < 0.03
 
 
-def test_the_ledger_of_poles_is_true(told: RunOutcome, tmp_path: Path) -> None:
-    now, path = datetime.now(UTC), tmp_path / "ledger_pole.csv"
+def ledger_of(told: RunOutcome, kind: str, path: Path) -> list[dict[str, str]]:
+    """The rows of the ledger of a kind, once all that was found is on the map."""
+    now = datetime.now(UTC)
     result = CandidateResult(told.candidates)
     found = found_features(result, POLES, PoleParameters(), ("left",), started=now, finished=now)
     catalogue = read_catalogue(path_of("catalogue/level500.toml"))
-    write_ledger(path, found.change.added, catalogue["pole"], TableStyle("en", crs="EPSG:6677"))
+    mapped = [one for one in found.change.added if one.kind == kind]
+    write_ledger(path, mapped, catalogue[kind], TableStyle("en", crs="EPSG:6677"))
     with path.open(encoding="utf-8-sig", newline="") as file:
-        rows = {row["Kind of pole"]: row for row in csv.DictReader(file)}
-    assert set(rows) == set(HEIGHTS_M)
+        return list(csv.DictReader(file))
+
+
+def assert_foot(row: dict[str, str], kind: str) -> None:
+    for axis, name in enumerate(("Easting (Y) [m]", "Northing (X) [m]", "Height (H) [m]")):
+        assert float(row[name]) == pytest.approx((FEET[kind] + ORIGIN)[axis], abs=0.04)
+
+
+def test_the_ledger_of_poles_is_true(told: RunOutcome, tmp_path: Path) -> None:
+    told_rows = ledger_of(told, "pole", tmp_path / "ledger_pole.csv")
+    rows = {row["Kind of pole"]: row for row in told_rows}
+    assert set(rows) == set(HEIGHTS_M) - {"mirror_pole"}
     for kind, row in rows.items():
         assert float(row["Height [m]"]) == pytest.approx(HEIGHTS_M[kind], abs=0.25)
         assert float(row["Diameter [m]"]) == pytest.approx(DIAMETERS_M[kind], abs=0.01)
-        for axis, name in enumerate(("Easting (Y) [m]", "Northing (X) [m]", "Height (H) [m]")):
-            assert float(row[name]) == pytest.approx((FEET[kind] + ORIGIN)[axis], abs=0.04)
+        assert_foot(row, kind)
+
+
+def test_the_ledger_of_mirrors_is_true(told: RunOutcome, tmp_path: Path) -> None:
+    (row,) = ledger_of(told, "mirror", tmp_path / "ledger_mirror.csv")
+    assert_foot(row, "mirror_pole")
+    assert float(row["Height [m]"]) == pytest.approx(HEIGHTS_M["mirror_pole"], abs=0.25)
+    direction = float(row["Direction (clockwise from north) [°]"])
+    assert direction == pytest.approx(LOOKS_DEG, abs=4)
 
 
 def test_a_street_without_poles_is_told(tmp_path: Path) -> None:

@@ -7,6 +7,8 @@ signal or a sign by how tall and how thick it is.
 
 from __future__ import annotations
 
+import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -90,6 +92,10 @@ _LEAST_RADIUS_M, _MOST_RADIUS_M = 0.8, 6.0
 """Radii of curvature of road mirrors: 1.5 to 3.6 m (道路反射鏡設置指針), those of
 yards less, and the error of it."""
 
+_ONE_MIRROR_DEG = 15.0
+"""Between patches of one mirror in plan: 0.25 m from the middle of one of 2.2 m radius it is 7
+degrees; two mirrors on one post look into two streets."""
+
 _SHORT_M = 1.35
 """Bollards and delineators are lower: 0.65 to 0.85 m (車止め), up to 1.2 m (視線誘導標設置基準)."""
 
@@ -130,6 +136,9 @@ class Carried:
         Share of its patches that bulge as mirrors do.
     smooth : float
         Share of the patches beside it that are smooth surfaces: plates, and no twigs.
+    mirror_deg : float
+        Where its mirror looks, clockwise from north, 0 to 360; of several that to which most of
+        their patches belong. NaN where no patch bulges.
     """
 
     wires: int = 0
@@ -142,6 +151,7 @@ class Carried:
     plate_m: float = 0.0
     curved: float = 0.0
     smooth: float = 0.0
+    mirror_deg: float = math.nan
 
 
 def carried_of(points: Floats, shaft: Shaft) -> Carried:
@@ -278,10 +288,10 @@ def _tallest(along: Floats, heights: Floats) -> float:
     return float(np.median(np.sort(spans)[-3:])) if spans else 0.0
 
 
-def _plate(points: Floats) -> tuple[int, float, float, float]:
-    """Points, width, shares of curved and of smooth patches of what hangs on a shaft."""
+def _plate(points: Floats) -> tuple[int, float, float, float, float]:
+    """Points, width, shares of curved and of smooth patches of what hangs on a shaft; its face."""
     if len(points) < _PLATE_FEWEST:
-        return len(points), 0.0, 0.0, 0.0
+        return len(points), 0.0, 0.0, 0.0, math.nan
     high = points[:, 2]
     width = max(
         float(np.quantile(high, 0.95) - np.quantile(high, 0.05)),
@@ -291,13 +301,25 @@ def _plate(points: Floats) -> tuple[int, float, float, float]:
 
     tree = cKDTree(points)
     shapes = [
-        _bulges(points[near] - points[number])
+        _bulge_of(points[near] - points[number])
         for number in np.linspace(0, len(points) - 1, _PATCHES).astype(np.int64).tolist()
         if len(near := tree.query_ball_point(points[number], _PATCH_M)) >= _PLATE_FEWEST
     ]
     told = [one for one in shapes if one is not None]
-    curved = sum(told) / len(told) if told else 0.0
-    return len(points), width, curved, len(told) / _PATCHES
+    looks = [one for one in told if one.any()]
+    curved = len(looks) / len(told) if told else 0.0
+    return len(points), width, curved, len(told) / _PATCHES, _facing_deg(looks)
+
+
+def _facing_deg(looks: Sequence[Floats]) -> float:
+    """Bearing in which most of some unit vectors look: the mean of the largest group."""
+    if not looks:
+        return math.nan
+    plan = np.array(looks)[:, :2]
+    plan /= np.maximum(np.hypot(plan[:, 0], plan[:, 1]), 1e-9)[:, None]
+    alike = plan @ plan.T > math.cos(math.radians(_ONE_MIRROR_DEG))
+    east, north = plan[alike[int(alike.sum(axis=1).argmax())]].sum(axis=0).tolist()
+    return math.degrees(math.atan2(east, north)) % 360.0
 
 
 def _main_axis(plan: Floats) -> Floats:
@@ -305,8 +327,12 @@ def _main_axis(plan: Floats) -> Floats:
     return np.asarray(axes[:, 1])
 
 
-def _bulges(patch: Floats) -> bool | None:
-    """Whether a patch is a piece of a sphere as mirrors are; None of what is no smooth surface."""
+def _bulge_of(patch: Floats) -> Floats | None:
+    """Where a patch looks that is a piece of a sphere as mirrors are: (3,) a unit vector.
+
+    0 if it doesn't bulge so, None of what is no smooth surface. A mirror's dish bulges as its glass
+    does, so that it looks the same way from behind.
+    """
     middle = patch - patch.mean(axis=0)
     extents, axes = np.linalg.eigh(middle.T @ middle / len(patch))
     if extents[1] < _PATCH_WIDE_M**2:
@@ -321,7 +347,11 @@ def _bulges(patch: Floats) -> bool | None:
         return None
     bulge = abs(float(found[3]))
     is_sure = bulge > 4 * scatter * float(np.sqrt(cofactors[3, 3]))
-    return bool(is_sure and 1 / _MOST_RADIUS_M < 2 * bulge < 1 / _LEAST_RADIUS_M)
+    if not is_sure or not 1 / _MOST_RADIUS_M < 2 * bulge < 1 / _LEAST_RADIUS_M:
+        return np.zeros(3)
+    # At the patch's own middle: its normal where it is a piece of a sphere.
+    normal = axes @ np.array([1.0, -found[2], -found[1]])
+    return np.asarray(-np.sign(found[3]) * normal / np.linalg.norm(normal))
 
 
 def is_short(shaft: Shaft) -> bool:
