@@ -65,7 +65,7 @@ def _judge_lines(scene: RoadScene) -> Iterator[tuple[WireFacts, bool, float]]:
     true = [one.xyz - plan.origin for one in read_mapped(scene.truth("wires")).features]
     fine = [_every(line) for line in true]
     tree = cKDTree(np.concatenate(fine)) if fine else None
-    for span in spans_of(found.local, found.group):
+    for span in spans_of(found.local, found.group, monitor):
         if span.long_m >= _SHORTEST_M:
             at = span.at(np.arange(span.start_m, span.end_m, _STEP_M))
             off = tree.query(at)[0] if tree is not None else np.full(len(at), np.inf)

@@ -78,6 +78,7 @@ def points_about(
     parts = list(in_order(gathered, chunks_of(drives, plan.origin, monitor)))
     counts = np.zeros(len(middles), np.int64)
     for part in parts:
+        monitor.check()
         counts += np.bincount(part.owners, minlength=len(middles))
     starts = np.concatenate([[0], np.cumsum(counts)])
     about = ColumnPoints(
@@ -88,6 +89,7 @@ def points_about(
     )
     free = starts[:-1].copy()
     for part in parts:
+        monitor.check()
         place_kernel(part, free, about.local, about.drives, about.points)
     return about
 

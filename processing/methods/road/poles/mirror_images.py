@@ -81,7 +81,10 @@ def mirror_images(
     asked : sequence of int
         Numbers of the shafts that are asked about.
     """
-    pairs = [pair for number in asked for pair in _pairs(drives, plan, shafts, number)]
+    pairs: list[_Pair] = []
+    for number in asked:
+        monitor.check()
+        pairs += _pairs(drives, plan, shafts, number)
     if not pairs:
         return frozenset()
     passed = np.array([one.passed for one in pairs])
@@ -90,6 +93,7 @@ def mirror_images(
     tree = cKDTree(wall[:, :2], balanced_tree=False, compact_nodes=False)
     images = set()
     for pair in pairs:
+        monitor.check()
         near = tree.query_ball_point(pair.passed, _ABOUT_M)
         if _is_wall(wall[near], pair, float(shafts[pair.image].foot[2])):
             images.add(pair.image)

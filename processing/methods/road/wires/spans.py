@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from processing.core.arrays import Floats, Integers
+from processing.core.monitor import Monitor
 from processing.methods.road.wires.span_kernels import (
     ASIDE,
     BEND,
@@ -119,7 +120,7 @@ class WireSpan:
         return np.asarray((places[:, :2] - self.middle) @ self.way)
 
 
-def spans_of(local: Floats, group: Integers) -> list[WireSpan]:
+def spans_of(local: Floats, group: Integers, monitor: Monitor) -> list[WireSpan]:
     """The wires that groups of points are.
 
     Parameters
@@ -133,8 +134,8 @@ def spans_of(local: Floats, group: Integers) -> list[WireSpan]:
     pieces: list[WireSpan] = []
     for lines in np.split(order, first[1:]):
         if lines.size >= _FEWEST:
-            pieces += _pieces(local, lines)
-    return _joined(local, pieces)
+            pieces += _pieces(local, lines, monitor)
+    return _joined(local, pieces, monitor)
 
 
 def _fit(local: Floats, lines: Integers) -> WireSpan | None:
@@ -156,7 +157,7 @@ def _fit(local: Floats, lines: Integers) -> WireSpan | None:
     )
 
 
-def _pieces(local: Floats, lines: Integers) -> list[WireSpan]:
+def _pieces(local: Floats, lines: Integers, monitor: Monitor) -> list[WireSpan]:
     """A group as one wire, or split where it is held by a pole or another one begins."""
     span = _fit(local, lines)
     if span is None:
@@ -167,6 +168,7 @@ def _pieces(local: Floats, lines: Integers) -> list[WireSpan]:
     order = lines[np.argsort(span.along(local[lines]), kind="stable")]
     best: tuple[float, list[WireSpan]] | None = None
     for share in np.linspace(0.1, 0.9, 17):
+        monitor.check()
         cut = int(share * lines.size)
         parts = [_fit(local, part) for part in (order[:cut], order[cut:])]
         found = [part for part in parts if part is not None]
@@ -180,10 +182,10 @@ def _pieces(local: Floats, lines: Integers) -> list[WireSpan]:
     alone = span.noise_m**2 * span.lines.size + (lines.size - span.lines.size) * MOST_OFF_M**2
     if best is None or best[0] > 0.6 * alone:
         return [span] if span.noise_m < MOST_OFF_M else []
-    return [one for part in best[1] for one in _pieces(local, np.sort(part.lines))]
+    return [one for part in best[1] for one in _pieces(local, np.sort(part.lines), monitor)]
 
 
-def _joined(local: Floats, pieces: Sequence[WireSpan]) -> list[WireSpan]:
+def _joined(local: Floats, pieces: Sequence[WireSpan], monitor: Monitor) -> list[WireSpan]:
     """Pieces of one wire as one, the nearest joined first."""
     spans = list(pieces)
     ways = [_way_of(one) for one in spans]
@@ -195,6 +197,7 @@ def _joined(local: Floats, pieces: Sequence[WireSpan]) -> list[WireSpan]:
         return number
 
     for a, b in _neighbours(pieces):
+        monitor.check()
         first, second = whole(a), whole(b)
         if first == second or _turns_away(ways[first], ways[second]):
             continue

@@ -134,7 +134,7 @@ def _seen_wires(
         chosen = [drives[one] for one in members]
         found = wire_points(chosen, plan, ground, settings.lowest_m, part)
         found = replace(found, drives=np.array(members, np.int64)[found.drives])
-        spans = spans_of(found.local, found.group)
+        spans = spans_of(found.local, found.group, part)
         seen += [(one, found, number) for one in spans if one.long_m >= settings.shortest_m]
     seen.sort(key=lambda one: -one[0].lines.size)
     kept: list[tuple[WireSpan, WirePoints, int]] = []

@@ -57,7 +57,7 @@ def wire_diagnostics(
     right = asked.scanlines.rights[len(asked.scanlines.rights) // 2]
     forward = np.array([-right[1], right[0]])
     found: list[Diagnostic] = []
-    for span in spans_of(lines.local, lines.group):
+    for span in spans_of(lines.local, lines.group, SilentMonitor()):
         at = _crossing(span, forward)
         if at is not None:
             whole = _whole(span, at, (ground, settings), least_confidence)

@@ -145,11 +145,22 @@ def _near(
 
 @kernel
 def crowded_kernel(
-    points: Floats, starts: Integers, grid: WireGrid, most: int, crowded: Flags
+    points: Floats,
+    starts: Integers,
+    grid: WireGrid,
+    most: int,
+    some: tuple[int, int],
+    crowded: Flags,
 ) -> None:
-    """Mark the points of cells of which more than so many of 64 parts are filled: crowns."""
+    """Mark the points of cells of which more than so many of 64 parts are filled: crowns.
+
+    Parameters
+    ----------
+    some : (int, int)
+        The first of the cells that are asked, and the one after the last.
+    """
     part_m = grid.size_m / 4
-    for cell in range(starts.size - 1):
+    for cell in range(some[0], some[1]):
         filled = np.uint64(0)
         for point in range(starts[cell], starts[cell + 1]):
             bit = 0
@@ -303,19 +314,31 @@ def groups_kernel(
     starts: Integers,
     grid: WireGrid,
     core_m: float,
+    some: tuple[int, int],
     group: NDArray[np.int64],
 ) -> None:
-    """Join points that lie on each other's lines: the first of its group is written for each."""
+    """Join points of some cells with those that lie on each other's lines.
+
+    Parameters
+    ----------
+    some : (int, int)
+        The first of the cells, and the one after the last.
+    group : (n,) int64
+        Another point of the same group, or the point itself, from which all of them begin.
+    """
     found = np.empty(2 * _MOST_NEAR, np.int64)
     spans = np.empty((9, 2), np.int64)
-    for point in range(len(points)):
-        group[point] = point
-    for cell in range(cells.size):
+    for cell in range(some[0], some[1]):
         every = _spans_about(cell, cells, starts, grid, spans) // (6 * _MOST_NEAR) + 1
         for point in range(starts[cell], starts[cell + 1]):
             count = _near(points, point, spans, grid, every, found)
             _join(points, point, found[:count], directions, core_m, group)
-    for point in range(len(points)):
+
+
+@kernel
+def firsts_kernel(group: NDArray[np.int64]) -> None:
+    """Write the first of its group for each point."""
+    for point in range(group.size):
         group[point] = _first(group, point)
 
 

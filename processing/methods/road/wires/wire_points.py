@@ -23,6 +23,7 @@ from processing.methods.road.wires.wire_kernels import (
     LineLimits,
     WireGrid,
     crowded_kernel,
+    firsts_kernel,
     groups_kernel,
     lines_kernel,
     short_runs_kernel,
@@ -164,23 +165,33 @@ def points_on_lines(
     which, numbers : (n,) int64
         Of which drive each is, and its number there.
     """
+    monitor.check()
     order, _, starts, grid = _sorted(local)
+    monitor.check()
     local, which, numbers = local[order], which[order], numbers[order]
     crowded = np.zeros(len(local), np.bool_)
-    crowded_kernel(local, starts, grid, _MOST_FILLED, crowded)
+    for some in chunk_ranges(starts.size - 1, _CELLS_AT_ONCE):
+        monitor.check()
+        crowded_kernel(local, starts, grid, _MOST_FILLED, some, crowded)
     local, which, numbers = local[~crowded], which[~crowded], numbers[~crowded]
     for _ in range(2):
         # Points on lines tell the lines again, without what lay beside them.
+        monitor.check()
         order, cells, starts, grid = _sorted(local)
+        monitor.check()
         local, which, numbers = local[order], which[order], numbers[order]
         direction = _directions(local, cells, starts, grid, monitor)
         is_on = direction.any(axis=1)
         local, which, numbers = local[is_on], which[is_on], numbers[is_on]
     direction = direction[is_on]
+    monitor.check()
     order, cells, starts, grid = _sorted(local)
     local, direction = local[order], direction[order]
-    group = np.empty(len(local), np.int64)
-    groups_kernel(local, direction, cells, starts, grid, _LIMITS.core_m, group)
+    group = np.arange(len(local), dtype=np.int64)
+    for some in chunk_ranges(len(cells), _CELLS_AT_ONCE):
+        monitor.check()
+        groups_kernel(local, direction, cells, starts, grid, _LIMITS.core_m, some, group)
+    firsts_kernel(group)
     return WirePoints(local, direction, group, which[order], numbers[order])
 
 
