@@ -311,6 +311,10 @@ def test_the_circles_of_a_trunk_are_told_where_they_are(
         assert one.outcomes[0].value == pytest.approx(OLD_DIAMETER_M, abs=0.1)
         assert math.dist(one.xyz[:2], place[:2]) < 0.03
         assert 0.2 < one.xyz[2] - place[2] < 2.8
+        assert one.outline is not None
+        assert np.ptp(one.outline, axis=0)[:2] == pytest.approx(
+            [one.outcomes[0].value] * 2, rel=0.02
+        )
 
 
 def test_without_a_trajectory_trees_are_found_all_the_same(tmp_path: Path) -> None:

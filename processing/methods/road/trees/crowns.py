@@ -127,9 +127,9 @@ class UprightTrunk:
 
     @property
     def top(self) -> Floats:
-        """(2,) where its thickest stem ends in plan, m about the plan's origin."""
-        axis = self.trunk.stems_about_foot[0]
-        place: Floats = self.foot[:2] + axis.middle_at(self.top_m)
+        """(2,) where its stems end in plan, in the middle of them, m about the plan's origin."""
+        ends = [stem.middle_at(self.top_m) for stem in self.trunk.stems_about_foot]
+        place: Floats = self.foot[:2] + np.mean(ends, axis=0)
         return place
 
 
@@ -195,7 +195,8 @@ class CrownShares:
         """By which link, and the largest part near the axis above the stem; −1: none."""
         about = self._about(number, _AXIS_M)
         up = self._middles[about, 2] - self._feet[number]
-        seeds = about[(up > _LOW_M) & (up < self._trunks[number].top_m + _ABOVE_M)]
+        trunk = self._trunks[number]
+        seeds = about[(up > _LOW_M) & (up < max(trunk.top_m, trunk.rise.high_m) + _ABOVE_M)]
         best = (0, -1)
         for link, sizes in enumerate(self._sizes):
             parts = np.unique(self._parts[link, seeds])

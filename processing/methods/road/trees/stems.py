@@ -31,6 +31,7 @@ from processing.methods.road.trees.circle_kernels import (
     lean_kernel,
 )
 from processing.methods.road.trees.cone_kernels import (
+    EVEN_NOISE_M,
     NUMBERS,
     TOLERANCE_M,
     arc_kernel,
@@ -93,6 +94,14 @@ _FLATTER = (0.0, 5.0, 6.0)
 """How much likelier (natural logarithm, halves) each shape must make the points: Akaike's 2 for
 each of the two numbers of an ellipse, and somewhat more, since few trunks are flat."""
 
+
+_BENT_NOISE_M = 0.5 * EVEN_NOISE_M
+"""Off a stem that may bend: half of what any points would give, twice the noise of scanners."""
+
+_PIECE_M, _STRAIGHTER = 0.65, 0.75
+"""m to either side of 1.2 m in which a stem that bends is straight enough: slender stems of one
+tree curve out by 0.1 m in a metre and a half, a hundredth of a metre there; and how far its points
+lie off it then, over how far they lay: mere noise stays as it is."""
 
 _OPEN = 0.5
 """Standard deviation of the radius over what its shapes differ in it: where they do, half a trunk
@@ -251,6 +260,9 @@ def _fitted(points: Floats, chain: Floats, most_diameter_m: float) -> FittedStem
     cone = _likeliest(local, start)
     if cone is None:
         return None
+    piece = _unbent_piece(points, chain) if cone.noise_m > _BENT_NOISE_M else None
+    if piece is not None and piece.cone.noise_m < _STRAIGHTER * cone.noise_m:
+        about, local, cone = piece
     radius = float(cone.body[4])
     lean = cone.body[2:4]
     if not _THINNEST_M <= radius <= most_diameter_m / 2 or np.hypot(*lean) > _STEEPEST:
@@ -276,6 +288,26 @@ class _Cone(NamedTuple):
     deviation_m: float
     noise_m: float
     near: NDArray[np.bool_]
+
+
+class _Piece(NamedTuple):
+    """Which points are near a piece of a stem, where they are about it, and its cone."""
+
+    about: Integers
+    local: Floats
+    cone: _Cone
+
+
+def _unbent_piece(points: Floats, chain: Floats) -> _Piece | None:
+    """The piece of a stem about 1.2 m; None where it has too few circles or points there."""
+    rows = chain[np.abs(chain[:, 0] - BREAST_M) < _PIECE_M]
+    if not _FEWEST_SLABS <= len(rows) < len(chain):
+        return None
+    start = _body_of(rows)
+    about = _points_near(points, start, rows[0, 0] - THICK_M / 2, rows[-1, 0] + THICK_M / 2)
+    local = points[about] - (0.0, 0.0, BREAST_M)
+    cone = _likeliest(local, start)
+    return _Piece(about, local, cone) if cone is not None else None
 
 
 def _points_near(points: Floats, body: Floats, low: float, high: float) -> Integers:

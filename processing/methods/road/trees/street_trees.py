@@ -18,17 +18,16 @@ from processing.methods.road.objects.column_points import (
 )
 from processing.methods.road.objects.columns import FoundColumns
 from processing.methods.road.objects.driven_path import driven_places
-from processing.methods.road.objects.foot import foot_height, ground_seen
+from processing.methods.road.objects.foot import foot_height
 from processing.methods.road.objects.sparse_plan import SparsePlan
 from processing.methods.road.objects.survey import survey_columns
 from processing.methods.road.trees.clearances import Clearances, GroundBelowCrowns
+from processing.methods.road.trees.column_trunks import ColumnTrunk, column_trunks
 from processing.methods.road.trees.crown_cells import StandingStems, crown_cells
 from processing.methods.road.trees.crowns import CROWN_M, Crown, CrownShares, UprightTrunk
-from processing.methods.road.trees.drive_shifts import without_shifts
-from processing.methods.road.trees.rises import followed, rise_of
-from processing.methods.road.trees.stems import stems_of
+from processing.methods.road.trees.rises import rise_of
 from processing.methods.road.trees.tree_confidence import chance_of, facts_of
-from processing.methods.road.trees.trunks import Trunk, is_round, trunk_of
+from processing.methods.road.trees.trunks import Trunk, is_round
 from processing.recording.drive import Drive
 
 _TRUNK_M = 0.9
@@ -49,11 +48,6 @@ _BESIDE_M, _ABOVE_M = 0.12, 0.5
 _APART_M = 1.2
 """Two trunks nearer to each other are stems of one tree, or one is a stake, a shrub or a piece of
 the crown of the other."""
-
-
-_NEIGHBOURS, _MOST = list(range(1, 21)), 0.5
-"""Nearest columns that are asked whether drives lie apart, and how many have to say so: positions
-drift over minutes, so columns of a street agree."""
 
 
 @dataclass(frozen=True)
@@ -102,20 +96,6 @@ class StreetTree:
     def trunk(self) -> Trunk:
         """Its stems, about the column's foot."""
         return self.upright.trunk
-
-
-class _ColumnTrunk(NamedTuple):
-    """The trunk of a column, by its number, and the points about its foot, (n, 3).
-
-    ``coarse_m``, ``height_m``: the ground by the coarse map and by what lies about the column, m
-    about the plan's origin.
-    """
-
-    number: int
-    coarse_m: float
-    height_m: float
-    about: Floats
-    trunk: Trunk
 
 
 class _MeasuredTrunk(NamedTuple):
@@ -223,16 +203,10 @@ def _standing_trunks(
 ) -> list[_MeasuredTrunk]:
     """What is round and upright among the columns."""
     gathered = points_about(drives, plan, columns.middles, _TRUNK_M, PartMonitor(monitor, 0.0, 0.5))
-    about: list[_ColumnTrunk] = []
-    for number in range(len(columns)):
-        monitor.check()
-        one = _trunk_about(columns, gathered, number, settings)
-        if one is not None:
-            about.append(one)
-        monitor.report(0.5 + 0.4 * (number + 1) / len(columns))
-    if len(drives) > 1:
-        about = _drives_joined(about, gathered, settings)
-    trunks = [_standing(columns, gathered, one) for one in about]
+    about = column_trunks(
+        columns, gathered, settings.most_diameter_m, PartMonitor(monitor, 0.5, 0.9)
+    )
+    trunks = [_standing(gathered, one) for one in about]
     return [one for one in trunks if is_round(one.standing.trunk)]
 
 
@@ -260,70 +234,16 @@ def _joined(columns: FoundColumns) -> FoundColumns:
     return FoundColumns(np.array(middles), np.array(ground), np.array(bits, np.uint32))
 
 
-def _trunk_about(
-    columns: FoundColumns, gathered: ColumnPoints, number: int, settings: TreeSettings
-) -> _ColumnTrunk | None:
-    """The trunk of a column; None where none of its stems is one."""
-    local = gathered.local[gathered.of(number)]
-    middle = columns.middles[number]
-    coarse = ground_seen(local[:, 2], float(columns.ground[number]))
-    height = foot_height(local, middle, coarse)
-    about = local - (*middle, height)
-    trunk = _trunk_in(about, settings)
-    return _ColumnTrunk(number, coarse, height, about, trunk) if trunk is not None else None
-
-
-def _trunk_in(about: Floats, settings: TreeSettings) -> Trunk | None:
-    """The trunk among points about a foot."""
-    return trunk_of(followed(about, stems_of(about, settings.most_diameter_m)))
-
-
-def _drives_joined(
-    trunks: Sequence[_ColumnTrunk], gathered: ColumnPoints, settings: TreeSettings
-) -> list[_ColumnTrunk]:
-    """The trunks by points of all drives laid onto each other, where these lie apart.
-
-    Bark that is not round looks like a shift too: drives lie apart where most columns that are
-    near say so.
-    """
-    moved = [
-        without_shifts(one.about, gathered.drives[gathered.of(one.number)], one.trunk.stems[0])
-        for one in trunks
-    ]
-    told = [number for number, one in enumerate(moved) if one.is_told]
-    if not told:
-        return list(trunks)
-    tree = cKDTree([_middle_of(gathered, trunks[number].number) for number in told])
-    is_apart = np.array([moved[number].points is not None for number in told])
-    joined: list[_ColumnTrunk] = []
-    for one, shifted in zip(trunks, moved, strict=True):
-        points = shifted.points
-        near = np.asarray(tree.query(_middle_of(gathered, one.number), k=_NEIGHBOURS)[1])
-        if points is not None and is_apart[near[near < len(told)]].mean() > _MOST:
-            trunk = _trunk_in(points, settings)
-            joined.append(one._replace(about=points, trunk=trunk or one.trunk))
-        else:
-            joined.append(one)
-    return joined
-
-
-def _middle_of(gathered: ColumnPoints, number: int) -> Floats:
-    """Of the points about a column, in plan."""
-    middle: Floats = gathered.local[gathered.of(number), :2].mean(axis=0)
-    return middle
-
-
-def _standing(columns: FoundColumns, gathered: ColumnPoints, one: _ColumnTrunk) -> _MeasuredTrunk:
+def _standing(gathered: ColumnPoints, one: ColumnTrunk) -> _MeasuredTrunk:
     """A trunk with its foot on the ground, and how it goes on above."""
-    part, middle = gathered.of(one.number), columns.middles[one.number]
     stem = one.trunk.stems[0]
     higher = foot_height(one.about, stem.base, one.coarse_m - one.height_m, stem.radius_m)
     trunk = one.trunk.about(higher)
     lines = trunk.lines[np.argsort(one.about[trunk.lines, 2], kind="stable")]
     rise = rise_of(one.about - (0.0, 0.0, higher), trunk.stems[0])
-    foot = np.array([*(middle + trunk.base), one.height_m + higher])
+    foot = np.array([*(one.middle + trunk.base), one.height_m + higher])
     return _MeasuredTrunk(
         UprightTrunk(trunk, foot, rise),
-        gathered.points[part][lines],
-        gathered.drives[part][lines],
+        gathered.points[one.lines[lines]],
+        gathered.drives[one.lines[lines]],
     )

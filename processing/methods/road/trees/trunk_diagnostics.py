@@ -24,6 +24,9 @@ _LEAST_ARC = 0.12
 _LOWEST_SHARE = 0.02
 """Of the points: about the ground, which foot_height then finds."""
 
+_RING = 24
+"""Corners of a circle as it is drawn."""
+
 _DIAMETER = Text("Diameter of the circle", "円の直径")
 _SEEN = Text("Share of its circumference that was seen", "円周のうち計測された割合")
 _OFF = Text("Off the trunk that all points give", "全点から求めた幹とのずれ")
@@ -71,7 +74,16 @@ def _diagnostic_of(
             DiagnosticTest(_OFF, off, _SAME_M, "m", is_taken),
         ),
         is_taken,
+        _ring(place, float(circle[RADIUS])),
     )
+
+
+def _ring(middle: Floats, radius_m: float) -> Floats:
+    """(n, 3) a level circle."""
+    turn = 2 * np.pi * np.arange(_RING) / _RING
+    level = np.column_stack([np.cos(turn), np.sin(turn), np.zeros(_RING)])
+    ring: Floats = middle + radius_m * level
+    return ring
 
 
 def _off(circle: Floats, height_m: float, stem: FittedStem) -> float:

@@ -112,3 +112,11 @@ def test_a_piece_of_a_wall_beside_a_trunk_is_none() -> None:
     narrow = wall[np.abs(wall[:, 1] - 0.9) < 0.25]
     trunk = trunk_in(bark(0.16, 0.2, 2.6), narrow)
     assert trunk.diameter_m == pytest.approx(0.16, abs=0.01)
+
+
+def test_of_several_stems_that_bend_each_counts() -> None:
+    bent = bark(0.07, 0.2, 2.7, middle=(0.3, 0.0))
+    bent[:, 0] += 0.03 * (bent[:, 2] - 1.2) ** 2
+    trunk = trunk_in(bent, bark(0.09, 0.2, 4.0), bark(0.08, 0.2, 4.0, middle=(0.0, 0.4)))
+    assert len(trunk.stems) == 3
+    assert trunk.diameter_m == pytest.approx(0.7 * 0.24, abs=0.012)

@@ -1,0 +1,179 @@
+"""The trunk of each column: its stems, those that stand in columns of their own too.
+
+A tree of several stems may spread over several columns, each of which shows a part of it. Its stems
+leave the ground together and part upwards, which posts beside a tree don't.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from processing.core.arrays import Floats, Integers
+from processing.core.monitor import Monitor
+from processing.methods.road.objects.column_points import ColumnPoints
+from processing.methods.road.objects.columns import FoundColumns
+from processing.methods.road.objects.foot import foot_height, ground_seen
+from processing.methods.road.trees.drive_shifts import without_shifts
+from processing.methods.road.trees.rises import followed
+from processing.methods.road.trees.stems import HIGHEST_M, stems_of
+from processing.methods.road.trees.trunks import Trunk, trunk_of
+
+_NEIGHBOURS, _MOST = list(range(1, 21)), 0.5
+"""Nearest columns that are asked whether drives lie apart, and how many have to say so: positions
+drift over minutes, so columns of a street agree."""
+
+_CLUMP_M = 0.7
+"""Axes of stems of one tree are so near to each other at the foot: they rise from one root, and the
+tree takes no more of a planting strip of 1.5 m (道路構造令 第11条の4: 植樹帯)."""
+
+_PARTS = 0.1
+"""Run over rise by which they move apart: 6 degrees, which two posts beside each other don't."""
+
+
+class ColumnTrunk(NamedTuple):
+    """The trunk of a column and the points about its foot.
+
+    Attributes
+    ----------
+    lines : (n,) int64
+        Which of the gathered points.
+    middle : (2,) float64
+        Of the column, m about the plan's origin.
+    coarse_m, height_m : float
+        The ground by the coarse map and by what lies about the column, m about the plan's origin.
+    about : (n, 3) float64
+        The points about middle and ground.
+    trunk : Trunk
+        About the same.
+    """
+
+    lines: Integers
+    middle: Floats
+    coarse_m: float
+    height_m: float
+    about: Floats
+    trunk: Trunk
+
+
+def column_trunks(
+    columns: FoundColumns, gathered: ColumnPoints, most_diameter_m: float, monitor: Monitor
+) -> list[ColumnTrunk]:
+    """The trunks of all columns that have one, of several that are one tree the whole.
+
+    Notes
+    -----
+    1. Each column's stems are looked for by themselves.
+    2. Columns whose stems leave the ground together and move apart are looked at as one.
+    3. Where most columns say that drives lie apart, their points are laid onto each other.
+    """
+    found: list[ColumnTrunk] = []
+    for number in range(len(columns)):
+        monitor.check()
+        part = gathered.of(number)
+        lines = np.arange(part.start, part.stop)
+        ground = float(columns.ground[number])
+        one = _trunk_about(gathered, lines, (columns.middles[number], ground), most_diameter_m)
+        if one is not None:
+            found.append(one)
+        monitor.report((number + 1) / len(columns))
+    whole = _clumps_joined(found, gathered, most_diameter_m)
+    has_several = np.unique(gathered.drives).size > 1
+    return _drives_joined(whole, gathered, most_diameter_m) if has_several else whole
+
+
+def _trunk_about(
+    gathered: ColumnPoints, lines: Integers, place: tuple[Floats, float], most_diameter_m: float
+) -> ColumnTrunk | None:
+    """The trunk of points about a middle and a ground; None where none of the stems is one."""
+    middle, ground = place
+    local = gathered.local[lines]
+    coarse = ground_seen(local[:, 2], ground)
+    height = foot_height(local, middle, coarse)
+    about = local - (*middle, height)
+    trunk = _trunk_in(about, most_diameter_m)
+    if trunk is None:
+        return None
+    return ColumnTrunk(lines, middle, coarse, height, about, trunk)
+
+
+def _trunk_in(about: Floats, most_diameter_m: float) -> Trunk | None:
+    """The trunk among points about a foot."""
+    return trunk_of(followed(about, stems_of(about, most_diameter_m)))
+
+
+def _clumps_joined(
+    trunks: Sequence[ColumnTrunk], gathered: ColumnPoints, most_diameter_m: float
+) -> list[ColumnTrunk]:
+    """Trunks that are stems of one tree as one trunk."""
+    if len(trunks) < 2:
+        return list(trunks)
+    feet = np.array([one.middle + one.trunk.base for one in trunks])
+    pairs = cKDTree(feet).query_pairs(2 * _CLUMP_M, output_type="ndarray")
+    pairs = pairs[[_is_one_tree(trunks[a], trunks[b]) for a, b in pairs.tolist()]]
+    ties = coo_matrix((np.ones(len(pairs)), pairs.T), (len(trunks),) * 2)
+    clumps = connected_components(ties, directed=False)[1]
+    joined: list[ColumnTrunk] = []
+    for clump in np.unique(clumps):
+        members = [trunks[number] for number in np.flatnonzero(clumps == clump).tolist()]
+        whole = _whole(members, gathered, most_diameter_m) if len(members) > 1 else None
+        joined += members if whole is None else [whole]
+    return joined
+
+
+def _is_one_tree(one: ColumnTrunk, other: ColumnTrunk) -> bool:
+    """Whether some of their stems leave the ground together and move apart."""
+    for a in one.trunk.stems:
+        for b in other.trunk.stems:
+            beside = one.middle + a.base - other.middle - b.base
+            low = float(np.hypot(*beside))
+            high = float(np.hypot(*(beside + HIGHEST_M * (a.lean - b.lean))))
+            if low < _CLUMP_M and high - low > _PARTS * HIGHEST_M:
+                return True
+    return False
+
+
+def _whole(
+    members: Sequence[ColumnTrunk], gathered: ColumnPoints, most_diameter_m: float
+) -> ColumnTrunk | None:
+    """The trunk of several columns together; None where that shows fewer stems than they do."""
+    lines = np.concatenate([one.lines for one in members])
+    middle = np.mean([one.middle + one.trunk.base for one in members], axis=0)
+    ground = min(one.coarse_m for one in members)
+    whole = _trunk_about(gathered, lines, (middle, ground), most_diameter_m)
+    most = max(len(one.trunk.stems) for one in members)
+    return whole if whole is not None and len(whole.trunk.stems) > most else None
+
+
+def _drives_joined(
+    trunks: Sequence[ColumnTrunk], gathered: ColumnPoints, most_diameter_m: float
+) -> list[ColumnTrunk]:
+    """The trunks by points of all drives laid onto each other, where these lie apart.
+
+    Bark that is not round looks like a shift too: drives lie apart where most columns that are
+    near say so.
+    """
+    moved = [
+        without_shifts(one.about, gathered.drives[one.lines], one.trunk.stems[0]) for one in trunks
+    ]
+    told = [number for number, one in enumerate(moved) if one.is_told]
+    if not told:
+        return list(trunks)
+    places = np.array([one.middle + one.about[:, :2].mean(axis=0) for one in trunks])
+    tree = cKDTree(places[told])
+    is_apart = np.array([moved[number].points is not None for number in told])
+    joined: list[ColumnTrunk] = []
+    for place, one, shifted in zip(places, trunks, moved, strict=True):
+        points = shifted.points
+        near = np.asarray(tree.query(place, k=_NEIGHBOURS)[1])
+        if points is not None and is_apart[near[near < len(told)]].mean() > _MOST:
+            trunk = _trunk_in(points, most_diameter_m)
+            joined.append(one._replace(about=points, trunk=trunk or one.trunk))
+        else:
+            joined.append(one)
+    return joined
