@@ -95,8 +95,9 @@ _FLATTER = (0.0, 5.0, 6.0)
 each of the two numbers of an ellipse, and somewhat more, since few trunks are flat."""
 
 
-_BENT_NOISE_M = 0.5 * EVEN_NOISE_M
-"""Off a stem that may bend: half of what any points would give, twice the noise of scanners."""
+EVENLY_M = 0.75 * EVEN_NOISE_M
+"""Off a stem: points that lie so far off it fill what is allowed nearly evenly. There is no stem,
+or it bends."""
 
 _PIECE_M, _STRAIGHTER = 0.65, 0.75
 """m to either side of 1.2 m in which a stem that bends is straight enough: slender stems of one
@@ -260,7 +261,7 @@ def _fitted(points: Floats, chain: Floats, most_diameter_m: float) -> FittedStem
     cone = _likeliest(local, start)
     if cone is None:
         return None
-    piece = _unbent_piece(points, chain) if cone.noise_m > _BENT_NOISE_M else None
+    piece = _unbent_piece(points, chain) if cone.noise_m > EVENLY_M else None
     if piece is not None and piece.cone.noise_m < _STRAIGHTER * cone.noise_m:
         about, local, cone = piece
     radius = float(cone.body[4])

@@ -13,8 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from processing.core.arrays import Floats, Integers
-from processing.methods.road.trees.cone_kernels import EVEN_NOISE_M
-from processing.methods.road.trees.stems import BREAST_M, FittedStem
+from processing.methods.road.trees.stems import BREAST_M, EVENLY_M, FittedStem
 
 _SAME_M = 0.06
 """Axes nearer than this at one height are of one stem that was found in two pieces."""
@@ -57,7 +56,7 @@ _STAY = 0.1
 """Run over rise by which a stay comes nearer to the trunk that it holds (八ツ掛支柱: some 0.4);
 stems of one tree lean away from each other or stand side by side."""
 
-_LOOSE, _EVENLY_M = 1.8, 0.75 * EVEN_NOISE_M
+_LOOSE = 1.8
 """Times as far as of its neighbour points lie off a stem that isn't there: they fill what is
 allowed evenly, or nearly. Bark of one tree is alike on all its stems."""
 
@@ -184,7 +183,7 @@ def _is_of_fork(stem: FittedStem, others: Sequence[FittedStem]) -> bool:
 def _is_loose(stem: FittedStem, others: Sequence[FittedStem]) -> bool:
     """Whether points lie about it as where no surface is, and on a neighbour as on one."""
     tight = [one.noise_m for one in others if one.arc >= _ROUND]
-    return stem.noise_m > _EVENLY_M and stem.noise_m > _LOOSE * min(tight, default=np.inf)
+    return stem.noise_m > EVENLY_M and stem.noise_m > _LOOSE * min(tight, default=np.inf)
 
 
 def _is_stay(stem: FittedStem, others: Sequence[FittedStem]) -> bool:
