@@ -89,11 +89,9 @@ def _candidate(tree: StreetTree) -> Candidate:
     attributes: dict[str, CandidateValue] = {
         "girth_m": round(trunk.girth_m, 3),
         "dbh_m": round(trunk.diameter_m, 4),
-        "dbh_within_m": round(trunk.diameter_within_m, 4),
+        "dbh_within_m": round(trunk.diameter_within_m, 3),
         "stems": len(trunk.stems),
         "height_m": round(crown.height_m, 2),
-        # The ledger of street trees has a column of its own for it.
-        "tree_height_m": round(crown.height_m, 2),
         "crown_m": round(sum(crown.spread_m) / 2, 2),
         "crown_across_m": round(crown.spread_m[1], 2),
         "lean_deg": round(trunk.lean_deg, 1),
