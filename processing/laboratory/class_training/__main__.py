@@ -35,11 +35,11 @@ from processing.laboratory.accuracy.road.road_scenes import (
     simulated_scenes,
     worn_options_of,
 )
+from processing.laboratory.accuracy.road.true_labels import labels_of_drive
 from processing.laboratory.class_training.examples import (
     NOISE,
     LabelledCells,
     labelled_cells,
-    labels_of_drive,
 )
 from processing.laboratory.class_training.fitting import ForestSize, fit_forest, in_order_of
 from processing.laboratory.class_training.pictures import write_confusion, write_label_image

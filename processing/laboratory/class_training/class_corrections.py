@@ -29,7 +29,10 @@ from processing.core.arrays import Floats, Integers
 from processing.core.monitor import SilentMonitor
 from processing.core.output_streams import write_every_character
 from processing.laboratory.accuracy.road.road_scenes import RoadScene, given_scenes
-from processing.laboratory.class_training.examples import NOISE, labels_of_drive
+from processing.laboratory.accuracy.road.true_labels import labels_of_drive
+from processing.laboratory.class_training.examples import (
+    NOISE,
+)
 from processing.methods.classes.class_models import ClassModels, shipped_models, shipped_sample
 from processing.methods.classes.drive_classes import classify_drive
 from processing.methods.classes.found_things import FoundThings

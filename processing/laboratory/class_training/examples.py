@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from numpy.random import Generator
@@ -14,9 +13,9 @@ from processing.core.arrays import Integers
 from processing.core.monitor import SilentMonitor
 from processing.image.images_of_drives import image_of
 from processing.laboratory.accuracy.road.road_scenes import RoadScene
+from processing.laboratory.accuracy.road.true_labels import labels_of_drive
 from processing.methods.classes.drive_classes import DriveSurroundings
 from processing.methods.classes.features import ClassCells
-from processing.recording.columns.source_order import sources_of
 from processing.recording.drive import Drive
 
 NOISE = (7, 18)
@@ -90,18 +89,6 @@ def labelled_cells(scene: RoadScene, variants: int, seed: int) -> Iterator[Label
             is_standing = variant % _EVERY == _STANDING
             thinned = _as_one_scan if is_standing else _as_slower_scanner
             yield _variant(around, labels, thinned(drive, rng), rng)
-
-
-def labels_of_drive(drive: Drive, truth: Path) -> NDArray[np.uint8]:
-    """(n,) the true classes of a drive's points, from ``FILE.labels.npy`` of its files."""
-    files, indices = sources_of(
-        drive.columns, drive.info.source_runs, 0, drive.count, sources=len(drive.info.sources)
-    )
-    labels = np.zeros(drive.count, np.uint8)
-    for number, source in enumerate(drive.info.sources):
-        own = files == number
-        labels[own] = np.load(truth / f"{Path(source.path).stem}.labels.npy")[indices[own]]
-    return labels
 
 
 def codes_of_cells(cells: ClassCells, labels: NDArray[np.uint8]) -> NDArray[np.uint8]:

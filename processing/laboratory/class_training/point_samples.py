@@ -14,7 +14,10 @@ from numpy.typing import NDArray
 from processing.core.arrays import Flags, Integers
 from processing.core.monitor import SilentMonitor
 from processing.laboratory.accuracy.road.road_scenes import RoadScene
-from processing.laboratory.class_training.examples import NOISE, labels_of_drive
+from processing.laboratory.accuracy.road.true_labels import labels_of_drive
+from processing.laboratory.class_training.examples import (
+    NOISE,
+)
 from processing.methods.point_features.drive_features import computable_features, drive_features
 from processing.recording.columns.point_features import POINT_FEATURES
 from processing.recording.drive import Drive

@@ -9,7 +9,7 @@ import pytest
 from numpy.typing import NDArray
 
 from processing.core.monitor import SilentMonitor
-from processing.laboratory.class_training.examples import labels_of_drive
+from processing.laboratory.accuracy.road.true_labels import labels_of_drive
 from processing.laboratory.simulate.requests import StreetRequest
 from processing.laboratory.simulate.streets import simulate_street
 from processing.project.importing.import_request import ImportRequest

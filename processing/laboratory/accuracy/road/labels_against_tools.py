@@ -30,7 +30,7 @@ from processing.formats.vectors.mapped_shapes import read_mapped
 from processing.laboratory.accuracy.filters.filter_tables import markdown_table
 from processing.laboratory.accuracy.filters.filters import write_sections
 from processing.laboratory.accuracy.road.road_scenes import RoadScene, found_by, given_scenes
-from processing.laboratory.class_training.examples import labels_of_drive
+from processing.laboratory.accuracy.road.true_labels import labels_of_drive
 from processing.methods.classes.class_models import shipped_models
 from processing.methods.classes.drive_classes import classify_drive
 from processing.scoring.curb_lines import curb_score

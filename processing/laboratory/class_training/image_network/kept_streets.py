@@ -15,7 +15,7 @@ from processing.laboratory.accuracy.road.road_scenes import (
     options_of,
     simulated_scenes,
 )
-from processing.laboratory.class_training.examples import labels_of_drive
+from processing.laboratory.accuracy.road.true_labels import labels_of_drive
 from processing.laboratory.class_training.image_network.street_rasters import (
     StreetRaster,
     middle_rows,
