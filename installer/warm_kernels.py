@@ -29,6 +29,9 @@ LATER = (
 )
 """What the demo doesn't use; numba compiles a kernel at its first use where nobody did before."""
 
+TRAINING = ("processing.laboratory.class_training.image_network",)
+"""What asks for the extra ``train``, and has no kernels."""
+
 
 def folders_of(package: ModuleType, without: Sequence[str] = ()) -> tuple[tuple[str, ...], ...]:
     """Give the names of a package's modules by folder, those with the most kernels first.
@@ -118,7 +121,7 @@ def main() -> int:
     parser.add_argument("--demo", action="store_true", help="only what the demo uses")
     parser.add_argument("--processes", type=int, default=os.cpu_count() or 1)
     options = parser.parse_args()
-    without = LATER if options.demo else ()
+    without = LATER if options.demo else TRAINING
     start = time.perf_counter()
     remove_stale_code(Path(__file__).resolve().parent.parent / "processing")
     folders = folders_of(importlib.import_module("processing"), without)
