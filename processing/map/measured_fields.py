@@ -11,9 +11,30 @@ from processing.map.catalogue import AttributeField, Catalogue
 
 _NO_YES = (Text("no", "いいえ"), Text("yes", "はい"))
 
+_TYPES = {
+    "utility_pole": Text("Utility pole", "電柱"),
+    "street_light": Text("Street light", "照明柱"),
+    "signal_pole": Text("Signal pole", "信号柱"),
+    "sign_pole": Text("Sign post", "標識柱"),
+    "mirror_pole": Text("Mirror post", "カーブミラー柱"),
+    "arm_pole": Text("Pole with an arm", "アーム付き柱"),
+    "bollard": Text("Bollard", "車止め"),
+    "delineator": Text("Delineator", "視線誘導標"),
+    "other": Text("Other", "その他"),
+    "curb": Text("Curb", "縁石"),
+    "dropped": Text("Dropped curb", "切下げ"),
+    "lid": Text("Lid", "蓋"),
+    "grating": Text("Grating", "グレーチング"),
+}
+"""What poles, curbs and gutters are, as files have it, and what it is called."""
+
 _MEASURED = {
     one.id: one
     for one in (
+        AttributeField(
+            "type", Text("Type", "種類"), "choice",
+            choices=tuple(_TYPES), choice_names=tuple(_TYPES.values()),
+        ),
         AttributeField("width_m", Text("Width of the plate", "板の幅"), "number", "m"),
         AttributeField("plate_high_m", Text("Height of the plate", "板の高さ"), "number", "m"),
         AttributeField("lower_edge_m", Text("Lower edge", "下端高"), "number", "m"),
