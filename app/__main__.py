@@ -7,6 +7,7 @@ import sys
 from app.cli.terminal import end_with_status, run_in_terminal
 from app.jobs.error_log import start_log
 from app.loading import load_without_qt
+from app.screen import find_screen
 from processing.core.output_streams import write_every_character
 
 
@@ -20,6 +21,7 @@ def main() -> int:
         return request
 
     def show() -> int:
+        find_screen(arguments, needs_person=request.headless_out is None)
         load_without_qt()
         from app.application import run_window
 
