@@ -35,7 +35,10 @@ in which half of them have so many others."""
 
 
 def spacing_m(drives: Sequence[Drive]) -> float:
-    """How far apart the points of drives lie, seen from above: half of them lie closer, m."""
+    """How far apart the points of drives lie, seen from above: half of them lie closer, m.
+
+    0 where they are too few to tell.
+    """
     step = max(1, sum(drive.count for drive in drives) // _SAMPLE)
     parts = [drive.xyz(np.arange(0, drive.count, step))[:, :2] for drive in drives]
     xy = np.concatenate(parts)
@@ -51,7 +54,7 @@ def spacing_m(drives: Sequence[Drive]) -> float:
         near = int(np.median(counts[tile_of.ravel()]))
         if near >= _ENOUGH:
             break
-    return float(side / np.sqrt(near * step))
+    return float(side / np.sqrt(near * step)) if near >= _ENOUGH else 0.0
 
 
 def is_from_air(drive: Drive) -> bool:

@@ -92,3 +92,17 @@ def test_corrections_of_a_flight_are_refused_and_kept(
     assert "from the air" in refusal.value.line("en")
     assert not (tmp_path / "model").exists()
     assert np.asarray(drive.columns["label"])[points].tolist() == [6] * points.size
+
+
+def test_a_handful_of_points_is_no_flight(tmp_path: Path) -> None:
+    header = laspy.LasHeader(point_format=6, version="1.4")
+    points = laspy.LasData(header)
+    points.x, points.y, points.z = np.arange(5.0), np.zeros(5), np.zeros(5)
+    points.write(tmp_path / "five.laz")
+    delivered = ImportRequest((tmp_path / "five.laz",))
+    (folder,) = import_drives(delivered, tmp_path / "drives", SilentMonitor())
+    drive = Drive(folder)
+    assert not is_from_air(drive)
+    request = RunRequest("classify", drive, ClassifyParameters(looks_for_things=False))
+    result = run_together(request, SilentMonitor(), into=tmp_path / "few")
+    assert np.array(columns_of(result.columns[0])["classification"]).shape == (5,)
