@@ -7,13 +7,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-import pytest
-
 ROOT = Path(__file__).parents[2]
-
-pytestmark = pytest.mark.skipif(
-    not sys.platform.startswith("linux"), reason="only Linux has no screen"
-)
 
 
 def _zuka(*arguments: str, folders: str) -> subprocess.CompletedProcess[str]:
