@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -141,23 +141,22 @@ def mark_classes(
         for folder in folders[1:]:
             folder.mkdir()
     models, note = models_of(parameters)
+    known = _Known(models, parameters.least_confidence)
     from_air = tuple(drive for drive in drives if is_from_air(drive))
     on_street = tuple(drive for drive in drives if drive not in from_air)
     looked, start = _NOTHING, 0.0
     if parameters.looks_for_things and on_street:
         looked, start = look_for_things(on_street, PartMonitor(monitor, 0.0, _LOOKING)), _LOOKING
-    groups = [(drive,) for drive in on_street] + ([from_air] if from_air else [])
-    sizes = [sum(drive.count for drive in group) for group in groups]
-    known = _Known(models, looked.things, parameters.least_confidence)
+    sizes = [drive.count for drive in on_street] + [sum(drive.count for drive in from_air)]
+    *parts, flying = parts_of(PartMonitor(monitor, start, 1.0), sizes)
     folder_of = dict(zip((drive.id for drive in drives), folders, strict=True))
     columns: dict[str, FinishedColumns] = {}
-    parts = parts_of(PartMonitor(monitor, start, 1.0), sizes)
-    for group, part in zip(groups, parts, strict=True):
-        own = [folder_of[drive.id] for drive in group]
-        for drive, found in zip(group, _mark(group, known, own, part), strict=True):
-            columns[drive.id] = found
+    for drive, part in zip(on_street, parts, strict=True):
+        columns[drive.id] = _mark_street(drive, known, looked.things, folder_of[drive.id], part)
     if from_air:
-        note = _joined(note, _FROM_AIR.filled(spacing=f"{spacing_m(from_air):.2f}"))
+        apart_m = spacing_m(from_air)
+        columns |= _mark_flight(from_air, apart_m, known, folder_of, flying)
+        note = _joined(note, _FROM_AIR.filled(spacing=f"{apart_m:.2f}"))
     return TogetherResult(
         tuple(columns[drive.id] for drive in drives), note=_joined(note, looked.note)
     )
@@ -165,46 +164,69 @@ def mark_classes(
 
 @dataclass(frozen=True)
 class _Known:
-    """What says what a point is, and how sure it must be."""
+    """What says what a street's point is, and how sure any point's class must be."""
 
     models: ClassModels
-    things: FoundThings
     least_confidence: float
 
 
-def _mark(
-    drives: tuple[Drive, ...], known: _Known, folders: Sequence[Path], monitor: Monitor
-) -> Iterator[FinishedColumns]:
-    """Classify a street's drive, or all strips of a flight together."""
-    scratch = folders[0] / "scratch"
+def _mark_street(
+    drive: Drive, known: _Known, things: FoundThings, into: Path, monitor: Monitor
+) -> FinishedColumns:
+    scratch = into / "scratch"
     with report_as_user_error(scratch):
         scratch.mkdir()
-        codes = [
-            scratch_array(scratch / f"codes {n}", np.uint8, drive.count)
-            for n, drive in enumerate(drives)
-        ]
-        sure = [
-            scratch_array(scratch / f"confidence {n}", np.float32, drive.count)
-            for n, drive in enumerate(drives)
-        ]
-        finding = PartMonitor(monitor, 0.0, _FINDING)
-        if is_from_air(drives[0]):
-            classify_from_air(drives, codes, sure, scratch, finding, models=aerial_models())
-        elif drives[0].count:
+        found = _unknown(drive, scratch)
+        if drive.count:
             classify_drive(
-                drives[0],
-                codes[0],
-                sure[0],
+                drive,
+                found.codes,
+                found.confidence,
                 scratch,
-                finding,
+                PartMonitor(monitor, 0.0, _FINDING),
                 models=known.models,
-                things=known.things,
+                things=things,
             )
-        for number, drive in enumerate(drives):
-            found = FoundClasses(codes[number], sure[number])
-            _write(drive, found, known.least_confidence, folders[number], monitor)
-            yield FinishedColumns(folders[number], (_CLASS, _CONFIDENCE), drive.count)
+        columns = _written(drive, found, known.least_confidence, into, monitor)
         remove_folder(scratch)
+    return columns
+
+
+def _mark_flight(
+    strips: tuple[Drive, ...],
+    apart_m: float,
+    known: _Known,
+    folder_of: Mapping[str, Path],
+    monitor: Monitor,
+) -> dict[str, FinishedColumns]:
+    """Classify the strips of a flight together, whose points lie so far apart."""
+    scratch = folder_of[strips[0].id] / "scratch"
+    columns: dict[str, FinishedColumns] = {}
+    with report_as_user_error(scratch):
+        scratch.mkdir()
+        found = [_unknown(strip, scratch) for strip in strips]
+        classify_from_air(
+            strips,
+            [one.codes for one in found],
+            [one.confidence for one in found],
+            scratch,
+            PartMonitor(monitor, 0.0, _FINDING),
+            models=aerial_models(),
+            cell_m=apart_m,
+        )
+        for strip, one in zip(strips, found, strict=True):
+            into = folder_of[strip.id]
+            columns[strip.id] = _written(strip, one, known.least_confidence, into, monitor)
+        remove_folder(scratch)
+    return columns
+
+
+def _unknown(drive: Drive, scratch: Path) -> FoundClasses:
+    """Room on the disk for what is found of a drive's points."""
+    return FoundClasses(
+        scratch_array(scratch / f"codes {drive.id}", np.uint8, drive.count),
+        scratch_array(scratch / f"confidence {drive.id}", np.float32, drive.count),
+    )
 
 
 def _joined(*notes: Text) -> Text:
@@ -238,7 +260,9 @@ def _without_stop(sentence: Text) -> Text:
     return Text(sentence.en.rstrip("."), sentence.ja.rstrip("。"))
 
 
-def _write(drive: Drive, classes: FoundClasses, least: float, into: Path, monitor: Monitor) -> None:
+def _written(
+    drive: Drive, classes: FoundClasses, least: float, into: Path, monitor: Monitor
+) -> FinishedColumns:
     with ColumnWriter(into) as writer:
         writer.append({_CLASS: np.empty(0, np.uint8), _CONFIDENCE: np.empty(0, np.float32)})
         for start, stop in chunk_ranges(drive.count):
@@ -250,6 +274,7 @@ def _write(drive: Drive, classes: FoundClasses, least: float, into: Path, monito
                 delivered = read_chunk(drive.folder, _CLASS, start, stop)
                 found = np.where(found > 0, found, delivered)
             writer.append({_CLASS: found, _CONFIDENCE: confidence})
+    return FinishedColumns(into, (_CLASS, _CONFIDENCE), drive.count)
 
 
 CLASSIFY = Tool(

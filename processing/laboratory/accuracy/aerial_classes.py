@@ -17,12 +17,13 @@ from pathlib import Path
 
 import laspy
 import numpy as np
-from numpy.typing import NDArray
 
 from processing.core.output_streams import write_every_character
-from processing.laboratory.accuracy.class_groups import classes_of, f_measures, groups_of
-from processing.laboratory.accuracy.filters.filter_tables import markdown_table
-from processing.laboratory.accuracy.filters.filters import write_sections
+from processing.laboratory.accuracy.class_groups import (
+    TrueGroups,
+    groups_of,
+    write_group_table,
+)
 
 HEADING = "### Classes of clouds from the air"
 
@@ -44,8 +45,6 @@ _DELIVERED: Mapping[str, tuple[int, ...]] = {
 
 _FLOWN: Mapping[str, tuple[int, ...]] = {**GROUPS, "ground": (2, 11)}
 
-_NONE = len(GROUPS)
-
 
 def main(arguments: list[str]) -> int:
     """Classify and score the clouds of a folder."""
@@ -53,29 +52,19 @@ def main(arguments: list[str]) -> int:
     parser.add_argument("data", type=Path)
     parser.add_argument("--markdown", type=Path)
     chosen = parser.parse_args(arguments)
-    table = markdown_table(list(_rows(chosen.data)))
-    write_sections(chosen.markdown, {HEADING: f"{_ABOUT}\n{table}"})
+    write_group_table(HEADING, _ABOUT, _clouds(chosen.data), GROUPS, chosen.markdown)
     return 0
 
 
-def _rows(data: Path) -> Iterator[list[str]]:
-    yield ["cloud", "points", "mean F", *GROUPS]
-    for name, cloud, true in _clouds(data):
-        said = groups_of(classes_of(cloud), GROUPS, GROUPS)
-        known = true < _NONE
-        counts = np.zeros((_NONE, _NONE + 1), np.int64)
-        np.add.at(counts, (true[known], said[known]), 1)
-        yield [name, f"{counts.sum():,}", *f_measures(counts)]
-
-
-def _clouds(data: Path) -> Iterator[tuple[str, Path, NDArray[np.int64]]]:
+def _clouds(data: Path) -> Iterator[TrueGroups]:
     for cloud in sorted(data.glob("**/als/*.laz")):
         delivered = np.asarray(laspy.read(cloud).classification)
         if set(_DELIVERED["building"]) <= set(delivered.tolist()):
-            yield cloud.stem, cloud, groups_of(delivered, _DELIVERED, GROUPS)
+            yield TrueGroups(cloud.stem, cloud, groups_of(delivered, _DELIVERED, GROUPS))
     for cloud in sorted(data.glob("**/waveform/in/points.laz")):
         with np.load(cloud.parent.parent / "truth" / "truth.npz") as truth:
-            yield "simulated flight", cloud, groups_of(truth["label"], _FLOWN, GROUPS)
+            true = groups_of(truth["label"], _FLOWN, GROUPS)
+        yield TrueGroups("simulated flight", cloud, true)
 
 
 _ABOUT = """\

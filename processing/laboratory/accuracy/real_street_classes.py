@@ -17,9 +17,11 @@ from pathlib import Path
 import numpy as np
 
 from processing.core.output_streams import write_every_character
-from processing.laboratory.accuracy.class_groups import classes_of, f_measures, groups_of
-from processing.laboratory.accuracy.filters.filter_tables import markdown_table
-from processing.laboratory.accuracy.filters.filters import write_sections
+from processing.laboratory.accuracy.class_groups import (
+    TrueGroups,
+    groups_of,
+    write_group_table,
+)
 
 HEADING = "### Classes of real streets"
 
@@ -52,8 +54,6 @@ _LABELS: Mapping[str, Mapping[str, tuple[int, ...]]] = {
 }
 """Walls, fences, grass, signs, lamps and what nobody named count neither way."""
 
-_NONE = len(GROUPS)
-
 
 def main(arguments: list[str]) -> int:
     """Classify and score the streets of a folder."""
@@ -61,23 +61,16 @@ def main(arguments: list[str]) -> int:
     parser.add_argument("data", type=Path)
     parser.add_argument("--markdown", type=Path)
     chosen = parser.parse_args(arguments)
-    table = markdown_table(list(_rows(chosen.data)))
-    write_sections(chosen.markdown, {HEADING: f"{_ABOUT}\n{table}"})
+    write_group_table(HEADING, _ABOUT, _streets(chosen.data), GROUPS, chosen.markdown)
     return 0
 
 
-def _rows(data: Path) -> Iterator[list[str]]:
-    yield ["streets", "points", "mean F", *GROUPS]
+def _streets(data: Path) -> Iterator[TrueGroups]:
     for name, labels in _LABELS.items():
-        counts = np.zeros((_NONE, _NONE + 1), np.int64)
         for cloud in sorted(data.glob(f"**/{name}/*.laz")):
             with np.load(cloud.parent / "truth" / f"{cloud.stem}.npz") as truth:
                 true = groups_of(truth["label"].astype(np.int64), labels, GROUPS)
-            said = groups_of(classes_of(cloud), GROUPS, GROUPS)
-            known = true < _NONE
-            np.add.at(counts, (true[known], said[known]), 1)
-        if counts.any():
-            yield [name, f"{counts.sum():,}", *f_measures(counts)]
+            yield TrueGroups(name, cloud, true)
 
 
 _ABOUT = """\

@@ -17,14 +17,12 @@ from __future__ import annotations
 
 import argparse
 import itertools
-import sys
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.core.arrays import Integers
 from processing.core.monitor import SilentMonitor
 from processing.core.output_streams import write_every_character
 from processing.laboratory.accuracy.road.road_scenes import (
@@ -38,35 +36,41 @@ from processing.laboratory.accuracy.road.road_scenes import (
 from processing.laboratory.accuracy.road.true_labels import labels_of_drive
 from processing.laboratory.class_training.examples import (
     NOISE,
-    LabelledCells,
     labelled_cells,
 )
-from processing.laboratory.class_training.fitting import ForestSize, fit_forest, in_order_of
+from processing.laboratory.class_training.fitting import ForestSize
 from processing.laboratory.class_training.pictures import write_confusion, write_label_image
 from processing.laboratory.class_training.sample import kept_sample
+from processing.laboratory.class_training.two_forests import (
+    FOLDS,
+    ForestPlan,
+    SampledCells,
+    make_two_forests,
+)
+from processing.laboratory.progress_lines import say
 from processing.laboratory.seed_ranges import seeds_of
 from processing.methods.classes.class_models import AGAIN, ALONE, MODELS, SAMPLE, shipped_models
-from processing.methods.classes.class_trees import class_shares
 from processing.methods.classes.drive_classes import classify_drive
 from processing.methods.classes.example_file import write_examples
 from processing.methods.classes.found_things import NearThings
-from processing.methods.noise.tree_files import Forest, write_forest
 from processing.scoring.class_scores import class_score
 from processing.scoring.confusion_matrix import ConfusionMatrix
 from processing.scoring.reliability import Reliability, reliability_of
 from processing.tools.found_things import look_for_things
 from resources import path_of
 
-_ALONE_SIZE = ForestSize(rounds=50, leaves=31, rate=0.2)
-_AGAIN_SIZE = ForestSize(rounds=40, leaves=24, rate=0.2)
+_PLAN = ForestPlan(
+    ALONE,
+    ForestSize(rounds=50, leaves=31, rate=0.2),
+    AGAIN,
+    ForestSize(rounds=40, leaves=24, rate=0.2),
+)
 """Half of it and less (24 rounds of 20 and 16 leaves, half of the cells) loses 0.03 of mean F on
 streets of the own simulator that weren't learnt from, and as much as it gains on those of another.
 """
 
 _CELLS = 1000
 """Of each class and variant that are learnt from."""
-
-_FOLDS = 2
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -78,7 +82,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         _keep_sample(options)
     checked = simulated_scenes(seeds_of(options.check), options.length)
     for scene in itertools.chain(checked, given_scenes(options.deliveries)):
-        _say(_score_line(scene, options.pictures))
+        say(_score_line(scene, options.pictures))
     return 0
 
 
@@ -100,39 +104,19 @@ def _parser() -> argparse.ArgumentParser:
 
 def _make(options: argparse.Namespace) -> None:
     rng = np.random.default_rng(0)
-    folds: list[list[LabelledCells]] = [[] for _ in range(_FOLDS)]
-    samples: list[list[tuple[Integers, NDArray[np.float64]]]] = [[] for _ in range(_FOLDS)]
+    folds: list[list[SampledCells]] = [[] for _ in range(FOLDS)]
     for number, scene in enumerate(_learnt(options)):
         for one in labelled_cells(scene, options.variants, number):
-            folds[number % _FOLDS].append(one)
-            samples[number % _FOLDS].append(one.sample(_CELLS, rng))
-        _say(f"learnt from {scene.name}: {sum(map(len, folds))} variants")
-    parts = [
-        [
-            (one.cells.rows[chosen], one.codes[chosen], stands)
-            for one, (chosen, stands) in zip(fold, some, strict=True)
-        ]
-        for fold, some in zip(folds, samples, strict=True)
-    ]
-    everything = list(itertools.chain(*parts))
-    own = _fit(everything, _ALONE_SIZE)
-    _write(own, ALONE, everything[0][0].shape[1])
-    again = []
-    for fold in range(_FOLDS):
-        others = list(itertools.chain(*parts[:fold], *parts[fold + 1 :]))
-        judge = _fit(others, _ALONE_SIZE)
-        for one, (chosen, stands) in zip(folds[fold], samples[fold], strict=True):
-            shares = class_shares(judge, one.cells.rows, SilentMonitor())
-            rows = one.cells.with_neighbours(in_order_of(shares, judge, own))[chosen]
-            again.append((rows, one.codes[chosen], stands))
-    _write(_fit(again, _AGAIN_SIZE), AGAIN, again[0][0].shape[1])
+            folds[number % FOLDS].append(SampledCells.of(one, _CELLS, rng))
+        say(f"learnt from {scene.name}: {sum(map(len, folds))} variants")
+    make_two_forests(folds, _PLAN)
 
 
 def _keep_sample(options: argparse.Namespace) -> None:
     scenes = avenue_scenes(seeds_of(options.kept), options.length)
     path = path_of("models") / Path(MODELS).name / SAMPLE
     write_examples(kept_sample(scenes, shipped_models()), path)
-    _say(f"{path.name}: {path.stat().st_size / 1e3:,.0f} kB")
+    say(f"{path.name}: {path.stat().st_size / 1e3:,.0f} kB")
 
 
 def _learnt(options: argparse.Namespace) -> Iterator[RoadScene]:
@@ -141,22 +125,6 @@ def _learnt(options: argparse.Namespace) -> Iterator[RoadScene]:
         simulated_scenes(seeds_of(options.worn), options.length, worn_options_of),
         mounted_scenes(seeds_of(options.mounted), options.length),
     )
-
-
-_Part = tuple[NDArray[np.float32], NDArray[np.uint8], NDArray[np.float64]]
-
-
-def _fit(parts: Sequence[_Part], size: ForestSize) -> Forest:
-    rows, codes, stands = (np.concatenate(column) for column in zip(*parts, strict=True))
-    _say(f"fitting {len(rows):,} rows of {rows.shape[1]}")
-    return fit_forest(rows, codes, stands, size)
-
-
-def _write(forest: Forest, name: str, columns: int) -> None:
-    path = path_of("models") / Path(MODELS).name / name
-    path.parent.mkdir(exist_ok=True)
-    write_forest(forest, path, columns)
-    _say(f"{path.name}: {path.stat().st_size / 1e3:,.0f} kB")
 
 
 def _score_line(scene: RoadScene, pictures: Path | None) -> str:
@@ -216,11 +184,6 @@ def _reliability_words(reliability: Reliability) -> str:
         if one.accepted.of
     )
     return f"calibration error {reliability.calibration_error:.3f}, {bins}"
-
-
-def _say(line: str) -> None:
-    sys.stdout.write(f"{line}\n")
-    sys.stdout.flush()
 
 
 if __name__ == "__main__":

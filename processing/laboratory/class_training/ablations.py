@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import argparse
 import itertools
-import sys
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -44,6 +43,7 @@ from processing.laboratory.class_training.point_samples import (
     PointSample,
     samples_of,
 )
+from processing.laboratory.progress_lines import say
 from processing.laboratory.seed_ranges import seeds_of
 from processing.recording.columns.point_features import PATH_FEATURES, SELECTED
 
@@ -66,13 +66,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
     importance = importance_of(_forest(valid, _THESIS))
     _say_importance(importance)
     kept = boruta(valid.values(_THESIS), valid.codes, np.random.default_rng(0)).tolist()
-    _say(f"Boruta keeps {len(kept)} of {len(_THESIS)}; not: "
+    say(f"Boruta keeps {len(kept)} of {len(_THESIS)}; not: "
          f"{', '.join(NAMES[at] for at in _THESIS if at not in kept)}")  # fmt: skip
-    _say("| features | number | " + " | ".join(tested) + " |")
-    _say("|---" * (len(tested) + 2) + "|")
+    say("| features | number | " + " | ".join(tested) + " |")
+    say("|---" * (len(tested) + 2) + "|")
     for name, columns in _choices(importance, kept):
         scores = _scores(_forest(learnt, columns), columns, tested.values())
-        _say(f"| {name} | {len(columns)} | " + " | ".join(f"{one:.3f}" for one in scores) + " |")
+        say(f"| {name} | {len(columns)} | " + " | ".join(f"{one:.3f}" for one in scores) + " |")
     return 0
 
 
@@ -131,12 +131,7 @@ def _say_importance(importance: Floats) -> None:
     order = np.argsort(-importance, kind="stable")
     kept = [at for at in order if importance[at] >= LEAST_IMPORTANCE]
     words = ", ".join(f"{NAMES[at]} {importance[at]:.1%}" for at in kept)
-    _say(f"{len(kept)} features of at least 1.5 %: {words}")
-
-
-def _say(line: str) -> None:
-    sys.stdout.write(f"{line}\n")
-    sys.stdout.flush()
+    say(f"{len(kept)} features of at least 1.5 %: {words}")
 
 
 if __name__ == "__main__":

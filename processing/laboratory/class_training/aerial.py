@@ -14,7 +14,6 @@ import argparse
 import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,7 +21,14 @@ from numpy.typing import NDArray
 from processing.core.monitor import SilentMonitor
 from processing.core.output_streams import write_every_character
 from processing.laboratory.class_training.examples import LabelledCells, codes_of_cells
-from processing.laboratory.class_training.fitting import ForestSize, fit_forest, in_order_of
+from processing.laboratory.class_training.fitting import ForestSize
+from processing.laboratory.class_training.two_forests import (
+    FOLDS,
+    ForestPlan,
+    SampledCells,
+    make_two_forests,
+)
+from processing.laboratory.progress_lines import say
 from processing.laboratory.seed_ranges import seeds_of
 from processing.laboratory.simulate.airborne.flight import (
     CROWN,
@@ -36,24 +42,23 @@ from processing.methods.classes.aerial_cells import AerialPoints, aerial_cells
 from processing.methods.classes.class_models import (
     AERIAL_AGAIN,
     AERIAL_ALONE,
-    MODELS,
     aerial_models,
 )
-from processing.methods.classes.class_trees import class_shares
 from processing.methods.classes.drive_classes import shares_of_cells
 from processing.methods.ground.filters.adaptive import GroundAssumptions, find_ground
-from processing.methods.noise.tree_files import Forest, write_forest
 from processing.scoring.class_scores import class_score
 from processing.scoring.confusion_matrix import ConfusionMatrix
-from resources import path_of
 
-_ALONE_SIZE = ForestSize(rounds=40, leaves=31, rate=0.2)
-_AGAIN_SIZE = ForestSize(rounds=30, leaves=24, rate=0.2)
+_PLAN = ForestPlan(
+    AERIAL_ALONE,
+    ForestSize(rounds=40, leaves=31, rate=0.2),
+    AERIAL_AGAIN,
+    ForestSize(rounds=30, leaves=24, rate=0.2),
+)
 
 _CELLS = 700
 """Of each class and flight that are learnt from."""
 
-_FOLDS = 2
 _LEAVES = (LOW_PLANT, CROWN)
 _FINEST_M, _COARSEST_M = 0.2, 2.5
 _MOST_PULSES = 300_000
@@ -92,7 +97,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if not options.score_only:
         _make(seeds_of(options.seeds))
     for flight in _flights(seeds_of(options.check)):
-        _say(_score_line(flight))
+        say(_score_line(flight))
     return 0
 
 
@@ -139,43 +144,12 @@ def _returns_of(
 
 def _make(seeds: Sequence[int]) -> None:
     rng = np.random.default_rng(0)
-    folds: list[list[tuple[LabelledCells, NDArray[np.int64], NDArray[np.float64]]]]
-    folds = [[] for _ in range(_FOLDS)]
+    folds: list[list[SampledCells]] = [[] for _ in range(FOLDS)]
     for number, flight in enumerate(_flights(seeds)):
-        folds[number % _FOLDS].append((flight.cells, *flight.cells.sample(_CELLS, rng)))
-        _say(f"learnt from {flight.name}")
-    parts = [
-        [(one.cells.rows[some], one.codes[some], stands) for one, some, stands in fold]
-        for fold in folds
-    ]
-    own = _fit([one for fold in parts for one in fold], _ALONE_SIZE)
-    again = []
-    for number, fold in enumerate(folds):
-        judge = _fit(
-            [one for other in range(_FOLDS) if other != number for one in parts[other]], _ALONE_SIZE
-        )
-        for one, some, stands in fold:
-            shares = class_shares(judge, one.cells.rows, SilentMonitor())
-            seen = one.cells.with_neighbours(in_order_of(shares, judge, own))
-            again.append((seen[some], one.codes[some], stands))
-    _write(own, AERIAL_ALONE, parts[0][0][0].shape[1])
-    _write(_fit(again, _AGAIN_SIZE), AERIAL_AGAIN, again[0][0].shape[1])
+        folds[number % FOLDS].append(SampledCells.of(flight.cells, _CELLS, rng))
+        say(f"learnt from {flight.name}")
+    make_two_forests(folds, _PLAN)
     aerial_models.cache_clear()
-
-
-_Part = tuple[NDArray[np.float32], NDArray[np.uint8], NDArray[np.float64]]
-
-
-def _fit(parts: Sequence[_Part], size: ForestSize) -> Forest:
-    rows, codes, stands = (np.concatenate(column) for column in zip(*parts, strict=True))
-    _say(f"fitting {len(rows):,} rows of {rows.shape[1]}")
-    return fit_forest(rows, codes, stands, size)
-
-
-def _write(forest: Forest, name: str, columns: int) -> None:
-    path = path_of("models") / Path(MODELS).name / name
-    write_forest(forest, path, columns)
-    _say(f"{path.name}: {path.stat().st_size / 1e3:,.0f} kB")
 
 
 def _score_line(flight: _Flight) -> str:
@@ -185,11 +159,6 @@ def _score_line(flight: _Flight) -> str:
     score = class_score(ConfusionMatrix.of(flight.truth, found))
     by_class = " ".join(f"{one.id}:{one.counts.f_measure:.2f}" for one in score.classes)
     return f"{flight.name:24s} {by_class}"
-
-
-def _say(line: str) -> None:
-    sys.stdout.write(line + "\n")
-    sys.stdout.flush()
 
 
 if __name__ == "__main__":

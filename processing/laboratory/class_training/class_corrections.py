@@ -21,13 +21,11 @@ from tempfile import TemporaryDirectory
 import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
-from scipy.spatial import cKDTree
 
-from processing.core.arrays import Floats, Integers
+from processing.core.arrays import Floats
 from processing.core.monitor import SilentMonitor
 from processing.core.output_streams import write_every_character
+from processing.laboratory.accuracy.parts_of_points import parts_of_points
 from processing.laboratory.accuracy.road.road_scenes import RoadScene, given_scenes
 from processing.laboratory.accuracy.road.true_labels import labels_of_drive
 from processing.laboratory.class_training.examples import (
@@ -150,13 +148,7 @@ def _stroke(about: Floats) -> NDArray[np.bool_]:
 
 def _segment(about: Floats) -> NDArray[np.bool_]:
     """Which points hang together with the one in the middle."""
-    places = np.floor(about / _CELL_M).astype(np.int64)
-    cells, cell_of = np.unique(places, axis=0, return_inverse=True)
-    pairs: Integers = cKDTree(cells * _CELL_M).query_pairs(_LINK_M, output_type="ndarray")
-    shape = (len(cells), len(cells))
-    graph = coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=shape)
-    _, part_of = connected_components(graph, directed=False)
-    parts = part_of[cell_of.ravel()]
+    parts = parts_of_points(about, _CELL_M, _LINK_M)
     middle = parts[int(np.argmin((about**2).sum(axis=1)))]
     return np.asarray(parts == middle)
 

@@ -31,6 +31,7 @@ from processing.laboratory.noise_training.relief import on_relief
 from processing.laboratory.noise_training.scanners import AIRBORNE, MOBILE, STANDING
 from processing.laboratory.noise_training.scenes import TrainingScene, scene_of, thin_scene
 from processing.laboratory.noise_training.scores import score_line
+from processing.laboratory.progress_lines import say
 from processing.laboratory.seed_ranges import seeds_of
 from processing.methods.noise.combined import (
     FIRST_LOOK,
@@ -81,7 +82,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             _make_first_look_in_space(options)
         for seed in seeds_of(options.held_out):
             for scene, turn, name in [*_scenes(what, (seed,)), *_on_relief(what, (seed,))]:
-                _say(score_line(f"{what} {name}", _classify_scene(what, scene, turn), scene))
+                say(score_line(f"{what} {name}", _classify_scene(what, scene, turn), scene))
     return 0
 
 
@@ -121,7 +122,7 @@ def _make(what: str, options: argparse.Namespace) -> None:
         look, everything = case.alone()
         looks[fold].append(look)
         folds[fold].append(everything)
-        _say(f"learned from {name}: {case.noise.size} points")
+        say(f"learned from {name}: {case.noise.size} points")
     alone, first = [Examples.joined(one) for one in folds], None
     names, shape = (WITH_BEAMS, _BEAMS_SHAPE) if what == "beams" else (IN_SPACE, _SPACE_SHAPE)
     if what == "beams":
@@ -133,7 +134,7 @@ def _make(what: str, options: argparse.Namespace) -> None:
     if what == "space":  # these were not learned from: all the others may judge
         asked += [case.again(None, own) for case in _quiet_cases(options)]
     again = Examples.joined(asked)
-    _say(f"asked again about {again.is_noise.size} points")
+    say(f"asked again about {again.is_noise.size} points")
     if first is not None:
         columns = looks[0][0].rows.shape[1]
         _write(FIRST_LOOK, first._replace(base=first.base - _NARROWER), columns)
@@ -150,7 +151,7 @@ def _make_first_look_in_space(options: argparse.Namespace) -> None:
     first = shift_to_keep(first, joined.rows, joined.is_noise, _SAID_LOST_AT_FIRST)
     left = log_odds(first, joined.rows, SilentMonitor()) > 0
     share = np.average(left[~joined.is_noise], weights=joined.weights[~joined.is_noise])
-    _say(f"{share:.1%} of {left.size} examples that are kept in the end are asked about")
+    say(f"{share:.1%} of {left.size} examples that are kept in the end are asked about")
     _write(FIRST_LOOK_IN_SPACE, first, joined.rows.shape[1])
 
 
@@ -164,7 +165,7 @@ def _initial_view(
     _write(FIRST_LOOK, first, joined.rows.shape[1])
     left = [log_odds(first, look.rows, SilentMonitor()) > 0 for look in looks]
     share = sum(int(one.sum()) for one in left) / joined.is_noise.size
-    _say(f"{share:.1%} of {joined.is_noise.size} examples are left after the first look")
+    say(f"{share:.1%} of {joined.is_noise.size} examples are left after the first look")
     return first, [one.chosen(rows) for one, rows in zip(alone, left, strict=True)]
 
 
@@ -237,11 +238,6 @@ def _classify_scene(
 
 def _write(name: str, trees: Trees, columns: int) -> None:
     write_trees(trees, path_of(MODELS) / name, columns)
-
-
-def _say(text: str) -> None:
-    sys.stdout.write(f"{text}\n")
-    sys.stdout.flush()
 
 
 if __name__ == "__main__":

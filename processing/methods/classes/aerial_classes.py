@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from processing.core.arrays import Floats, Integers
 from processing.core.errors import report_as_user_error
 from processing.core.monitor import Monitor, PartMonitor
-from processing.methods.classes.aerial_cells import AerialPoints, aerial_cells, spacing_m
+from processing.methods.classes.aerial_cells import AerialPoints, aerial_cells
 from processing.methods.classes.class_models import ClassModels
 from processing.methods.classes.drive_classes import classes_of_cells
 from processing.methods.classes.features import REACH
@@ -115,6 +115,7 @@ def classify_from_air(
     monitor: Monitor,
     *,
     models: ClassModels,
+    cell_m: float,
 ) -> None:
     """Find the class of every point that isn't known to be noise.
 
@@ -130,6 +131,8 @@ def classify_from_air(
         A folder for files meanwhile; the caller deletes it.
     models : ClassModels
         What says how likely each class is.
+    cell_m : float
+        How far apart the points lie, as :func:`spacing_m` tells.
 
     Raises
     ------
@@ -144,7 +147,7 @@ def classify_from_air(
     finding = PartMonitor(monitor, 0.0, _GROUND)
     points = DrivePoints(tuple(drives), _POINTS_AT_ONCE, finding)
     adaptive_ground(points, GroundAssumptions(), folders, scratch / "surface", finding)
-    cell_m, strips = spacing_m(drives), Strips(drives, folders)
+    strips = Strips(drives, folders)
     sorting = PartMonitor(monitor, _GROUND, _SORTED)
     cloud = TiledCloud(strips.xyz, strips.count, scratch / "order", _TILE_M, monitor=sorting)
     rest, done = PartMonitor(monitor, _SORTED, 1.0), 0

@@ -42,16 +42,17 @@ class ClassModels:
 @cache
 def shipped_models() -> ClassModels:
     """The models that come with the program."""
-    alone, again = (read_forest(path_of(f"{MODELS}/{name}")) for name in (ALONE, AGAIN))
-    return ClassModels(alone, again)
+    return _read_models(ALONE, AGAIN)
 
 
 @cache
 def aerial_models() -> ClassModels:
     """The models for clouds from the air."""
-    alone, again = (
-        read_forest(path_of(f"{MODELS}/{name}")) for name in (AERIAL_ALONE, AERIAL_AGAIN)
-    )
+    return _read_models(AERIAL_ALONE, AERIAL_AGAIN)
+
+
+def _read_models(*names: str) -> ClassModels:
+    alone, again = (read_forest(path_of(f"{MODELS}/{name}")) for name in names)
     return ClassModels(alone, again)
 
 

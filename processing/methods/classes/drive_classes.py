@@ -296,7 +296,11 @@ def rows_seen_again(
 def shares_of_cells(
     cells: ClassCells, models: ClassModels, monitor: Monitor
 ) -> NDArray[np.float32]:
-    """(c, k) how likely each class of the second trees is in each cell."""
+    """(c, k) how likely each class of the second trees is in each cell.
+
+    Where the first trees are sure, and say the same around, theirs counts; of a project's own
+    second trees all cells are asked, since they may have been taught otherwise.
+    """
     rows = rows_seen_again(cells, models, monitor)
     if models.is_own or not np.array_equal(models.alone.codes, models.again.codes):
         return class_shares(models.again, rows, monitor)

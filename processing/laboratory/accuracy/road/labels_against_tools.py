@@ -19,16 +19,15 @@ from tempfile import TemporaryDirectory
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_matrix
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from processing.core.arrays import Floats, Integers
+from processing.core.arrays import Floats
 from processing.core.monitor import SilentMonitor
 from processing.core.output_streams import write_every_character
 from processing.formats.vectors.mapped_shapes import read_mapped
 from processing.laboratory.accuracy.filters.filter_tables import markdown_table
 from processing.laboratory.accuracy.filters.filters import write_sections
+from processing.laboratory.accuracy.parts_of_points import parts_of_points
 from processing.laboratory.accuracy.road.road_scenes import RoadScene, found_by, given_scenes
 from processing.laboratory.accuracy.road.true_labels import labels_of_drive
 from processing.methods.classes.class_models import shipped_models
@@ -178,7 +177,7 @@ def parts_of(xyz: Floats) -> Iterator[Floats]:
     """Points that hang together, (k, 3) each; fewer than can be a thing are left out."""
     if len(xyz) < _LEAST_POINTS:
         return
-    part = _hanging_together(xyz, _CELL_M, _LINK_M)
+    part = parts_of_points(xyz, _CELL_M, _LINK_M)
     order = np.argsort(part, kind="stable")
     for own in np.split(order, np.flatnonzero(np.diff(part[order])) + 1):
         if own.size >= _LEAST_POINTS:
@@ -191,19 +190,9 @@ def corrections_of(street: LabelledStreet) -> Counter[int]:
     strokes: Counter[int] = Counter()
     for code in np.unique(street.true[wrong]).tolist():
         cells = np.unique(np.floor(street.xyz[wrong & (street.true == code)] / _PATCH_M), axis=0)
-        part = _hanging_together(cells * _PATCH_M, _PATCH_M, _PATCH_LINK_M)
+        part = parts_of_points(cells * _PATCH_M, _PATCH_M, _PATCH_LINK_M)
         strokes[code] = int((np.bincount(part) >= _LEAST_PATCH).sum())
     return strokes
-
-
-def _hanging_together(xyz: Floats, cell_m: float, link_m: float) -> Integers:
-    """(n,) the number of the part that each point is of."""
-    cells, cell_of = np.unique(np.floor(xyz / cell_m), axis=0, return_inverse=True)
-    pairs: Integers = cKDTree(cells * cell_m).query_pairs(link_m, output_type="ndarray")
-    shape = (len(cells), len(cells))
-    graph = coo_matrix((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=shape)
-    part: Integers = connected_components(graph, directed=False)[1].astype(np.int64)
-    return part[cell_of.ravel()]
 
 
 def _edges_of(part: Floats) -> dict[str, Floats]:

@@ -18,7 +18,6 @@ Takahashi 2022, sections 4.5 to 4.7.
 from __future__ import annotations
 
 import argparse
-import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -59,6 +58,7 @@ from processing.laboratory.class_training.image_network.network_training import 
     write_network,
 )
 from processing.laboratory.class_training.point_samples import ABSOLUTE, MMS, NAMES, PointSample
+from processing.laboratory.progress_lines import say
 from processing.laboratory.seed_ranges import seeds_of
 from processing.scoring.point_scores import PointScore
 
@@ -116,7 +116,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     known: dict[bool, Forests] = {}
     for recipe in _RECIPES:
         if recipe.name in options.networks:
-            _say(f"\nnetwork: {recipe.name}")
+            say(f"\nnetwork: {recipe.name}")
             network, scale = _network(recipe, streets, options)
             comparison = _Comparison(recipe, streets, columns, network, scale)
             before = known.get(recipe.learns_from_many)
@@ -175,7 +175,7 @@ def _network(
         start, scale = _network(before, streets, options)
         steps //= 3
     images = [scale.image_of(one) for one in rasters]
-    network = train_network(images, steps, _say, start)
+    network = train_network(images, steps, say, start)
     write_network(network, scale, path)
     return network, scale
 
@@ -196,7 +196,7 @@ class _Comparison:
         rows = np.concatenate([seen for _, seen in valid])
         codes = np.concatenate([sample.codes for sample, _ in valid])
         kept = boruta(rows, codes, np.random.default_rng(0))
-        _say(f"Boruta keeps {kept.size} of {rows.shape[1]} intermediate features")
+        say(f"Boruta keeps {kept.size} of {rows.shape[1]} intermediate features")
         learnt = [
             self._described(one.sample, self._seen(one), kept)
             for one in _learnt(self.recipe, self.streets)
@@ -207,16 +207,16 @@ class _Comparison:
         scores = {kind: score_of(asked.sample, forests.codes, shares[kind]) for kind in _KINDS}
         chosen = best_kinds(scores, forests.codes.tolist(), _KINDS)
         words = zip(forests.codes.tolist(), chosen, strict=True)
-        _say("chosen: " + ", ".join(f"{code} {kind}" for code, kind in words))
+        say("chosen: " + ", ".join(f"{code} {kind}" for code, kind in words))
         numbers = [str(one) for one in forests.codes]
-        _say(f"| street | features | mean F | {' | '.join(numbers)} |")
-        _say("|---" * (len(numbers) + 3) + "|")
+        say(f"| street | features | mean F | {' | '.join(numbers)} |")
+        say("|---" * (len(numbers) + 3) + "|")
         for street in self.streets.scored:
             shares = forests.shares(self._described(street.sample, self._seen(street), kept))
             shares[_CHOICE] = chosen_shares(shares, chosen)
             for kind, own in shares.items():
                 score = score_of(street.sample, forests.codes, own)
-                _say(_line(street.name, kind, score, numbers))
+                say(_line(street.name, kind, score, numbers))
         return forests
 
     def _seen(self, street: KeptStreet) -> NDArray[np.float32]:
@@ -250,11 +250,11 @@ def _columns(valid: PointSample) -> dict[str, list[int]]:
     both = [at for at, name in enumerate(NAMES) if name not in (*ABSOLUTE, "intensity")]
     rows, rng = valid.values(both), np.random.default_rng(0)
     kept = boruta(rows, valid.codes, rng)
-    _say(f"Boruta keeps {kept.size} of {len(both)} inputs")
+    say(f"Boruta keeps {kept.size} of {len(both)} inputs")
     few = rng.permutation(valid.codes.size)[:_FOR_IMPORTANCE]
     importance = importance_of(fitted_forest(rows[few], valid.codes[few]))
     some = [at for at, share in zip(both, importance, strict=True) if share >= LEAST_IMPORTANCE]
-    _say(f"M&A of 1.5 % and more: {', '.join(NAMES[at] for at in some)}")
+    say(f"M&A of 1.5 % and more: {', '.join(NAMES[at] for at in some)}")
     return {_M: [at for at in both if NAMES[at] not in MMS], _MA: both, _MAI: some}
 
 
@@ -262,11 +262,6 @@ def _line(street: str, kind: str, score: PointScore, codes: Sequence[str]) -> st
     f_of = f_of_classes(score)
     words = " | ".join(f"{f_of[int(one)]:.2f}" if int(one) in f_of else "–" for one in codes)
     return f"| {street} | {kind} | {mean_f_of(score):.3f} | {words} |"
-
-
-def _say(line: str) -> None:
-    sys.stdout.write(f"{line}\n")
-    sys.stdout.flush()
 
 
 if __name__ == "__main__":
