@@ -151,8 +151,11 @@ def test_a_section_shows_what_it_makes_of_a_place(street: WindowParts) -> None:
     line = Stations(np.stack([position - ahead, position + ahead]))
     standing = SectionPosition(CutLine("", drive.id, line), 5.0)
     parameters = {"highest_point": HighestPointParameters()}
-    shown = diagnostics_at((drive,), standing, standing.cut, parameters)
-    assert [one.tool for found in shown for one in found.diagnostics] == ["highest_point"]
+    begun, whole = diagnostics_at((drive,), standing, standing.cut, parameters)
+    assert begun.awaited == "highest_point"
+    assert [len(found.lines) > 0 for found in begun.drives] == [True]
+    assert [one.tool for found in whole.drives for one in found.diagnostics] == ["highest_point"]
+    assert not whole.awaited
 
 
 def test_settings_of_a_tool_that_is_asked_something_can_be_studied(qtbot: QtBot) -> None:

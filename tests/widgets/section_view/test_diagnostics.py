@@ -18,7 +18,11 @@ from tests.widgets.builders import OpenMap, imported_drive
 from tests.widgets.section_view.conftest import SectionViewUser, shown
 from widgets.section_view.picture.diagnostic_marks import DiagnosticMarks
 from widgets.section_view.picture.projection import SectionProjection
-from widgets.section_view.picture.section_diagnostics import SectionDiagnostics, ShownDiagnostic
+from widgets.section_view.picture.section_diagnostics import (
+    FoundDiagnostics,
+    SectionDiagnostics,
+    ShownDiagnostic,
+)
 from widgets.shared.cursor import PickedPosition
 
 BLUE = np.array([0x56, 0xB4, 0xE9])
@@ -50,7 +54,7 @@ def test_the_scanline_is_drawn_over_its_points_until_it_is_turned_off(
     picture = user.pane.picture
     assert picture is not None
     assert picture.diagnostics is not None
-    (found,) = picture.diagnostics
+    (found,) = picture.diagnostics.drives
     assert found.drive == drive.info.name
     line = np.concatenate(found.lines)
     assert line[:, 0].min() < -3.0 < 3.0 < line[:, 0].max()
@@ -79,7 +83,9 @@ def test_the_mark_at_the_mouse_tells_its_tests(qtbot: QtBot, tmp_path: Path) -> 
         )
         for position, is_taken in zip(positions, (True, False), strict=True)
     )
-    reported = replace(picture, diagnostics=(SectionDiagnostics("street", (), diagnostics),))
+    reported = replace(
+        picture, diagnostics=FoundDiagnostics((SectionDiagnostics("street", (), diagnostics),))
+    )
     marks = DiagnosticMarks("en")
     spots = viewport.to_screen(SectionProjection(cut).on_plane(positions))
     assert marks.hover(reported, viewport, _point(spots[1]))
@@ -102,7 +108,9 @@ def test_the_outline_that_was_laid_on_a_plate_is_drawn_about_its_mark(
     ring = middle + 0.5 * np.array([[-1.0, -1.0, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]])
     looked_at = Diagnostic(cut.to_space(middle[None])[0], (), is_taken=True)
     shown_one = ShownDiagnostic("signs", looked_at, middle, ring)
-    reported = replace(picture, diagnostics=(SectionDiagnostics("street", (), (shown_one,)),))
+    reported = replace(
+        picture, diagnostics=FoundDiagnostics((SectionDiagnostics("street", (), (shown_one,)),))
+    )
     image = QImage(int(viewport.width), int(viewport.height), QImage.Format.Format_RGBA8888)
     image.fill(0)
     with QPainter(image) as painter:
@@ -112,4 +120,26 @@ def test_the_outline_that_was_laid_on_a_plate_is_drawn_about_its_mark(
     for x, y in spots.tolist():
         near = [image.pixelColor(x + i, y + j).green() for i in (-1, 0, 1) for j in (-1, 0, 1)]
         assert max(near) > 200
+    user.view.close()
+
+
+def test_what_is_known_is_drawn_while_other_tools_are_asked(qtbot: QtBot, tmp_path: Path) -> None:
+    user = shown(qtbot, OpenMap((imported_drive(tmp_path / "street"),)))
+    picture, viewport = user.pane.picture, user.pane.viewport
+    assert picture is not None
+    line = np.array([[-3.0, picture.request.cut.middle[2], 0.0], [3.0, 0.0, 0.0]])
+    line[1, 1] = line[0, 1]
+    found = FoundDiagnostics((SectionDiagnostics("street", (line,)),), "trees")
+    widths = []
+    for known in (found, replace(found, awaited="")):
+        image = QImage(int(viewport.width), int(viewport.height), QImage.Format.Format_RGBA8888)
+        image.fill(0)
+        marks, reported = DiagnosticMarks("ja"), replace(picture, diagnostics=known)
+        with QPainter(image) as painter:
+            marks.paint(painter, reported, viewport)
+            marks.paint_words(painter, reported, viewport)
+        pixels = np.frombuffer(image.constBits(), np.uint8).reshape(image.height(), -1, 4)
+        widths.append(np.flatnonzero(pixels[:120, :, 3].any(axis=1)).size)
+        assert pixels[..., 3].any(axis=0).sum() > viewport.scale * 5.9
+    assert widths[0] > widths[1] + 10  # a line of the legend more: which tool is asked
     user.view.close()

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from enum import Enum
 
 import numpy as np
 from PySide6.QtCore import QLineF, QPointF, QRectF, Qt
@@ -23,6 +24,7 @@ _SCANLINE = Text("Normalised scanline", "正規化スキャンライン")
 _TAKEN_POSITION = Text("Place that was taken", "採用された箇所")
 _LEFT_POSITION = Text("Place that was not taken", "採用されなかった箇所")
 _NO_SCANLINE = Text("No scanline here", "ここにはスキャンラインがありません")
+_AWAITED = Text("Still looking: {tool}", "確認中: {tool}")
 _LIMIT = Text("limit {limit}", "基準 {limit}")
 
 _LINE, _LINE_EDGE = QColor("#56b4e9"), QColor(16, 18, 22, 170)
@@ -78,7 +80,7 @@ class DiagnosticMarks:
         painter.setRenderHint(QPainter.RenderHint.Antialiasing, on=True)
         for pen in (QPen(_LINE_EDGE, 3.5), QPen(_LINE, 1.5)):
             painter.setPen(pen)
-            for line in (line for one in picture.diagnostics for line in one.lines):
+            for line in (line for one in picture.diagnostics.drives for line in one.lines):
                 spots = viewport.to_screen(projection.on_plane(line))
                 painter.drawPolyline(QPolygonF([QPointF(x, y) for x, y in spots.tolist()]))
         for shown in sorted(_diagnostics_of(picture), key=lambda shown: shown.diagnostic.is_taken):
@@ -96,13 +98,14 @@ class DiagnosticMarks:
         if found is None:
             return
         diagnostics = _diagnostics_of(picture)
-        entries = [(_SCANLINE if found else _NO_SCANLINE).in_language(self._language)]
-        kinds: list[bool | None] = [None]
-        for is_taken, name in ((True, _TAKEN_POSITION), (False, _LEFT_POSITION)):
-            if any(shown.diagnostic.is_taken is is_taken for shown in diagnostics):
-                entries.append(name.in_language(self._language))
-                kinds.append(is_taken)
-        _paint_legend(painter, entries, kinds)
+        entries = [(_SCANLINE if found.drives else _NO_SCANLINE, _Sign.LINE)]
+        taken = {shown.diagnostic.is_taken for shown in diagnostics}
+        entries += [(_TAKEN_POSITION, _Sign.TAKEN)] if True in taken else []
+        entries += [(_LEFT_POSITION, _Sign.LEFT)] if False in taken else []
+        if found.awaited:
+            entries.append((_AWAITED.filled(tool=_name_of(found.awaited)), _Sign.NONE))
+        words = [(text.in_language(self._language), sign) for text, sign in entries]
+        _paint_legend(painter, words)
         if self._hovered is not None and self._hovered in diagnostics:
             self._paint_tests(painter, self._hovered, viewport)
 
@@ -110,7 +113,7 @@ class DiagnosticMarks:
         self, painter: QPainter, shown: ShownDiagnostic, viewport: PlaneViewport
     ) -> None:
         language, diagnostic = self._language, shown.diagnostic
-        name = TOOLS[shown.tool].name if shown.tool in TOOLS else Text.same(shown.tool)
+        name = _name_of(shown.tool)
         verdict = (_TAKEN if diagnostic.is_taken else _LEFT).in_language(language)
         title = f"{name.in_language(language)} · {verdict}"
         rows = [_words_of(outcome, language) for outcome in diagnostic.outcomes]
@@ -145,9 +148,13 @@ class DiagnosticMarks:
             )
 
 
+def _name_of(tool: str) -> Text:
+    return TOOLS[tool].name if tool in TOOLS else Text.same(tool)
+
+
 def _diagnostics_of(picture: SectionPicture | None) -> list[ShownDiagnostic]:
     found = None if picture is None else picture.diagnostics
-    return [shown for one in found or () for shown in one.diagnostics]
+    return [] if found is None else [shown for one in found.drives for shown in one.diagnostics]
 
 
 def _words_of(outcome: DiagnosticTest, language: Language) -> tuple[str, str, str]:
@@ -167,21 +174,32 @@ def _number(value: float, unit: str) -> str:
     return f"{words}{gap}{unit}".replace("-", "−")
 
 
-def _paint_legend(painter: QPainter, entries: Sequence[str], kinds: Sequence[bool | None]) -> None:
+class _Sign(Enum):
+    """What stands before the words of the legend."""
+
+    NONE = 0
+    LINE = 1
+    TAKEN = 2
+    LEFT = 3
+
+
+def _paint_legend(painter: QPainter, entries: Sequence[tuple[str, _Sign]]) -> None:
     metrics = QFontMetricsF(painter.font())
     high = metrics.height() + 2.0
-    wide = max(map(metrics.horizontalAdvance, entries)) + _SAMPLE_PX + 3 * _MARGIN_PX
+    longest = max(metrics.horizontalAdvance(words) for words, _ in entries)
+    wide = longest + _SAMPLE_PX + 3 * _MARGIN_PX
     plate = QRectF(LEFT_PX + 6.0, _TOP_PX, wide, len(entries) * high + 4.0)
     painter.fillRect(plate, _PLATE)
     painter.setRenderHint(QPainter.RenderHint.Antialiasing, on=True)
-    for number, (words, kind) in enumerate(zip(entries, kinds, strict=True)):
+    for number, (words, sign) in enumerate(entries):
         middle = plate.top() + 2.0 + (number + 0.5) * high
         left = plate.left() + _MARGIN_PX
-        if kind is None:
+        if sign is _Sign.LINE:
             painter.setPen(QPen(_LINE, 1.5))
             painter.drawLine(QLineF(left, middle, left + _SAMPLE_PX, middle))
-        else:
-            _paint_mark(painter, QPointF(left + _SAMPLE_PX / 2, middle), is_taken=kind)
+        elif sign is not _Sign.NONE:
+            at = QPointF(left + _SAMPLE_PX / 2, middle)
+            _paint_mark(painter, at, is_taken=sign is _Sign.TAKEN)
         painter.setPen(_WORDS)
         box = QRectF(left + _SAMPLE_PX + _MARGIN_PX, middle - high / 2, wide, high)
         painter.drawText(box, int(Qt.AlignmentFlag.AlignVCenter), words)

@@ -18,7 +18,7 @@ from processing.recording.drive import Drive
 from processing.section.cut import Cut
 from processing.section.points_in_cut import MOST_POINTS, SectionPoints, section_points
 from widgets.section_view.picture.found_ground import FoundGround
-from widgets.section_view.picture.section_diagnostics import SectionDiagnostics, diagnostics_at
+from widgets.section_view.picture.section_diagnostics import FoundDiagnostics, diagnostics_at
 from widgets.section_view.picture.section_position import SectionPosition
 from widgets.section_view.picture.settings import SectionSettings
 from widgets.shared.view_settings import PointStyle
@@ -78,8 +78,8 @@ class SectionPicture:
         Whether the colours are those wished for.
     ground : tuple of SurfaceLine
         In the plane of the cut, as the tool “ground” found it.
-    diagnostics : tuple of SectionDiagnostics or None
-        None where they aren't shown, or aren't known as yet.
+    diagnostics : FoundDiagnostics or None
+        None where they aren't shown, or nothing is known as yet.
     """
 
     request: SectionRequest
@@ -90,7 +90,7 @@ class SectionPicture:
     is_thinned: bool
     is_final: bool = True
     ground: tuple[SurfaceLine, ...] = ()
-    diagnostics: tuple[SectionDiagnostics, ...] | None = None
+    diagnostics: FoundDiagnostics | None = None
 
 
 class SectionFeed(QObject):
@@ -100,7 +100,8 @@ class SectionFeed(QObject):
     -------
     arrived(picture: SectionPicture)
         Sent from another thread, so received through the window's event queue. Where colours
-        take time the points come twice, in plain colours first.
+        take time the points come twice, in plain colours first; what tools look at comes tool by
+        tool.
     """
 
     arrived = Signal(object)
@@ -163,11 +164,14 @@ class SectionFeed(QObject):
             self._report(picture)
             return
         self._report(replace(picture, is_final=False))
-        if not self._is_outdated():
-            diagnostics = diagnostics_at(
-                request.drives, request.standing, request.cut, request.parameters
-            )
-            self._report(replace(picture, diagnostics=diagnostics))
+        self._report_diagnostics(picture)
+
+    def _report_diagnostics(self, picture: SectionPicture) -> None:
+        """Tell what tools look at, one after the other, until something else is asked for."""
+        asked = picture.request
+        found = diagnostics_at(asked.drives, asked.standing, asked.cut, asked.parameters)
+        while not self._is_outdated() and (known := next(found, None)) is not None:
+            self._report(replace(picture, diagnostics=known, is_final=not known.awaited))
 
     def _report(self, picture: SectionPicture) -> None:
         if not self._is_closed:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from processing.methods.road.requested_position import RequestedPosition
 from processing.recording.drive import Drive
 from processing.section.cut import Cut
 from processing.tools.registry import TOOLS
+from processing.tools.tool import Tool
 from widgets.section_view.picture.section_position import SectionPosition
 
 
@@ -51,13 +52,31 @@ class SectionDiagnostics:
 
     drive: str
     lines: tuple[Floats, ...]
-    diagnostics: tuple[ShownDiagnostic, ...]
+    diagnostics: tuple[ShownDiagnostic, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class FoundDiagnostics:
+    """What is known so far of a section.
+
+    Attributes
+    ----------
+    drives : tuple of SectionDiagnostics
+    awaited : str
+        Id of the tool that is asked now; empty when all have answered.
+    """
+
+    drives: tuple[SectionDiagnostics, ...]
+    awaited: str = ""
 
 
 def diagnostics_at(
     drives: Sequence[Drive], standing: SectionPosition, cut: Cut, parameters: Mapping[str, object]
-) -> tuple[SectionDiagnostics, ...]:
-    """What is to be shown in a section; of drives that lack revolutions or a trajectory nothing.
+) -> Iterator[FoundDiagnostics]:
+    """What is to be shown in a section: the scanlines, then more with each tool that answers.
+
+    Tools take seconds where much stands about; whoever has seen enough stops asking. Of drives
+    that lack revolutions or a trajectory there is nothing.
 
     Parameters
     ----------
@@ -65,35 +84,37 @@ def diagnostics_at(
         Of the tools, by their ids, as they would run now.
     """
     position = np.array(cut.middle if standing.through is None else standing.through)
-    found = []
-    for drive in drives:
-        if drive.trajectory is None or drive.revolutions is None:
-            continue
-        try:
-            scanlines = scanline_through(drive, position, ScanlineSettings())
-            if scanlines is not None:
-                found.append(
-                    _find_diagnostics(
-                        RequestedPosition(drive, position, scanlines), cut, parameters
-                    )
-                )
-        except UserError:  # whoever runs the tool is told; here there is just nothing to show
-            continue
-    return tuple(found)
+    asked = [one for drive in drives if (one := _asked_position(drive, position)) is not None]
+    found = [SectionDiagnostics(one.drive.info.name, _lines(one.scanlines, cut)) for one in asked]
+    tools = [one for one in TOOLS.values() if one.diagnostics is not None and one.id in parameters]
+    for tool in tools:
+        yield FoundDiagnostics(tuple(found), tool.id)
+        for number, one in enumerate(asked):
+            more = _looked_at(tool, one, cut, parameters[tool.id])
+            known = found[number]
+            found[number] = replace(known, diagnostics=(*known.diagnostics, *more))
+    yield FoundDiagnostics(tuple(found))
 
 
-def _find_diagnostics(
-    asked: RequestedPosition, cut: Cut, parameters: Mapping[str, object]
-) -> SectionDiagnostics:
-    diagnostics = [
-        _shown(tool.id, diagnostic, cut)
-        for tool in TOOLS.values()
-        if tool.diagnostics is not None and tool.id in parameters
-        for diagnostic in tool.diagnostics(asked, parameters[tool.id])
-    ]
-    return SectionDiagnostics(
-        asked.drive.info.name, _lines(asked.scanlines, cut), tuple(diagnostics)
-    )
+def _asked_position(drive: Drive, position: Floats) -> RequestedPosition | None:
+    if drive.trajectory is None or drive.revolutions is None:
+        return None
+    try:
+        scanlines = scanline_through(drive, position, ScanlineSettings())
+    except UserError:  # whoever runs a tool is told; here there is just nothing to show
+        return None
+    return None if scanlines is None else RequestedPosition(drive, position, scanlines)
+
+
+def _looked_at(
+    tool: Tool, asked: RequestedPosition, cut: Cut, parameters: object
+) -> tuple[ShownDiagnostic, ...]:
+    if tool.diagnostics is None:
+        return ()
+    try:
+        return tuple(_shown(tool.id, one, cut) for one in tool.diagnostics(asked, parameters))
+    except UserError:  # as above
+        return ()
 
 
 def _shown(tool: str, diagnostic: Diagnostic, cut: Cut) -> ShownDiagnostic:
