@@ -23,6 +23,7 @@ from processing.recording.columns.varying_columns import VaryingWriter, varying_
 from processing.recording.drive import TRAJECTORY_FILE, Drive
 from processing.recording.drive_info import write_drive_info
 from processing.recording.revolutions.revolutions_file import write_revolutions
+from processing.recording.waveforms.kept_packets import link_packets
 
 _AT_ONCE = 1_000_000
 """Points copied at a time: short enough for a cancel to be felt at once."""
@@ -91,4 +92,5 @@ def write_part(
     if trajectory.is_file():
         with report_as_user_error(into):
             shutil.copyfile(trajectory, into / TRAJECTORY_FILE)
+    link_packets(drive.folder, into)
     return Drive(into)

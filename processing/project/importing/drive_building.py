@@ -17,6 +17,7 @@ from processing.core.disk_room import refuse_small_disk
 from processing.core.errors import report_as_user_error
 from processing.core.monitor import Monitor, PartMonitor
 from processing.core.text import Text
+from processing.formats.points.delivered.delivered_waveforms import DeliveredWaveforms
 from processing.image.images_of_drives import image_of
 from processing.project.importing.build_steps import CLOCK, NAMED, SHIFTED, BuildSteps
 from processing.project.importing.import_journal import JournalEntries
@@ -24,6 +25,7 @@ from processing.project.importing.import_layout import bytes_of
 from processing.project.importing.import_request import digest_of
 from processing.project.importing.recording import Recording
 from processing.project.importing.trajectory_choice import NamedTrajectory, match_trajectory
+from processing.project.importing.waveform_keeping import keep_waveforms
 from processing.recording.camera_images.image_list import ImageList
 from processing.recording.camera_images.image_store import write_images
 from processing.recording.columns.columns import Columns, ColumnWriter
@@ -48,6 +50,7 @@ from processing.recording.revolutions.revolutions import (
 )
 from processing.recording.revolutions.revolutions_file import write_revolutions
 from processing.recording.vehicle_path.trajectory import Trajectory
+from processing.recording.waveforms.descriptors import PACKET
 from processing.recording.without_revolutions.scan_grid import (
     COLUMN,
     ScanGrid,
@@ -91,6 +94,8 @@ class BuildPlan:
         By file and scanner: where a standing scanner was, m, as the file says.
     identity : tuple of str
         What else of the request makes its drives what they are.
+    waveforms : mapping of int to DeliveredWaveforms
+        By number of the file, for those that have some.
     """
 
     sources: tuple[SourceFile, ...]
@@ -101,6 +106,7 @@ class BuildPlan:
     shared_sources: frozenset[int] = frozenset()
     scanner_positions: Mapping[tuple[int, int], ScannerPosition] = field(default_factory=dict)
     identity: tuple[str, ...] = ()
+    waveforms: Mapping[int, DeliveredWaveforms] = field(default_factory=dict)
 
 
 def build_drive(
@@ -119,7 +125,8 @@ def build_drive(
     2. The trajectory is chosen and the points' clock set to its; origins per point make their own.
     3. A standing scanner's grid is taken as it is, else revolutions and pulses are found, by times
        or by the order of the points; where there are none, points are ordered for the top view.
-    4. The facts are written.
+    4. Packets of waveforms are taken over.
+    5. The facts are written.
 
     Each step may be begun again; what can't be done to its own result is noted.
 
@@ -162,6 +169,8 @@ def build_drive(
         monitor.report(0.7, _CELLS.filled(name=name))
         _order_for_top_view(recording, found.view, steps, PartMonitor(monitor, 0.7, 1.0))
     remove_grid_column(recording.folder)
+    if PACKET in recording.names and plan.waveforms:
+        keep_waveforms(recording, plan.waveforms, name, monitor)
     return _finish_folder(recording, plan, found, steps, taken)
 
 

@@ -43,11 +43,14 @@ from processing.recording.columns.varying_columns import (
 )
 from processing.recording.drive import Drive
 from processing.recording.drive_info import read_drive_info, write_drive_info
+from processing.recording.waveforms.descriptors import PACKET, WAVE_COLUMNS
+from processing.recording.waveforms.kept_packets import link_packets
+from processing.recording.waveforms.pulse_index import make_pulse_index
 
 POSITION = "place_before"
 _DELIVERED = (
     "xyz", "time", "intensity", "return_number", "number_of_returns", "classification",
-    FILE, INDEX, "color",
+    FILE, INDEX, "color", *WAVE_COLUMNS,
 )  # fmt: skip
 _SOURCE_BITS = 40
 _COPYING = Text("Copying {name}", "{name} をコピー中")
@@ -178,6 +181,9 @@ def _complete_drive_folder(
     finally:
         journal.close()
     _name_as(drive, built)
+    if PACKET in names:
+        link_packets(drive.folder, built)
+        make_pulse_index(built, drive.count, monitor)
     positions = _positions_of(built, into, drive.count)
     monitor.report(0.9, _CARRYING)
     mark = results_mark(drive)

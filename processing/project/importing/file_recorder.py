@@ -24,10 +24,11 @@ from processing.project.importing.file_record import FileJob, FileRecord, Stream
 from processing.project.importing.quantisation import shift_between
 from processing.recording.columns.offset_columns import OffsetColumnWriter
 from processing.recording.columns.source_order import INDEX
+from processing.recording.waveforms.descriptors import KEY_OF_FILE, PACKET, WAVE_COLUMNS
 
 CHUNK_POINTS = 500_000
 ALWAYS = ("xyz", "time", "intensity", "return_number", "number_of_returns", "classification")
-_WHERE_DELIVERED = ("color", "origin", "label", "grid")
+_WHERE_DELIVERED = ("color", "origin", "label", "grid", *WAVE_COLUMNS)
 _ANGLE = "scan_angle_deg"
 _HASHED_BYTES = 1 << 20
 _MOST_RUNS = 1_000
@@ -73,8 +74,13 @@ def record_file(job: FileJob, record: FileRecord, reported: RecordListener) -> F
 
 
 def wanted_columns(job: FileJob, chunk: PointChunk) -> ChunkColumns:
-    """The columns of a chunk; points of files without labels have none of them."""
+    """The columns of a chunk; points of files without labels have none of them.
+
+    A packet's byte becomes its key, which tells the packets of several files apart.
+    """
     columns = chunk.columns
+    if PACKET in columns:
+        columns[PACKET][columns[PACKET] >= 0] += job.number * KEY_OF_FILE
     if job.labels == "classification":
         columns["label"] = columns["classification"]
     elif job.has_labels and "label" not in columns:

@@ -36,6 +36,7 @@ from processing.core.owned_files import (
     remove_folder,
 )
 from processing.core.text import Text
+from processing.formats.points.delivered.delivered_waveforms import DeliveredWaveforms
 from processing.formats.points.delivered.point_chunk import Vector3
 from processing.formats.points.point_files import PointFileInfo
 from processing.formats.trajectories.image_list import read_image_list
@@ -186,6 +187,7 @@ class _Import:
             _shared_sources(recordings),
             _scanner_positions(self._files),
             identity=(*checksums, self._request.labels, self._request.crs, *self._request.columns),
+            waveforms=_readable_waveforms(self._files),
         )
         return self._build_all(recordings, plan, taken)
 
@@ -361,6 +363,12 @@ def _is_adjusted_standard(files: tuple[PointFileInfo, ...]) -> bool | None:
     """What the files say of their clock, where they agree."""
     said = {info.is_adjusted_standard for info in files}
     return said.pop() if len(said) == 1 else None
+
+
+def _readable_waveforms(files: tuple[PointFileInfo, ...]) -> dict[int, DeliveredWaveforms]:
+    """By number of the file."""
+    named = {number: info.waveforms for number, info in enumerate(files)}
+    return {n: one for n, one in named.items() if one is not None and one.is_readable}
 
 
 def _shared_sources(recordings: Sequence[Recording]) -> frozenset[int]:

@@ -8,6 +8,8 @@ from typing import Any
 
 from numpy.typing import NDArray
 
+from processing.formats.points.delivered.delivered_waveforms import DeliveredWaveforms
+
 Vector3 = tuple[float, float, float]
 
 
@@ -35,8 +37,8 @@ class PointFileInfo:
         Time of the first point, NaN without.
     version, point_format : str, int
         Of LAS; empty and -1 elsewhere.
-    has_waveforms : bool
-        Whether points refer to waveform packets.
+    waveforms : DeliveredWaveforms or None
+        What its points refer to, also where it can't be read; None of files without waveforms.
     attributes : tuple of str
         Names of the columns of a chunk but ``xyz``, then names of extra dimensions.
     scanner_positions : tuple of (int, tuple of float)
@@ -61,7 +63,7 @@ class PointFileInfo:
     first_time: float = float("nan")
     version: str = ""
     point_format: int = -1
-    has_waveforms: bool = False
+    waveforms: DeliveredWaveforms | None = None
     attributes: tuple[str, ...] = ()
     scanner_positions: tuple[tuple[int, Vector3], ...] = ()
     columns_taken: tuple[str, ...] = ()
@@ -79,7 +81,9 @@ class PointChunk:
         them ``time`` float64 (s, NaN where it is no time), ``scan_angle_deg`` float32, ``color``
         (n, 3) uint16, ``origin`` (n, 3) float64 (where the scanner was, m), ``label`` uint8
         (painted by hand, from an extra dimension of LAS), ``grid`` (n, 2) int32 (a structured
-        scan's sweep and the place in it; −1 where unknown).
+        scan's sweep and the place in it; −1 where unknown); those of
+        :data:`processing.recording.waveforms.descriptors.WAVE_COLUMNS`, all or none, in which a
+        packet is its byte alone.
     """
 
     # Any: the columns differ in type.

@@ -19,10 +19,11 @@ from processing.formats.points.las.las_crs import crs_of
 from processing.formats.points.las.las_header import RECORD_SIZES, LasHeader, damaged, read_header
 from processing.formats.points.las.las_records import ExtraDimension, extra_dimensions
 from processing.formats.points.las.laz_chunks import read_chunk_table
+from processing.formats.points.las.waveform_packets import LasPackets, packets_of
+from processing.recording.waveforms.descriptors import WAVE_COLUMNS
 
 __all__ = ["PointChunk", "PointFileInfo", "read_chunks", "read_info", "read_records"]
 
-WAVEFORM_FORMATS = frozenset({4, 5, 9, 10})
 _TIME_AT = {1: 20, 3: 20, 4: 20, 5: 20, 6: 22, 7: 22, 8: 22, 9: 22, 10: 22}
 _COLOR_AT = {2: 20, 3: 28, 5: 28, 7: 30, 8: 30, 10: 30}
 _ALWAYS = (
@@ -50,7 +51,9 @@ _NEEDED_LAYERS = (
     | lazrs.SELECTIVE_DECOMPRESS_POINT_SOURCE_ID
     | lazrs.SELECTIVE_DECOMPRESS_GPS_TIME
     | lazrs.SELECTIVE_DECOMPRESS_RGB
+    | lazrs.SELECTIVE_DECOMPRESS_WAVEPACKET
 )
+_PACKET_SAMPLE = 1_000
 
 
 def read_info(path: Path) -> PointFileInfo:
@@ -65,6 +68,9 @@ def read_info(path: Path) -> PointFileInfo:
     has_time = header.point_format in _TIME_AT
     has_color = header.point_format in _COLOR_AT
     columns = (("time",) if has_time else ()) + _ALWAYS + (("color",) if has_color else ())
+    packets = _packets_of(header)
+    if packets is not None and packets.delivered.is_readable:
+        columns += WAVE_COLUMNS
     is_adjusted = bool(header.encoding & _IS_ADJUSTED_BIT)
     return PointFileInfo(
         path=path,
@@ -81,7 +87,7 @@ def read_info(path: Path) -> PointFileInfo:
         first_time=_first_time(header) if has_time else float("nan"),
         version=f"1.{header.minor}",
         point_format=header.point_format,
-        has_waveforms=header.point_format in WAVEFORM_FORMATS,
+        waveforms=None if packets is None else packets.delivered,
         attributes=columns + _extra_dimensions(header),
     )
 
@@ -105,9 +111,10 @@ def read_chunks(
         limits of its integers, or 10 km and ten extents outside the header's box, is damage.
     """
     header = read_header(path)
+    packets = _packets_of(header)
     first = after
     for records in read_records(header, chunk_points, _layers(header), after=after):
-        chunk = _chunk(records, header, first)
+        chunk = _chunk(records, header, first, packets)
         yield chunk
         first += chunk.count
 
@@ -126,16 +133,31 @@ def read_ends(path: Path, points: int) -> list[PointChunk]:
         As :func:`read_chunks`.
     """
     header = read_header(path)
-    ends = []
-    with report_as_user_error(path), path.open("rb") as file:
-        chunks = read_chunk_table(header, file) if header.is_compressed else None
-        for start, end in _end_spans(header.count, points):
-            if chunks is None:
-                records = _plain_records(header, file, start, end)
-            else:
-                records = chunks.decoded_span(file, start, end, _layers(header))
-            ends.append(_chunk(records, header, start))
-    return ends
+    packets = _packets_of(header)
+    spans = _end_spans(header.count, points)
+    records = _records_of(header, spans)
+    return [
+        _chunk(own, header, start, packets) for own, (start, _) in zip(records, spans, strict=True)
+    ]
+
+
+def _records_of(header: LasHeader, spans: list[tuple[int, int]]) -> list[NDArray[np.uint8]]:
+    """The records of some stretches of points."""
+    with report_as_user_error(header.path), header.path.open("rb") as file:
+        if not header.is_compressed:
+            return [_plain_records(header, file, start, end) for start, end in spans]
+        chunks = read_chunk_table(header, file)
+        return [chunks.decoded_span(file, start, end, _layers(header)) for start, end in spans]
+
+
+def _packets_of(header: LasHeader) -> LasPackets | None:
+    """The file's waveform packets; its first and last points tell how their bytes are counted."""
+    packets = packets_of(header)
+    if packets is None or not packets.delivered.has_head:
+        return packets
+    spans = _end_spans(header.count, _PACKET_SAMPLE)
+    sample = _records_of(header, spans)
+    return packets_of(header, np.concatenate(sample)) if sample else packets
 
 
 def _layers(header: LasHeader) -> int:
@@ -145,9 +167,13 @@ def _layers(header: LasHeader) -> int:
     return int(_NEEDED_LAYERS | extra)
 
 
-def _chunk(records: NDArray[np.uint8], header: LasHeader, first: int) -> PointChunk:
+def _chunk(
+    records: NDArray[np.uint8], header: LasHeader, first: int, packets: LasPackets | None
+) -> PointChunk:
     """The columns of records, of which the first one is point ``first`` of the file."""
     chunk = PointChunk(_columns(records, header.point_format))
+    if packets is not None and packets.delivered.is_readable:
+        chunk.columns.update(packets.columns_of(records, header.point_format))
     label, grid = _label_of(header), _grid_of(header)
     if label is not None:
         chunk.columns[_LABEL] = _extra(records, header, label)

@@ -27,6 +27,7 @@ _VLR_HEADER = struct.Struct("<H16sHH32s")
 _EVLR_HEADER = struct.Struct("<H16sHQ32s")
 _LARGEST_EVLR_READ = 16 << 20
 _FARTHEST_M = 1e9
+_WAVEFORM_PACKETS = 65535
 
 
 @dataclass(frozen=True)
@@ -52,6 +53,8 @@ class LasHeader:
         Extended ones (if not larger than 16 MiB) after the ordinary ones.
     evlrs_at, evlr_count : int
         Where extended records start; 0 without.
+    waveforms_at : int
+        Where the record of waveform packets starts in the file; 0 where the header names none.
     """
 
     path: Path
@@ -71,6 +74,7 @@ class LasHeader:
     vlrs: tuple[Vlr, ...]
     evlrs_at: int
     evlr_count: int
+    waveforms_at: int = 0
 
     def vlr(self, user: str, number: int) -> Vlr | None:
         """The first record of this user and id."""
@@ -141,6 +145,7 @@ def read_header(path: Path) -> LasHeader:
         vlrs=tuple(vlrs),
         evlrs_at=evlrs_at if evlr_count else 0,
         evlr_count=evlr_count,
+        waveforms_at=struct.unpack_from("<Q", start, 227)[0] if minor >= 3 else 0,
     )
     _check_length(header)
     return header
@@ -252,7 +257,9 @@ def _read_evlrs(file: BinaryIO, path: Path, count: int, span: tuple[int, int]) -
             raise _bad_vlr(path, number, count, position)
         _, user, record_id, length, _ = _EVLR_HEADER.unpack(head)
         position += _EVLR_HEADER.size
-        if position + length > file_size:
+        # What lacks of waveforms is told of the points that name it; the points are all there.
+        is_packets = _name(user) == "LASF_Spec" and record_id == _WAVEFORM_PACKETS
+        if position + length > file_size and not is_packets:
             raise _bad_vlr(path, number, count, position - _EVLR_HEADER.size)
         data = file.read(length) if length <= _LARGEST_EVLR_READ else b""
         vlrs.append(Vlr(_name(user), record_id, data))

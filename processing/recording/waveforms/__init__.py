@@ -1,0 +1,1 @@
+"""Full waveforms of a recording: packets of samples, the pulses they are of, and their returns."""
