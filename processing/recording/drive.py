@@ -29,6 +29,7 @@ from processing.recording.kinds import ImageKind
 from processing.recording.revolutions.revolutions import Revolutions
 from processing.recording.revolutions.revolutions_file import read_revolutions
 from processing.recording.vehicle_path.trajectory import Trajectory
+from processing.recording.waveform_packets.kept_packets import read_packet_files
 
 _Part = TypeVar("_Part")
 
@@ -110,9 +111,10 @@ class Drive:
     @property
     def delivered_files(self) -> tuple[Path, ...]:
         """The files it was imported from, which nothing may ever write; where noted, where now."""
-        noted = [Path(source.path) for source in self.info.sources]
-        now = [self.source_path(source) for source in self.info.sources]
-        return tuple(dict.fromkeys(noted + now))
+        noted = [source.path for source in self.info.sources]
+        noted += [packets.delivered for packets in read_packet_files(self._folder)]
+        now = [path_now(path, self._moves) for path in noted]
+        return tuple(dict.fromkeys([Path(path) for path in noted] + now))
 
     def source_path(self, source: SourceFile) -> Path:
         """Where one of ``info.sources`` is now, as far as is known."""

@@ -23,7 +23,7 @@ from processing.recording.columns.varying_columns import VaryingWriter, varying_
 from processing.recording.drive import TRAJECTORY_FILE, Drive
 from processing.recording.drive_info import write_drive_info
 from processing.recording.revolutions.revolutions_file import write_revolutions
-from processing.recording.waveforms.kept_packets import link_packets
+from processing.recording.waveform_packets.kept_packets import link_packets
 
 _AT_ONCE = 1_000_000
 """Points copied at a time: short enough for a cancel to be felt at once."""

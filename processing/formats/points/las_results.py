@@ -123,7 +123,8 @@ def write_results(
     source : Path
         A point file. Of LAS, LAZ and COPC everything is kept: order, coordinates, attributes,
         records; but formats 0 to 5 become 6 to 10 where a class is above 31, and an output is
-        never COPC, as its points stay in the input's order. Of other formats what
+        never COPC, as its points stay in the input's order. Waveforms beside the file are copied by
+        :func:`processing.formats.points.waveform_output.copy_packets`. Of other formats what
         :func:`processing.formats.points.point_files.read_chunks` gives is written.
     output : Path
         ``.las`` or ``.laz``.

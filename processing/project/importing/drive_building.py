@@ -50,7 +50,7 @@ from processing.recording.revolutions.revolutions import (
 )
 from processing.recording.revolutions.revolutions_file import write_revolutions
 from processing.recording.vehicle_path.trajectory import Trajectory
-from processing.recording.waveforms.descriptors import PACKET
+from processing.recording.waveform_packets.descriptors import PACKET
 from processing.recording.without_revolutions.scan_grid import (
     COLUMN,
     ScanGrid,

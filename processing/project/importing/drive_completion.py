@@ -43,9 +43,9 @@ from processing.recording.columns.varying_columns import (
 )
 from processing.recording.drive import Drive
 from processing.recording.drive_info import read_drive_info, write_drive_info
-from processing.recording.waveforms.descriptors import PACKET, WAVE_COLUMNS
-from processing.recording.waveforms.kept_packets import link_packets
-from processing.recording.waveforms.pulse_index import make_pulse_index
+from processing.recording.waveform_packets.descriptors import PACKET, WAVE_COLUMNS
+from processing.recording.waveform_packets.kept_packets import link_packets
+from processing.recording.waveform_packets.pulse_index import make_pulse_index
 
 POSITION = "place_before"
 _DELIVERED = (

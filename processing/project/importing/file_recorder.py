@@ -24,7 +24,7 @@ from processing.project.importing.file_record import FileJob, FileRecord, Stream
 from processing.project.importing.quantisation import shift_between
 from processing.recording.columns.offset_columns import OffsetColumnWriter
 from processing.recording.columns.source_order import INDEX
-from processing.recording.waveforms.descriptors import KEY_OF_FILE, PACKET, WAVE_COLUMNS
+from processing.recording.waveform_packets.descriptors import KEY_OF_FILE, PACKET, WAVE_COLUMNS
 
 CHUNK_POINTS = 500_000
 ALWAYS = ("xyz", "time", "intensity", "return_number", "number_of_returns", "classification")

@@ -14,19 +14,19 @@ from processing.core.text import Text
 from processing.formats.points.delivered.delivered_waveforms import DeliveredWaveforms
 from processing.project.importing.recording import Recording
 from processing.recording.columns.ordering import chunk_ranges, read_chunk
-from processing.recording.waveforms.descriptors import (
+from processing.recording.waveform_packets.descriptors import (
     DESCRIPTOR,
     KEY_OF_FILE,
     PACKET,
     PacketFile,
 )
-from processing.recording.waveforms.kept_packets import (
+from processing.recording.waveform_packets.kept_packets import (
     link_file,
     packets_path,
     write_packet_files,
 )
-from processing.recording.waveforms.pulse_index import make_pulse_index
-from processing.recording.waveforms.ray_signs import ray_signs
+from processing.recording.waveform_packets.pulse_index import make_pulse_index
+from processing.recording.waveform_packets.ray_signs import ray_signs
 
 _COPIED_BYTES = 8 << 20
 _COPYING = Text("Copying waveforms of {name}", "{name} の波形をコピー中")

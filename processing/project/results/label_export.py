@@ -12,9 +12,11 @@ from processing.core.monitor import Monitor, PartMonitor
 from processing.core.scratch_folder import scratch_folder
 from processing.formats.format import Content
 from processing.formats.points.las_results import write_results
+from processing.formats.points.waveform_output import copy_packets
 from processing.formats.registry import FORMATS
 from processing.labels.label_column import LABEL
 from processing.project.results.delivered_order import DeliveredOrder, Values
+from processing.project.results.delivered_packets import DeliveredPackets
 from processing.project.sources.source_check import require_delivered
 from processing.recording.columns.ordering import read_chunk
 from processing.recording.drive import Drive
@@ -31,7 +33,8 @@ def write_labelled_points(
     """Write the points of every delivered file, with the labels that were painted on them.
 
     ``classification`` is the label where there is one, and the delivered class elsewhere; an extra
-    dimension ``label`` holds the labels alone. All else is as delivered, in the delivered order.
+    dimension ``label`` holds the labels alone. All else is as delivered, in the delivered order;
+    waveforms go with the points.
 
     Parameters
     ----------
@@ -52,8 +55,10 @@ def write_labelled_points(
         require_delivered(one, drive.source_path(one), monitor.check)
     for drive in drives:
         _check_codes(drive)
+    packets = DeliveredPackets(drives)
     sources = sorted(columns)
-    paths = [position(name) for name in _names_of(sources)]
+    names = _names_of(sources)
+    paths = [position(name) for name in names]
     if not paths:
         return
     with scratch_folder(paths[0].parent) as scratch:
@@ -65,6 +70,9 @@ def write_labelled_points(
             part = PartMonitor(monitor, first, first + share)
             results = _results_of(order, source)
             write_results(source, path, results, part, columns=columns[source])
+            beside = packets.to_copy(source, Path(names[number]))
+            if beside is not None:
+                copy_packets(beside[0], position(beside[1].name), part)
 
 
 def _check_codes(drive: Drive) -> None:

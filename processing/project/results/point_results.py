@@ -15,7 +15,9 @@ from processing.core.safe_write import refuse_inputs, write_safely
 from processing.core.scratch_folder import scratch_folder
 from processing.core.text import Text
 from processing.formats.points.las_results import MOVED, write_results
+from processing.formats.points.waveform_output import copy_packets
 from processing.project.results.delivered_order import DeliveredOrder, Values
+from processing.project.results.delivered_packets import DeliveredPackets
 from processing.project.sources.source_check import require_delivered
 from processing.recording.columns.ordering import read_chunk
 from processing.recording.drive import Drive
@@ -98,6 +100,7 @@ def write_point_results(
     drives = [drive for drive, _ in results]
     noted = {drive.source_path(one): one for drive in drives for one in drive.info.sources}
     files = check_point_output(drives, output, monitor)
+    packets = DeliveredPackets(drives)
     with ExitStack() as whole:
         scratch = whole.enter_context(scratch_folder(output.parent))
         order = DeliveredOrder(drives, _reader_of(results), scratch)
@@ -110,6 +113,12 @@ def write_point_results(
             temporary = whole.enter_context(write_safely(path, never=_delivered_files(drives)))
             found, columns = _results_of(order, source), noted[source].columns
             write_results(source, temporary, found, part, columns=columns)
+            beside = packets.to_copy(source, path)
+            if beside is not None:
+                target = whole.enter_context(
+                    write_safely(beside[1], never=_delivered_files(drives))
+                )
+                copy_packets(beside[0], target, part)
     return tuple(path for _, path in files)
 
 

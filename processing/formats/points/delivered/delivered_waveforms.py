@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from processing.core.text import Text
-from processing.recording.waveforms.descriptors import WaveformDescriptor
+from processing.recording.waveform_packets.descriptors import WaveformDescriptor
 
 
 @dataclass(frozen=True)

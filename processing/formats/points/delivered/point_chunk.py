@@ -81,9 +81,9 @@ class PointChunk:
         them ``time`` float64 (s, NaN where it is no time), ``scan_angle_deg`` float32, ``color``
         (n, 3) uint16, ``origin`` (n, 3) float64 (where the scanner was, m), ``label`` uint8
         (painted by hand, from an extra dimension of LAS), ``grid`` (n, 2) int32 (a structured
-        scan's sweep and the place in it; −1 where unknown); those of
-        :data:`processing.recording.waveforms.descriptors.WAVE_COLUMNS`, all or none, in which a
-        packet is its byte alone.
+        scan's sweep and the place in it; −1 where unknown); all or none of
+        :data:`processing.recording.waveform_packets.descriptors.WAVE_COLUMNS`, where a packet is
+        its byte alone.
     """
 
     # Any: the columns differ in type.

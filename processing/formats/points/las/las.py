@@ -20,7 +20,7 @@ from processing.formats.points.las.las_header import RECORD_SIZES, LasHeader, da
 from processing.formats.points.las.las_records import ExtraDimension, extra_dimensions
 from processing.formats.points.las.laz_chunks import read_chunk_table
 from processing.formats.points.las.waveform_packets import LasPackets, packets_of
-from processing.recording.waveforms.descriptors import WAVE_COLUMNS
+from processing.recording.waveform_packets.descriptors import WAVE_COLUMNS
 
 __all__ = ["PointChunk", "PointFileInfo", "read_chunks", "read_info", "read_records"]
 

@@ -155,7 +155,7 @@ def set_colors(
 
 
 def records_of(chunk: PointChunk, point_format: int) -> NDArray[np.uint8]:
-    """Records of format 6 or 7 for points of a file that is not LAS."""
+    """Records of format 6, 7 or 9 for points of a file that is not LAS; without their waveforms."""
     columns = chunk.columns
     records = np.zeros((chunk.count, RECORD_SIZES[point_format]), dtype=np.uint8)
     # The format has four bits for each.

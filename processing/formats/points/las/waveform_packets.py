@@ -17,7 +17,7 @@ from processing.core.errors import report_as_user_error
 from processing.core.text import Text
 from processing.formats.points.delivered.delivered_waveforms import DeliveredWaveforms
 from processing.formats.points.las.las_header import LasHeader
-from processing.recording.waveforms.descriptors import (
+from processing.recording.waveform_packets.descriptors import (
     DESCRIPTOR,
     DIRECTION,
     LOCATION,
@@ -29,7 +29,7 @@ from processing.recording.waveforms.descriptors import (
 WAVEFORM_FIELDS_AT = {4: 28, 5: 34, 9: 30, 10: 38}
 """Byte of a point where the 29 bytes of the wave packet begin."""
 
-_FIELDS = np.dtype(
+WAVEFORM_FIELDS = np.dtype(
     [
         ("descriptor", "u1"),
         ("byte", "<u8"),
@@ -38,6 +38,8 @@ _FIELDS = np.dtype(
         ("direction", "<f4", (3,)),
     ]
 )
+"""The 29 bytes as the standard lays them out."""
+
 _DESCRIPTOR = struct.Struct("<BBIIdd")
 _FIRST_DESCRIPTOR, _DESCRIPTORS = 99, range(1, 256)
 _SPEC, _PACKETS_RECORD = "LASF_Spec", 65535
@@ -92,8 +94,8 @@ class LasPackets:
 def wave_fields(records: NDArray[np.uint8], point_format: int) -> NDArray[np.void]:
     """The wave packet fields of points as they are in the file, a copy."""
     at = WAVEFORM_FIELDS_AT[point_format]
-    own = np.ascontiguousarray(records[:, at : at + _FIELDS.itemsize])
-    return np.asarray(own.view(_FIELDS)).reshape(-1)
+    own = np.ascontiguousarray(records[:, at : at + WAVEFORM_FIELDS.itemsize])
+    return np.asarray(own.view(WAVEFORM_FIELDS)).reshape(-1)
 
 
 def packets_of(header: LasHeader, sample: NDArray[np.uint8] | None = None) -> LasPackets | None:

@@ -18,7 +18,7 @@ from typing import Any
 from processing.core.errors import BadFile, report_as_user_error
 from processing.core.owned_files import new_file
 from processing.core.text import Text
-from processing.recording.waveforms.descriptors import PacketFile, WaveformDescriptor
+from processing.recording.waveform_packets.descriptors import PacketFile, WaveformDescriptor
 
 FILE_NAME = "waveforms.json"
 

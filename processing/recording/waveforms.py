@@ -19,7 +19,7 @@ from processing.core.monitor import SilentMonitor
 from processing.core.text import Text
 from processing.recording.columns.mapped_pages import MappedPages
 from processing.recording.drive import Drive
-from processing.recording.waveforms.descriptors import (
+from processing.recording.waveform_packets.descriptors import (
     DESCRIPTOR,
     DIRECTION,
     KEY_OF_FILE,
@@ -29,9 +29,9 @@ from processing.recording.waveforms.descriptors import (
     PacketFile,
     WaveformDescriptor,
 )
-from processing.recording.waveforms.kept_packets import packets_path, read_packet_files
-from processing.recording.waveforms.packet_samples import map_bytes, read_samples
-from processing.recording.waveforms.pulse_index import (
+from processing.recording.waveform_packets.kept_packets import packets_path, read_packet_files
+from processing.recording.waveform_packets.packet_samples import map_bytes, read_samples
+from processing.recording.waveform_packets.pulse_index import (
     KEYS,
     POINTS,
     STARTS,
@@ -330,7 +330,7 @@ class Waveforms:
         """Refuse an index that is not of this drive; one look at each number's bounds."""
         fits = self._starts.size == self._keys.size + 1 and self._starts[-1] == self._points.size
         if fits and self.count:
-            fits = 0 <= int(self._points.min()) and int(self._points.max()) < self._drive.count
+            fits = int(self._points.min()) >= 0 and int(self._points.max()) < self._drive.count
         if not fits:
             raise self._damaged()
 

@@ -1,4 +1,4 @@
-"""Which way the delivered directions of pulses lead: the standard leaves it open, writers differ."""
+"""Which way the directions of pulses lead: the standard leaves it open, and writers differ."""
 
 from __future__ import annotations
 
@@ -10,8 +10,8 @@ import numpy as np
 from processing.core.arrays import Floats, Integers
 from processing.recording.columns.columns import Columns
 from processing.recording.columns.quantisation import Quantisation
-from processing.recording.waveforms.descriptors import DIRECTION, KEY_OF_FILE, LOCATION
-from processing.recording.waveforms.pulse_index import KEYS, POINTS, STARTS
+from processing.recording.waveform_packets.descriptors import DIRECTION, KEY_OF_FILE, LOCATION
+from processing.recording.waveform_packets.pulse_index import KEYS, POINTS, STARTS
 
 BY_RETURNS, DOWNWARDS = "returns", "down"
 

@@ -20,7 +20,7 @@ from processing.core.owned_files import remove_folder
 from processing.recording.columns.columns import ColumnWriter
 from processing.recording.columns.ordering import chunk_ranges, read_chunk, sort_points
 from processing.recording.columns.source_order import INDEX
-from processing.recording.waveforms.descriptors import LOCATION, PACKET
+from processing.recording.waveform_packets.descriptors import LOCATION, PACKET
 
 KEYS, STARTS, POINTS = "pulse_keys.bin", "pulse_starts.bin", "pulse_points.bin"
 INDEX_FILES = (KEYS, STARTS, POINTS)

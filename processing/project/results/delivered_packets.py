@@ -1,0 +1,55 @@
+"""Waveforms that go with points that are handed in: the files of packets beside them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from processing.formats.points.waveform_output import PACKETS_ENDING, packets_beside
+from processing.recording.drive import Drive
+from processing.recording.waveform_packets.kept_packets import packets_path, read_packet_files
+
+
+class DeliveredPackets:
+    """The files of packets beside the point files that drives came from.
+
+    Parameters
+    ----------
+    drives : sequence of Drive
+        Their own copies of the packets serve where the delivered ones are gone.
+    """
+
+    def __init__(self, drives: Sequence[Drive]) -> None:
+        self._kept: dict[Path, Path] = {}
+        for drive in drives:
+            by_name = {
+                Path(file.delivered).with_suffix(""): packets_path(drive.folder, file.number)
+                for file in read_packet_files(drive.folder)
+            }
+            for one in drive.info.sources:
+                found = by_name.get(Path(one.path).with_suffix(""))
+                if found is not None:
+                    self._kept[drive.source_path(one)] = found
+
+    def to_copy(self, source: Path, output: Path) -> tuple[Path, Path] | None:
+        """What is to be copied beside the points of a delivered file, and where to.
+
+        Parameters
+        ----------
+        output : Path
+            The file that gets the points.
+
+        Returns
+        -------
+        tuple of Path, or None
+            None where the points bring no packets, or these are in place already.
+
+        Raises
+        ------
+        MissingInput, NoSpace, BadFile
+        """
+        packets = packets_beside(source, self._kept.get(source))
+        target = output.with_suffix(PACKETS_ENDING if packets is None else packets.suffix.lower())
+        if packets is None or (target.is_file() and target.samefile(packets)):
+            return None
+        return packets, target
