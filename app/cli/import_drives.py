@@ -9,7 +9,13 @@ from pathlib import Path
 from app.cli.opened import request_of, terminal_monitor
 from app.cli.output import print_lines
 from app.cli.terminal import say
-from app.document.import_words import column_remarks, has_already, known_words, lacking_words
+from app.document.import_words import (
+    column_remarks,
+    has_already,
+    known_words,
+    lacking_words,
+    waveform_remarks,
+)
 from app.settings.language import system_language
 from processing.core.text import Text
 from processing.operations.import_files import ImportOperation, import_files
@@ -44,7 +50,8 @@ def _report(drives: tuple[Drive, ...], brought: Additions, request: ImportReques
     language = system_language()
     for drive in drives:
         print_lines(describe_drive(drive))
-    print_lines(*(reported.in_language(language) for reported in column_remarks(drives)))
+    remarks = (*column_remarks(drives), *waveform_remarks(drives))
+    print_lines(*(reported.in_language(language) for reported in remarks))
     if brought.known:
         print_lines(known_words(brought.known).in_language(language))
     elif brought.are_none and request.files:

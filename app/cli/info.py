@@ -11,9 +11,12 @@ from app.cli.import_drives import describe_drive
 from app.cli.opened import columns_of
 from app.cli.output import print_json, print_lines
 from app.settings.language import system_language
-from processing.formats.points.point_files import read_info, read_sample
+from processing.formats.points.packet_counts import count_packets
+from processing.formats.points.point_files import PointFileInfo, read_info, read_sample
 from processing.project.project import Project, is_project
 from processing.recording.drive import Drive
+from processing.recording.waveform_facts import WaveformFacts, waveform_facts
+from processing.recording.waveform_packets.descriptors import WaveformDescriptor
 
 _SAMPLE_POINTS = 2_000
 
@@ -64,6 +67,7 @@ def _of_drive(drive: Drive) -> dict[str, object]:
         "pulses_per_turn": None if revolutions is None else revolutions.pulses_per_revolution,
         "has_trajectory": drive.trajectory is not None,
         "sources": [source.path for source in info.sources if source.points],
+        "waveforms": _of_waveforms(waveform_facts(drive)),
         "summary": describe_drive(drive),
     }
 
@@ -87,7 +91,57 @@ def _of_file(path: Path, columns: tuple[str, ...]) -> dict[str, object]:
         "columns_taken": list(info.columns_taken),
         "scanners": scanners,
         "times": [float(times.min()), float(times.max())] if times.size else None,
-        "waveforms": info.has_waveforms,
+        "waveforms": _of_delivered(info),
+    }
+
+
+def _of_waveforms(facts: WaveformFacts | None) -> dict[str, object] | bool:
+    """What a drive has of them; False where its files name none."""
+    if facts is None:
+        return False
+    language = system_language()
+    return {
+        "pulses": facts.pulses,
+        "points_with": facts.points,
+        "points_without": {why.name.lower(): points for why, points in facts.lacking.items()},
+        **_of_descriptors(facts.descriptors),
+        "packets": [file.delivered for file in facts.files],
+        "directions_by": [file.sign_by for file in facts.files if not file.reason.en],
+        "remarks": [remark.in_language(language) for remark in facts.remarks],
+    }
+
+
+def _of_delivered(info: PointFileInfo) -> dict[str, object] | bool:
+    """What a point file says of its waveforms; False where its points have no place for them."""
+    waveforms = info.waveforms
+    if waveforms is None:
+        return False
+    readable = {number: one for number, one in waveforms.descriptors.items() if one.is_readable}
+    counted = count_packets(info) if waveforms.is_readable else None
+    if counted is not None:
+        readable = {number: one for number, one in readable.items() if number in counted.used}
+    return {
+        "pulses": 0 if counted is None else counted.packets,
+        "points_with": 0 if counted is None else counted.points,
+        "points_without": {}
+        if counted is None
+        else {why.name.lower(): points for why, points in counted.lacking.items()},
+        **_of_descriptors(tuple(readable.values())),
+        "descriptors_delivered": len(waveforms.descriptors),
+        "packets": str(waveforms.path),
+        "packets_inside": waveforms.path == info.path,
+        "reason": waveforms.reason.in_language(system_language()),
+    }
+
+
+def _of_descriptors(descriptors: tuple[WaveformDescriptor, ...]) -> dict[str, object]:
+    """How samples are coded, each descriptor in the same place of the lists."""
+    return {
+        "samples": [one.samples for one in descriptors],
+        "interval_ns": [one.interval_ns for one in descriptors],
+        "bits": [one.bits for one in descriptors],
+        "gain": [one.gain for one in descriptors],
+        "offset": [one.offset for one in descriptors],
     }
 
 

@@ -10,6 +10,7 @@ from processing.core.text import Text
 from processing.project.additions import Additions, lacks_trajectory
 from processing.project.importing.import_request import ImportRequest
 from processing.recording.drive import Drive
+from processing.recording.waveform_facts import waveform_facts
 
 _MOST_NAMES = 3
 
@@ -43,7 +44,7 @@ def imported_words(drives: Sequence[Drive], brought: Additions, crs: str) -> Tex
             "走行軌跡が必要です（ファイル ▸ 走行軌跡を追加）",
         )
     reported = reported.filled(points=sum(drive.count for drive in new))
-    for line in column_remarks(new):
+    for line in (*column_remarks(new), *waveform_remarks(new)):
         reported = Text("{told}; {line}", "{told} {line}").filled(told=reported, line=line)
     return reported
 
@@ -63,6 +64,12 @@ def column_remarks(drives: Sequence[Drive]) -> tuple[Text, ...]:
         reported.filled(name=Path(path).name, columns=" ".join(columns))
         for path, columns in sources.items()
     )
+
+
+def waveform_remarks(drives: Sequence[Drive]) -> tuple[Text, ...]:
+    """A line for each reason why points of new drives lack the waveforms that their files name."""
+    facts = [waveform_facts(drive) for drive in drives]
+    return tuple(dict.fromkeys(line for one in facts if one is not None for line in one.remarks))
 
 
 def known_words(known: Sequence[Path]) -> Text:

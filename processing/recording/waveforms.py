@@ -170,6 +170,7 @@ class Waveforms:
         self._data = {
             file.number: map_bytes(packets_path(folder, file.number), self._pages)
             for file in self.files
+            if not file.reason.en
         }
         self.descriptors, self._local = _merge_descriptors(self.files)
 

@@ -50,7 +50,6 @@ from processing.recording.revolutions.revolutions import (
 )
 from processing.recording.revolutions.revolutions_file import write_revolutions
 from processing.recording.vehicle_path.trajectory import Trajectory
-from processing.recording.waveform_packets.descriptors import PACKET
 from processing.recording.without_revolutions.scan_grid import (
     COLUMN,
     ScanGrid,
@@ -169,7 +168,7 @@ def build_drive(
         monitor.report(0.7, _CELLS.filled(name=name))
         _order_for_top_view(recording, found.view, steps, PartMonitor(monitor, 0.7, 1.0))
     remove_grid_column(recording.folder)
-    if PACKET in recording.names and plan.waveforms:
+    if plan.waveforms:
         keep_waveforms(recording, plan.waveforms, name, monitor)
     return _finish_folder(recording, plan, found, steps, taken)
 

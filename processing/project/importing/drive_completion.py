@@ -181,8 +181,8 @@ def _complete_drive_folder(
     finally:
         journal.close()
     _name_as(drive, built)
+    link_packets(drive.folder, built)
     if PACKET in names:
-        link_packets(drive.folder, built)
         make_pulse_index(built, drive.count, monitor)
     positions = _positions_of(built, into, drive.count)
     monitor.report(0.9, _CARRYING)

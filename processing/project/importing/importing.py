@@ -187,7 +187,7 @@ class _Import:
             _shared_sources(recordings),
             _scanner_positions(self._files),
             identity=(*checksums, self._request.labels, self._request.crs, *self._request.columns),
-            waveforms=_readable_waveforms(self._files),
+            waveforms=_waveforms_of(self._files),
         )
         return self._build_all(recordings, plan, taken)
 
@@ -365,10 +365,10 @@ def _is_adjusted_standard(files: tuple[PointFileInfo, ...]) -> bool | None:
     return said.pop() if len(said) == 1 else None
 
 
-def _readable_waveforms(files: tuple[PointFileInfo, ...]) -> dict[int, DeliveredWaveforms]:
-    """By number of the file."""
+def _waveforms_of(files: tuple[PointFileInfo, ...]) -> dict[int, DeliveredWaveforms]:
+    """By number of the file, of those whose points name packets."""
     named = {number: info.waveforms for number, info in enumerate(files)}
-    return {n: one for n, one in named.items() if one is not None and one.is_readable}
+    return {number: one for number, one in named.items() if one is not None}
 
 
 def _shared_sources(recordings: Sequence[Recording]) -> frozenset[int]:

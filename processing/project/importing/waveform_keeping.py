@@ -40,7 +40,7 @@ def keep_waveforms(
 ) -> None:
     """Take over the packets that a recording's points name, and make the index of its pulses.
 
-    May be done again; what a killed import copied whole stays.
+    Of files whose waveforms can't be read the reason is kept. May be done again; what a killed import copied whole stays.
 
     Parameters
     ----------
@@ -53,6 +53,15 @@ def keep_waveforms(
     ------
     UserError, Cancelled
     """
+    unread = [
+        PacketFile(number=number, delivered=str(one.path), reason=one.reason)
+        for number, one in waveforms.items()
+        if number in recording.sources and not one.is_readable
+    ]
+    if PACKET not in recording.names:
+        if unread:
+            write_packet_files(recording.folder, unread)
+        return
     monitor.report(1.0, _COPYING.filled(name=name))
     used = _used_descriptors(recording)
     for number in used:
@@ -69,7 +78,7 @@ def keep_waveforms(
         )
         for number in sorted(used)
     ]
-    write_packet_files(recording.folder, files)
+    write_packet_files(recording.folder, [*files, *unread])
 
 
 def _used_descriptors(recording: Recording) -> dict[int, set[int]]:

@@ -119,6 +119,8 @@ class PacketFile:
     sign_by : str
         What told it: ``returns`` (later returns of a pulse lie farther on), ``down`` (later
         samples lie lower, where no pulse has two returns), or empty where nothing did.
+    reason : Text
+        Why its points have no waveforms, to follow "no waveforms: "; empty where they have.
     """
 
     number: int
@@ -126,6 +128,7 @@ class PacketFile:
     descriptors: Mapping[int, WaveformDescriptor] = field(default_factory=dict)
     towards_sensor: bool = True
     sign_by: str = ""
+    reason: Text = Text("", "")
 
 
 def packet_key(file: int, byte: int) -> int:

@@ -81,6 +81,8 @@ def link_packets(source: Path, into: Path) -> None:
     NoSpace, MissingInput
     """
     for file in read_packet_files(source):
+        if file.reason.en:
+            continue
         link_file(packets_path(source, file.number), packets_path(into, file.number))
     if (source / FILE_NAME).is_file():
         with report_as_user_error(into):
@@ -104,4 +106,5 @@ def _file_from(values: Mapping[str, Any]) -> PacketFile:
     descriptors = {
         int(number): WaveformDescriptor(**one) for number, one in values["descriptors"].items()
     }
-    return PacketFile(**{**values, "descriptors": descriptors})
+    reason = Text(**values["reason"])
+    return PacketFile(**{**values, "descriptors": descriptors, "reason": reason})

@@ -190,12 +190,12 @@ def _beside(header: LasHeader, *, is_packed: bool) -> DeliveredWaveforms:
     wanted = _PACKED_ENDING if is_packed else _PLAIN_ENDING
     path = _file_beside(header.path, wanted)
     if path is None:
-        name = header.path.with_suffix(wanted).name
+        missing = header.path.with_suffix(wanted)
         return DeliveredWaveforms(
-            path=header.path.with_suffix(wanted),
+            path=missing,
             reason=Text(
-                f"the file of its waveforms, {name}, is not beside it",
-                f"波形ファイル {name} が同じフォルダにありません",
+                f"{missing.name}, the file of its waveforms, is not beside it",
+                f"波形ファイル {missing.name} が同じフォルダにありません",
             ),
         )
     if is_packed:
