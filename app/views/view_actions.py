@@ -9,6 +9,7 @@ from app.window.action import Action
 from app.window.window_parts import WindowParts
 from processing.core.text import Language, Text
 from processing.image.attributes.attributes import ATTRIBUTES
+from processing.image.attributes.waveform_values import WAVEFORM_ATTRIBUTES
 from processing.recording.columns.point_features import POINT_FEATURES
 from processing.recording.kinds import ImageKind
 
@@ -219,6 +220,7 @@ def _looks(parts: WindowParts) -> tuple[Action, ...]:
         text = Text("Kind of image: {title}", "画像の種類: {title}").filled(title=kind.title)
         return Action(f"image-{kind.value}", text, show, needs_project=True)
 
-    # Features are chosen above the image, where those are listed that a drive has.
-    shown = (name for name in ATTRIBUTES if name not in POINT_FEATURES)
+    # Features and waveforms are chosen above the image, where those are listed that a drive has.
+    listed_there = {**POINT_FEATURES, **WAVEFORM_ATTRIBUTES}
+    shown = (name for name in ATTRIBUTES if name not in listed_there)
     return (*map(shown_as, shown), *map(image_as, ImageKind))

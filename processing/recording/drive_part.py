@@ -19,7 +19,6 @@ from processing.core.errors import report_as_user_error
 from processing.core.monitor import Monitor
 from processing.recording.columns.columns import COLUMN_TYPES, ColumnWriter
 from processing.recording.columns.ordering import read_chunk
-from processing.recording.columns.varying_columns import VaryingWriter, varying_names
 from processing.recording.drive import TRAJECTORY_FILE, Drive
 from processing.recording.drive_info import write_drive_info
 from processing.recording.revolutions.revolutions_file import write_revolutions
@@ -62,8 +61,7 @@ def write_part(
         into.mkdir(parents=True)
     names = [name for name in COLUMN_TYPES if name != "xyz" and drive.columns.has(name)]
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
-    varying = varying_names(drive.folder)
-    with ColumnWriter(into) as writer, VaryingWriter(into) as varying_writer:
+    with ColumnWriter(into) as writer:
         for start in range(0, max(drive.count, 1), _AT_ONCE):
             monitor.check()
             stop = min(start + _AT_ONCE, drive.count)
@@ -72,9 +70,6 @@ def write_part(
             read["xyz"] = drive.coordinates.chunk(start, stop)[wanted]
             more = {name: values[wanted] for name, values in beside(start, stop).items()}
             writer.append({**read, **more})
-            for name in varying:
-                for piece in drive.columns.varying(name).pieces(start + np.flatnonzero(wanted)):
-                    varying_writer.append({name: piece})
             if len(read["xyz"]):
                 low = np.minimum(low, read["xyz"].min(axis=0))
                 high = np.maximum(high, read["xyz"].max(axis=0))

@@ -27,6 +27,12 @@ from processing.image.attributes.colour_maps import (
     stretch_values,
 )
 from processing.image.attributes.drive_sample import value_at_percent
+from processing.image.attributes.waveform_values import (
+    BACKSCATTER,
+    WAVEFORM_ATTRIBUTES,
+    waveform_ends,
+    waveform_values,
+)
 from processing.image.images_of_drives import image_of
 from processing.image.neighbourhoods.normals import RowLayout, SurfaceShapes, surface_shapes
 from processing.recording.camera_images.colouring import colours_from_images
@@ -35,6 +41,7 @@ from processing.recording.columns.error_map import ERROR_MAP
 from processing.recording.columns.ordering import read_chunk
 from processing.recording.columns.point_features import POINT_FEATURES
 from processing.recording.kinds import ImageKind
+from processing.recording.waveform_packets.descriptors import WAVE_COLUMNS
 
 if TYPE_CHECKING:  # Drive makes its images, so importing it here would be a circle
     from processing.recording.drive import Drive
@@ -73,6 +80,15 @@ class Attribute:
 _NO_FEATURE = Text(
     "Run the tool “Features of points” on this drive first.",
     "先にこの走行データで「点群特徴量」を実行してください。",
+)
+
+_NO_WAVEFORMS = Text(
+    "Import point files with waveforms (LAS point formats 4, 5, 9 and 10).",
+    "波形付きの点群ファイル（LAS点フォーマット4・5・9・10）をインポートしてください。",
+)
+_NO_RANGE = Text(
+    "Add the flight's trajectory: the range to each point is needed.",
+    "各点までの距離が必要です。航跡（軌跡）ファイルを追加してください。",
 )
 
 ATTRIBUTES: Mapping[str, Attribute] = {
@@ -120,9 +136,13 @@ ATTRIBUTES: Mapping[str, Attribute] = {
             Attribute(column.id, column.title, (column.id,), _NO_FEATURE)
             for column in POINT_FEATURES.values()
         ),
+        *(
+            Attribute(one.id, one.title, WAVE_COLUMNS, _NO_WAVEFORMS)
+            for one in WAVEFORM_ATTRIBUTES.values()
+        ),
     )
 }
-"""By id, those of the thesis first, in its order; then each feature of points."""
+"""By id, those of the thesis first, in its order; then features of points, then waveforms."""
 
 SHOWS_LABELS = frozenset({"label", "class", "judged"})
 """Attributes that show what was painted, or found by a tool that classifies."""
@@ -141,7 +161,7 @@ def colours(
         A key of `ATTRIBUTES`.
     low_percent, high_percent : float
         Percentiles of the drive at the dark and the bright end; of intensity, which labels lie on
-        too, of height and of features only.
+        too, of height, of features and of waveforms only.
 
     Returns
     -------
@@ -160,7 +180,7 @@ def colours(
     shown = np.empty((flat.size, 3), np.uint8)
     shown[~is_filled] = EMPTY_COLOUR
     filled = flat[is_filled]
-    if attribute in POINT_FEATURES:
+    if attribute in POINT_FEATURES or attribute in WAVEFORM_ATTRIBUTES:
         shown[is_filled] = _feature(drive, attribute, filled, (low_percent, high_percent))
     elif attribute in _STRETCHED:
         shown[is_filled] = _STRETCHED[attribute](drive, filled, low_percent, high_percent)
@@ -250,6 +270,8 @@ def _lacks(drive: Drive, attribute: Attribute) -> bool:
     if attribute.id == "color":
         has_colours = drive.columns.has("color") or drive.columns.has("seen_color")
         return not has_colours and not drive.images
+    if attribute.id == BACKSCATTER and drive.trajectory is None:
+        return True
     return not all(drive.columns.has(name) for name in attribute.needs)
 
 
@@ -257,6 +279,8 @@ def _check(drive: Drive, attribute: Attribute) -> None:
     if not _lacks(drive, attribute):
         return
     remedy = attribute.missing
+    if attribute.id == BACKSCATTER and drive.columns.has(WAVE_COLUMNS[0]):
+        remedy = _NO_RANGE
     if attribute.id == "color":
         remedy = Text(
             "Import camera images with this drive, or points that have colours.",
@@ -290,8 +314,12 @@ def _height(drive: Drive, points: _Points, low: float, high: float) -> Colours:
 
 def _feature(drive: Drive, name: str, points: _Points, percents: tuple[float, float]) -> Colours:
     """From low to high as heights are; grey where it isn't known."""
-    ends = [value_at_percent(drive.folder, name, drive.count, None, one) for one in percents]
-    values = np.asarray(drive.columns[name][points], np.float64)
+    if name in WAVEFORM_ATTRIBUTES:
+        ends = list(waveform_ends(drive, name, percents))
+        values = waveform_values(drive, name, points)
+    else:
+        ends = [value_at_percent(drive.folder, name, drive.count, None, one) for one in percents]
+        values = np.asarray(drive.columns[name][points], np.float64)
     is_known = np.isfinite(values)
     shown = np.array(height_ramp()[stretch_values(np.where(is_known, values, ends[0]), *ends)])
     shown[~is_known] = UNKNOWN_COLOUR

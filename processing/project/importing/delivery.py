@@ -17,6 +17,8 @@ from processing.formats.points.point_files import PointFileInfo, read_info, read
 from processing.map.reference_system import reference_system
 from processing.project.importing.file_recorder import empty_points
 from processing.recording.vehicle_path.clock import are_within_days
+from processing.recording.waveform_packets.descriptors import DIRECTION
+from processing.recording.waveform_packets.ray_signs import is_from_air
 
 _SAMPLE_POINTS = 2_000
 _TRANSFORM = Text(
@@ -140,7 +142,9 @@ def _scanner_column(sample: dict[str, NDArray[np.generic]]) -> str:
     """
     scanners = sample.get("scanner")
     marks = sample.get("user_data")
-    if scanners is not None and _are_flight_lines(scanners, sample.get("time")):
+    rays = sample.get(DIRECTION)
+    first_line = _FIRST_FLIGHT_LINE if rays is None or not is_from_air(rays) else 0
+    if scanners is not None and _are_flight_lines(scanners, sample.get("time"), first_line):
         return ""
     if scanners is None or marks is None or np.unique(scanners).size > 1:
         return "scanner"
@@ -149,10 +153,12 @@ def _scanner_column(sample: dict[str, NDArray[np.generic]]) -> str:
     return "user_data" if is_scanner_number else "scanner"
 
 
-def _are_flight_lines(scanners: NDArray[np.generic], times: NDArray[np.generic] | None) -> bool:
+def _are_flight_lines(
+    scanners: NDArray[np.generic], times: NDArray[np.generic] | None, first_line: int
+) -> bool:
     """Whether large source ids follow one another: heads of a vehicle count from 1 and go along."""
     numbers = np.unique(scanners)
-    if times is None or numbers.size < 2 or numbers[0] < _FIRST_FLIGHT_LINE:
+    if times is None or numbers.size < 2 or numbers[0] < first_line:
         return False
     passes = [times[scanners == number] for number in numbers]
     if not all(np.isfinite(one).all() for one in passes):

@@ -38,7 +38,6 @@ from processing.recording.columns.ordering import (
     sort_points,
 )
 from processing.recording.columns.replacing import new_columns, replace_columns
-from processing.recording.columns.varying_columns import varying_bytes
 from processing.recording.drive import SCAN, Drive, write_trajectory
 from processing.recording.drive_info import BY_ORDER, DriveInfo, SourceFile, write_drive_info
 from processing.recording.measurement_order.rows_by_order import NoOrder, find_rows_by_order
@@ -50,6 +49,8 @@ from processing.recording.revolutions.revolutions import (
 )
 from processing.recording.revolutions.revolutions_file import write_revolutions
 from processing.recording.vehicle_path.trajectory import Trajectory
+from processing.recording.waveform_packets.descriptors import DIRECTION
+from processing.recording.waveform_packets.ray_signs import is_from_air
 from processing.recording.without_revolutions.scan_grid import (
     COLUMN,
     ScanGrid,
@@ -72,6 +73,10 @@ _NEARLY_EMPTY = Text(
     "The points would fill less than one pixel in fifty of rows, as a piece that was cut out or a "
     "narrow strip from the air does; the top view is shown.",
     "切り出した点群や航空計測などで、行の画像では画素の50分の1も埋まらないため、上面画像で表示します。",
+)
+_FROM_AIR = Text(
+    "The rays of its waveforms come down from the air: a flight is shown from above.",
+    "波形の照射方向から航空計測と判断したため、上面画像で表示します。",
 )
 _GRID = Text("Reading the grid of the scan {name}", "{name} のスキャン格子を確認中")
 _CELLS = Text("Ordering {name} for the top view", "{name} を上面画像用に並べ替え中")
@@ -124,8 +129,7 @@ def build_drive(
     2. The trajectory is chosen and the points' clock set to its; origins per point make their own.
     3. A standing scanner's grid is taken as it is, else revolutions and pulses are found, by times
        or by the order of the points; where there are none, points are ordered for the top view.
-    4. Packets of waveforms are taken over.
-    5. The facts are written.
+    4. Packets of waveforms are taken over, and the facts are written.
 
     Each step may be begun again; what can't be done to its own result is noted.
 
@@ -150,8 +154,7 @@ def build_drive(
     recording.has_source_columns = steps.known(SOURCES) is not None
     if recording.needs_source_columns:
         _names_to_sort(recording, steps)
-    rows_known = steps.known(_ROWS)
-    if rows_known is None:
+    if (rows_known := steps.known(_ROWS)) is None:
         if recording.has_times and not recording.is_in_time_order:
             _restore_time_order(recording, steps, name, PartMonitor(monitor, 0.0, 0.4))
         trajectory, offset = _trajectory_of(recording, plan, steps, name)
@@ -168,8 +171,7 @@ def build_drive(
         monitor.report(0.7, _CELLS.filled(name=name))
         _order_for_top_view(recording, found.view, steps, PartMonitor(monitor, 0.7, 1.0))
     remove_grid_column(recording.folder)
-    if plan.waveforms:
-        keep_waveforms(recording, plan.waveforms, name, monitor)
+    keep_waveforms(recording, plan.waveforms, name, monitor)
     return _finish_folder(recording, plan, found, steps, taken)
 
 
@@ -282,7 +284,7 @@ def _sort(recording: Recording, steps: BuildSteps, keys: SortKeys, monitor: Moni
     names = _names_to_sort(recording, steps)
     if keys is _by_pulse:
         names = (*names, "pulse")
-    room = 2 * recording.count * bytes_of(names) + varying_bytes(recording.folder)
+    room = 2 * recording.count * bytes_of(names)
     refuse_small_disk(recording.folder, room)
     sort_points(recording.folder, names, recording.count, keys, monitor)
 
@@ -366,6 +368,11 @@ def _rows_of(
     monitor: Monitor,
 ) -> _FoundRows:
     folder, count = recording.folder, recording.count
+    if DIRECTION in recording.names and is_from_air(
+        sample_column(folder, DIRECTION, count, max(1, count // _SAMPLE_POINTS))
+    ):
+        view = _top_view_of(recording)
+        return _FoundRows(_FROM_AIR, "top-view", view.cells_per_row, view)
     contradiction: Text | None = None
     if COLUMN in recording.names and trajectory is None:
         monitor.report(0.0, _GRID.filled(name=name))

@@ -35,12 +35,6 @@ from processing.recording.columns.columns import column_path
 from processing.recording.columns.ordering import chunk_ranges, read_chunk, sort_points
 from processing.recording.columns.quantisation import Quantisation
 from processing.recording.columns.source_order import FILE, INDEX
-from processing.recording.columns.varying_columns import (
-    starts_path,
-    values_path,
-    varying_bytes,
-    varying_names,
-)
 from processing.recording.drive import Drive
 from processing.recording.drive_info import read_drive_info, write_drive_info
 from processing.recording.waveform_packets.descriptors import PACKET, WAVE_COLUMNS
@@ -160,7 +154,7 @@ def _complete_drive_folder(
     drive: Drive, trajectories: tuple[NamedTrajectory, ...], into: Path, monitor: Monitor
 ) -> CompletedDrive:
     folder, names = into / "0", tuple(name for name in _DELIVERED if drive.columns.has(name))
-    room = 3 * drive.count * bytes_of((*names, POSITION)) + 2 * varying_bytes(drive.folder)
+    room = 3 * drive.count * bytes_of((*names, POSITION))
     refuse_small_disk(drive.folder, room)
     with report_as_user_error(folder):
         folder.mkdir(parents=True)
@@ -198,11 +192,6 @@ def _copy(drive: Drive, folder: Path, names: tuple[str, ...], monitor: Monitor) 
         monitor.check()
         with report_as_user_error(folder):
             shutil.copyfile(column_path(drive.folder, name), column_path(folder, name))
-    for name in varying_names(drive.folder):
-        for path_in in (values_path, starts_path):
-            monitor.check()
-            with report_as_user_error(folder):
-                shutil.copyfile(path_in(drive.folder, name), path_in(folder, name))
     with report_as_user_error(folder), column_path(folder, POSITION).open("wb") as file:
         for start, stop in chunk_ranges(drive.count):
             file.write(np.arange(start, stop, dtype="<i8").data)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -20,13 +19,6 @@ from processing.recording.columns.offset_columns import OffsetColumnWriter
 from processing.recording.columns.ordering import chunk_ranges, read_chunk
 from processing.recording.columns.quantisation import Quantisation
 from processing.recording.columns.source_order import INDEX
-from processing.recording.columns.varying_columns import (
-    VARYING_TYPES,
-    VaryingColumn,
-    VaryingValues,
-    VaryingWriter,
-    varying_names,
-)
 
 _POINTS = 1_000_000
 
@@ -53,7 +45,6 @@ def join_parts(
         if number >= joined:
             folder = part_folder(job, part.at)
             _copy(folder, part.stream, OffsetColumnWriter(recording.folder, first), move, monitor)
-            _append_varying(folder, recording.folder, (first, part.stream.count), monitor)
             journal.note(name, {"parts": number + 1}, (recording.folder,))
             journal.settle()
             remove_folder(folder)
@@ -86,32 +77,6 @@ def _copy(
             to.write(start, columns if moved is None else {**columns, "xyz": moved})
     finally:
         to.close()
-
-
-def _append_varying(folder: Path, into: Path, points: tuple[int, int], monitor: Monitor) -> None:
-    """Append the values of a part; of a column that either lacks, its points have none.
-
-    Parameters
-    ----------
-    points : tuple of int
-        Those that are joined already, and those of the part.
-    """
-    first, count = points
-    here = varying_names(folder)
-    with VaryingWriter(into, first) as writer:
-        for name in dict.fromkeys((*varying_names(into), *here)):
-            if name in here:
-                pieces = VaryingColumn(folder, name, count).pieces(slice(0, count))
-            else:
-                pieces = _no_values(name, count)
-            for piece in pieces:
-                monitor.check()
-                writer.append({name: piece})
-
-
-def _no_values(name: str, count: int) -> Iterator[VaryingValues]:
-    for start, stop in chunk_ranges(count, _POINTS):
-        yield VaryingValues.nothing(stop - start, VARYING_TYPES[name])
 
 
 def _move_stream(stream: Stream, move: QuantisationShift) -> Stream:

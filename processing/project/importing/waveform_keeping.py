@@ -40,12 +40,13 @@ def keep_waveforms(
 ) -> None:
     """Take over the packets that a recording's points name, and make the index of its pulses.
 
-    Of files whose waveforms can't be read the reason is kept. May be done again; what a killed import copied whole stays.
+    Of files whose waveforms can't be read the reason is kept. May be done again; what a killed
+    import copied whole stays.
 
     Parameters
     ----------
     waveforms : mapping of int to DeliveredWaveforms
-        By number of the delivered file.
+        By number of the delivered file; a drive that is completed has its packets already.
     name : str
         The recording's.
 
@@ -58,7 +59,7 @@ def keep_waveforms(
         for number, one in waveforms.items()
         if number in recording.sources and not one.is_readable
     ]
-    if PACKET not in recording.names:
+    if PACKET not in recording.names or not waveforms:
         if unread:
             write_packet_files(recording.folder, unread)
         return

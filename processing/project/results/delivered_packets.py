@@ -5,9 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
+from processing.core.errors import InUse
+from processing.core.text import Text
 from processing.formats.points.waveform_output import PACKETS_ENDING, packets_beside
 from processing.recording.drive import Drive
 from processing.recording.waveform_packets.kept_packets import packets_path, read_packet_files
+
+_POINT_ENDINGS = (".las", ".laz")
 
 
 class DeliveredPackets:
@@ -53,3 +57,33 @@ class DeliveredPackets:
         if packets is None or (target.is_file() and target.samefile(packets)):
             return None
         return packets, target
+
+
+def refuse_others_packets(target: Path, output: Path) -> None:
+    """Refuse to replace packets that other points in the folder name.
+
+    Parameters
+    ----------
+    target : Path
+        Where packets are to be copied to.
+    output : Path
+        The file that gets the points.
+
+    Raises
+    ------
+    InUse
+    """
+    others = [output.with_suffix(one) for one in _POINT_ENDINGS]
+    of_other = next((one for one in others if one != output and one.is_file()), None)
+    if target.is_file() and of_other is not None:
+        raise InUse(
+            Text(
+                "The waveforms of the result would overwrite those of other points.",
+                "結果の波形ファイルが、別の点群の波形ファイルを上書きします。",
+            ),
+            Text(f"{target}, of {of_other.name}", f"{target}（{of_other.name} の波形）"),
+            Text(
+                "Choose another name or folder; nothing was written.",
+                "別の名前かフォルダを指定してください。何も書き込まれていません。",
+            ),
+        )

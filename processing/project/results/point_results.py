@@ -17,7 +17,7 @@ from processing.core.text import Text
 from processing.formats.points.las_results import MOVED, write_results
 from processing.formats.points.waveform_output import copy_packets
 from processing.project.results.delivered_order import DeliveredOrder, Values
-from processing.project.results.delivered_packets import DeliveredPackets
+from processing.project.results.delivered_packets import DeliveredPackets, refuse_others_packets
 from processing.project.sources.source_check import require_delivered
 from processing.recording.columns.ordering import read_chunk
 from processing.recording.drive import Drive
@@ -115,6 +115,7 @@ def write_point_results(
             write_results(source, temporary, found, part, columns=columns)
             beside = packets.to_copy(source, path)
             if beside is not None:
+                refuse_others_packets(beside[1], path)
                 target = whole.enter_context(
                     write_safely(beside[1], never=_delivered_files(drives))
                 )

@@ -20,7 +20,6 @@ from processing.core.owned_files import new_file
 from processing.core.text import Text
 from processing.recording.columns.mapped_pages import MappedPages
 from processing.recording.columns.point_features import POINT_FEATURES
-from processing.recording.columns.varying_columns import VaryingColumn, starts_path
 
 COLUMN_TYPES: Mapping[str, tuple[str, int]] = {
     "xyz": ("<i4", 3),
@@ -134,7 +133,6 @@ class Columns:
         self._maps: dict[str, NDArray[Any]] = {}
         self._files: dict[str, mmap.mmap] = {}
         self._held: dict[str, NDArray[Any]] = {}
-        self._varying: dict[str, VaryingColumn] = {}
         self._opening = threading.Lock()
 
     @property
@@ -169,23 +167,6 @@ class Columns:
             if name not in self._maps:
                 self._maps[name] = self._map_column(name)
             return self._maps[name]
-
-    def has_varying(self, name: str) -> bool:
-        """Whether the recording has this column of varying length."""
-        return name in self._varying or starts_path(self._folder, name).is_file()
-
-    def varying(self, name: str) -> VaryingColumn:
-        """A column whose points have as many values as they have.
-
-        Raises
-        ------
-        BadFile, MissingInput
-            As :class:`VaryingColumn` says.
-        """
-        with self._opening:
-            if name not in self._varying:
-                self._varying[name] = VaryingColumn(self._folder, name, self._count, self._pages)
-            return self._varying[name]
 
     def expect(self, name: str, starts: NDArray[np.int64], stops: NDArray[np.int64]) -> None:
         """Tell the system which points of a column are read next, so that the disk begins now.
@@ -276,7 +257,6 @@ class Columns:
         with self._opening:
             self._maps.pop(name, None)
             self._files.pop(name, None)
-            self._varying.pop(name, None)
             yield
 
     def _map_column(self, name: str) -> NDArray[Any]:

@@ -12,19 +12,10 @@ from numpy.typing import NDArray
 from processing.core.errors import report_as_user_error
 from processing.core.monitor import Monitor
 from processing.recording.columns.columns import COLUMN_TYPES, ColumnWriter, column_path
-from processing.recording.columns.mapped_pages import MappedPages
 from processing.recording.columns.replacing import new_columns, replace_columns
-from processing.recording.columns.varying_columns import (
-    VaryingColumn,
-    VaryingWriter,
-    varying_names,
-)
 
 POINTS_AT_ONCE = 8_000_000
 """Points sorted in memory at a time: some 0.6 GiB with all columns."""
-
-_BEFORE = "#before"
-"""Which point one was before, among the fields of a record."""
 
 SortKeys = Callable[[Mapping[str, NDArray[Any]]], tuple[NDArray[Any], NDArray[Any]]]
 """Gives the first and the second sort key of a stretch of points, each (n,)."""
@@ -35,14 +26,12 @@ def sort_points(
 ) -> None:
     """Order the columns of a folder by two keys; equal points keep their order.
 
-    Columns of varying length that the folder has are ordered too.
-
     Parameters
     ----------
     folder : Path
         A drive folder that is being made.
     names : tuple of str
-        Its columns of fixed length.
+        Its columns.
     keys : callable
         From columns to keys; the smallest first key comes first, NaN last.
 
@@ -57,18 +46,16 @@ def sort_points(
     -----
     1. The first key is sampled; its quantiles part the points into buckets that fit in memory.
     2. One pass deals the points to the buckets' files in their order.
-    3. Each bucket is sorted in memory and appended to the result. Values of varying length aren't
-       dealt: they are read where they lie, so many at a time.
+    3. Each bucket is sorted in memory and appended to the result.
     4. The result takes the columns' places; a kill leaves the old order or the new one, see
        :mod:`processing.recording.columns.replacing`. Sorted again, the points stay as they are.
     """
-    varying = _varying_of(folder, count)
     limits = _bucket_limits(folder, count, keys)
-    record = _record_of(names, with_place=bool(varying))
+    record = _record_of(names)
     new = new_columns(folder)
     buckets = [new / f"bucket{number}" for number in range(limits.size + 1)]
     _deal(folder, record, count, keys=keys, limits=limits, buckets=buckets, monitor=monitor)
-    with ColumnWriter(new) as writer, VaryingWriter(new) as varying_writer:
+    with ColumnWriter(new) as writer:
         for done, bucket in enumerate(buckets, 1):
             monitor.check()
             if bucket.exists():
@@ -78,10 +65,7 @@ def sort_points(
                 first, second = keys(_Fields(points))
                 order = np.lexsort((second, first))
                 writer.append(_Fields(points, order))
-                if varying:
-                    _append_varying(varying, points[_BEFORE][order], varying_writer, monitor)
             monitor.report(0.5 + 0.5 * done / len(buckets))
-    varying.clear()  # on Windows what is mapped can't be replaced
     replace_columns(folder)
 
 
@@ -143,37 +127,18 @@ class _Fields(Mapping[str, NDArray[Any]]):
         return np.ascontiguousarray(column) if self._order is None else column[self._order]
 
     def __iter__(self) -> Iterator[str]:
-        return (name for name in self._points.dtype.names or () if name != _BEFORE)
+        return iter(self._points.dtype.names or ())
 
     def __len__(self) -> int:
         return sum(1 for _ in self)
 
 
-def _varying_of(folder: Path, count: int) -> dict[str, VaryingColumn]:
-    pages = MappedPages()
-    return {name: VaryingColumn(folder, name, count, pages) for name in varying_names(folder)}
-
-
-def _append_varying(
-    varying: Mapping[str, VaryingColumn],
-    points: NDArray[np.int64],
-    to: VaryingWriter,
-    monitor: Monitor,
-) -> None:
-    for name, column in varying.items():
-        for piece in column.pieces(points):
-            monitor.check()
-            to.append({name: piece})
-
-
-def _record_of(names: tuple[str, ...], *, with_place: bool) -> np.dtype[Any]:
+def _record_of(names: tuple[str, ...]) -> np.dtype[Any]:
     """A point as it lies in a bucket's file."""
     fields: list[tuple[str, str] | tuple[str, str, tuple[int]]] = []
     for name in names:
         dtype, width = COLUMN_TYPES[name]
         fields.append((name, dtype) if width == 1 else (name, dtype, (width,)))
-    if with_place:
-        fields.append((_BEFORE, "<i8"))
     return np.dtype(fields)
 
 
@@ -209,7 +174,7 @@ def _deal(
         order = np.argsort(bucket.astype(np.uint16), kind="stable")
         points = np.empty(stop - start, record)
         for name in record.names or ():
-            points[name] = order + start if name == _BEFORE else columns[name][order]
+            points[name] = columns[name][order]
         ends = np.searchsorted(bucket[order], np.arange(len(buckets) + 1))
         for path, low, high in zip(buckets, ends[:-1], ends[1:], strict=True):
             if low < high:

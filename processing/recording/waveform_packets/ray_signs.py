@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from processing.core.arrays import Floats, Integers
 from processing.recording.columns.columns import Columns
@@ -18,6 +19,10 @@ BY_RETURNS, DOWNWARDS = "returns", "down"
 _MOST_PULSES = 100_000
 """A vote: some hundred would do, more cost nothing."""
 
+_STEEP = 0.7
+"""Sine of how steep a flight's rays are: less than 45 degrees from the plumb line, where scanners
+on vehicles and tripods turn through the horizon."""
+
 _CLEAR_SHARE = 0.9
 """So many must agree: rounding turns some of very near returns round, a wrong sign turns all."""
 
@@ -28,6 +33,22 @@ class RaySign:
 
     towards_sensor: bool
     told_by: str
+
+
+def is_from_air(directions: NDArray[np.float32]) -> bool:
+    """Whether rays are those of a flight: nearly all of them steep.
+
+    Parameters
+    ----------
+    directions : (n, 3) float32
+        Of either sign; zeros tell nothing.
+    """
+    lengths = np.linalg.norm(directions, axis=1)
+    known = lengths > 0
+    if not known.any():
+        return False
+    steep = np.abs(directions[known, 2]) > _STEEP * lengths[known]
+    return bool(steep.mean() > _CLEAR_SHARE)
 
 
 def ray_signs(folder: Path, count: int, quantisation: Quantisation) -> dict[int, RaySign]:

@@ -37,7 +37,7 @@ def test_every_point_format_gives_the_integers_that_were_written(
         np.testing.assert_array_equal(columns["time"], content.time)
         assert info.first_time == content.time[0]
     assert info.has_color == ("color" in columns)
-    assert info.has_waveforms == (point_format in (4, 5, 9, 10))
+    assert (info.waveforms is not None) == (point_format in (4, 5, 9, 10))
     factor = 0.3 if point_format >= 6 else 1.0
     angle = np.arange(500) % 100 if point_format >= 6 else np.arange(500) % 50 - 25
     np.testing.assert_allclose(columns["scan_angle_deg"], angle * factor, atol=1e-4)
