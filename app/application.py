@@ -62,6 +62,7 @@ from widgets.panels.review.review_panel import ReviewPanel
 from widgets.panels.table.feature_table import FeatureTable
 from widgets.panels.templates.template_panel import TemplatePanel
 from widgets.panels.volume.volume_panel import VolumePanel
+from widgets.panels.waveform.pulse_panel import PulsePanel
 from widgets.parts.drawing_bar import DrawingBar
 from widgets.parts.image_bar import ImageBar
 from widgets.parts.message_bar import MessageBar
@@ -223,6 +224,7 @@ def _make_parts(lasting: LastingParts, language: Language) -> WindowParts:
             document, shared, document.templates, document.run_in_background, language=language
         ),
         volume_panel=_make_volume_panel(shared, language),
+        pulse_panel=PulsePanel(document, shared, language),
         feature_table=FeatureTable(document, shared, language),
         jobs_panel=JobsPanel(language),
         window=lasting.window,

@@ -137,6 +137,12 @@ PANELS: tuple[Panel, ...] = (
         _right(narrow_behind="layers", is_hidden=True, front_px=((ViewLayout.EARTHWORK, 800),)),
     ),
     Panel(
+        "waveform",
+        Text("Waveform", "波形"),
+        lambda parts: parts.pulse_panel,
+        PanelPlace(_BELOW, 900, 230, is_hidden=True, key="Shift+F6"),
+    ),
+    Panel(
         "evaluation",
         Text("Evaluation", "評価"),
         _evaluation_pages,

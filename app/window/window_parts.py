@@ -32,6 +32,7 @@ from widgets.panels.review.review_panel import ReviewPanel
 from widgets.panels.table.feature_table import FeatureTable
 from widgets.panels.templates.template_panel import TemplatePanel
 from widgets.panels.volume.volume_panel import VolumePanel
+from widgets.panels.waveform.pulse_panel import PulsePanel
 from widgets.parts.drawing_bar import DrawingBar
 from widgets.parts.image_bar import ImageBar
 from widgets.parts.message_bar import MessageBar
@@ -97,6 +98,7 @@ class WindowParts:
     label_panel: LabelPanel
     template_panel: TemplatePanel
     volume_panel: VolumePanel
+    pulse_panel: PulsePanel
     feature_table: FeatureTable
     jobs_panel: JobsPanel
     window: MainWindow

@@ -143,7 +143,9 @@ def _scanner_column(sample: dict[str, NDArray[np.generic]]) -> str:
     scanners = sample.get("scanner")
     marks = sample.get("user_data")
     rays = sample.get(DIRECTION)
-    first_line = _FIRST_FLIGHT_LINE if rays is None or not is_from_air(rays) else 0
+    first_line = (
+        _FIRST_FLIGHT_LINE if rays is None or not is_from_air(rays.astype(np.float32)) else 0
+    )
     if scanners is not None and _are_flight_lines(scanners, sample.get("time"), first_line):
         return ""
     if scanners is None or marks is None or np.unique(scanners).size > 1:

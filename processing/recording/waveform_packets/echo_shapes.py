@@ -147,7 +147,7 @@ def _baseline_kernel(wave: NDArray[np.float32]) -> tuple[float, float]:
         kept = np.searchsorted(ordered[:count], base + _CLEAR_SIGMAS * sigma, side="right")
         if kept == count:
             break
-        count = kept
+        count = int(kept)
     return base, sigma
 
 
@@ -171,6 +171,6 @@ def _crossing_kernel(wave: NDArray[np.float32], peak: int, end: int, level: floa
     while at != end:
         if wave[at + step] <= level:
             share = (wave[at] - level) / max(wave[at] - wave[at + step], 1e-9)
-            return at + step * share
+            return float(at + step * share)
         at += step
     return float(end)

@@ -1,0 +1,1 @@
+"""The pulse behind a point."""

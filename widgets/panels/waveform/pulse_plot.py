@@ -1,0 +1,211 @@
+"""A waveform painted: counts and volts over time, and where along the ray that is."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from PySide6.QtCore import QPointF, QRectF, QSize, Qt
+from PySide6.QtGui import QColor, QFontMetrics, QPainter, QPaintEvent, QPalette, QPen, QPolygonF
+from PySide6.QtWidgets import QSizePolicy, QWidget
+from typing_extensions import override
+
+from processing.recording.shown_pulse import ShownPulse
+
+_NICE = (1.0, 2.0, 5.0)
+_ABOVE = 1.12
+"""The highest peak keeps clear of the returns' numbers over the field."""
+
+
+@dataclass(frozen=True)
+class PulseWords:
+    """What stands at the axes, in the user's language."""
+
+    counts: str
+    volts: str
+    time: str
+    metres: str
+    baseline: str
+
+
+@dataclass(frozen=True)
+class _Axes:
+    """How times and counts become pixels of a field."""
+
+    field: QRectF
+    time_ns: float
+    low: float
+    high: float
+
+    def x(self, time_ns: float) -> float:
+        return self.field.left() + self.field.width() * time_ns / self.time_ns
+
+    def y(self, counts: float) -> float:
+        share = (counts - self.low) / (self.high - self.low)
+        return self.field.bottom() - self.field.height() * share
+
+
+class PulsePlot(QWidget):
+    """Shows one pulse in the window's colours: samples, baseline, and a line at each return."""
+
+    def __init__(self, words: PulseWords, parent: QWidget) -> None:
+        super().__init__(parent)
+        self._words = words
+        self._pulse: ShownPulse | None = None
+        self.setMinimumSize(200, 140)
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
+
+    @property
+    def pulse(self) -> ShownPulse | None:
+        """What it shows."""
+        return self._pulse
+
+    def show_pulse(self, pulse: ShownPulse | None) -> None:
+        """Show a pulse; None: nothing."""
+        self._pulse = pulse
+        self.update()
+
+    def use_words(self, words: PulseWords) -> None:
+        """Write other words at the axes."""
+        self._words = words
+        self.update()
+
+    @override
+    def sizeHint(self) -> QSize:
+        return QSize(360, 240)
+
+    @override
+    def paintEvent(self, event: QPaintEvent) -> None:
+        with QPainter(self) as painter:
+            painter.fillRect(self.rect(), self.palette().color(QPalette.ColorRole.Base))
+            if self._pulse is None:
+                return
+            painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+            axes = self._axes(self._pulse, painter.fontMetrics())
+            if axes.field.width() < 40 or axes.field.height() < 40:
+                return
+            self._paint_scales(painter, self._pulse, axes)
+            self._paint_samples(painter, self._pulse, axes)
+            self._paint_returns(painter, self._pulse, axes)
+
+    def _axes(self, pulse: ShownPulse, metrics: QFontMetrics) -> _Axes:
+        line = metrics.height()
+        side = metrics.horizontalAdvance("00000") + line
+        field = QRectF(self.rect()).adjusted(side, 3.4 * line, -side, -2.4 * line)
+        low = min(0.0, float(pulse.counts.min()))
+        high = max(low + 1.0, float(pulse.counts.max()))
+        span = (pulse.counts.size - 1) * pulse.descriptor.interval_ns
+        return _Axes(field, max(span, 1e-3), low, low + (high - low) * _ABOVE)
+
+    def _paint_scales(self, painter: QPainter, pulse: ShownPulse, axes: _Axes) -> None:
+        line, field, words = painter.fontMetrics().height(), axes.field, self._words
+        faint = QPen(self._colour(QPalette.ColorRole.Midlight), 1)
+        ink = self._colour(QPalette.ColorRole.Text)
+        for value in nice_steps(axes.low, axes.high, field.height() / (2.2 * line)):
+            y = axes.y(value)
+            painter.setPen(faint)
+            painter.drawLine(QPointF(field.left(), y), QPointF(field.right(), y))
+            painter.setPen(ink)
+            left = QRectF(line, y - line / 2, field.left() - 1.3 * line, line)
+            painter.drawText(left, int(Qt.AlignmentFlag.AlignRight), f"{value:g}")
+        gain, offset = pulse.descriptor.gain, pulse.descriptor.offset
+        if gain != 0:
+            one, other = offset + gain * axes.low, offset + gain * axes.high
+            most = field.height() / (2.2 * line)
+            for volts in nice_steps(min(one, other), max(one, other), most):
+                y = axes.y((volts - offset) / gain)
+                right = QRectF(field.right() + 0.3 * line, y - line / 2, 4 * line, line)
+                painter.drawText(right, int(Qt.AlignmentFlag.AlignLeft), f"{volts:g}")
+            painter.drawLine(field.topRight(), field.bottomRight())
+            self._write_upright(painter, words.volts, self.width() - line)
+        self._write_upright(painter, words.counts, 0.0)
+        per_label = 5.0 * line
+        for time in nice_steps(0.0, axes.time_ns, field.width() / per_label):
+            x = axes.x(time)
+            painter.setPen(faint)
+            painter.drawLine(QPointF(x, field.top()), QPointF(x, field.bottom()))
+            painter.setPen(ink)
+            below = QRectF(x - per_label / 2, field.bottom() + 0.1 * line, per_label, line)
+            painter.drawText(below, int(Qt.AlignmentFlag.AlignHCenter), f"{time:g}")
+        below = QRectF(0, field.bottom() + 1.1 * line, self.width(), 1.2 * line)
+        painter.drawText(below, int(Qt.AlignmentFlag.AlignHCenter), words.time)
+        if np.isfinite(pulse.metres_in_ns):
+            self._paint_metres(painter, pulse, axes)
+
+    def _paint_metres(self, painter: QPainter, pulse: ShownPulse, axes: _Axes) -> None:
+        """Above the field: how far along the ray; from the sensor where its place is known."""
+        line, field, per_label = painter.fontMetrics().height(), axes.field, 6.0
+        first = pulse.range_m if np.isfinite(pulse.range_m) else 0.0
+        last = first + axes.time_ns * pulse.metres_in_ns
+        for metres in nice_steps(first, last, field.width() / (per_label * line)):
+            x = axes.x((metres - first) / pulse.metres_in_ns)
+            above = QRectF(x - per_label * line / 2, 1.15 * line, per_label * line, line)
+            painter.drawText(above, int(Qt.AlignmentFlag.AlignHCenter), f"{metres:g}")
+            painter.drawLine(QPointF(x, 2.15 * line), QPointF(x, 2.35 * line))
+        painter.drawLine(QPointF(field.left(), 2.35 * line), QPointF(field.right(), 2.35 * line))
+        top = QRectF(0, 0.1 * line, self.width(), line)
+        painter.drawText(top, int(Qt.AlignmentFlag.AlignHCenter), self._words.metres)
+
+    def _paint_samples(self, painter: QPainter, pulse: ShownPulse, axes: _Axes) -> None:
+        times = np.arange(pulse.counts.size) * pulse.descriptor.interval_ns
+        places = [
+            QPointF(axes.x(time), axes.y(count))
+            for time, count in zip(times.tolist(), pulse.counts.tolist(), strict=True)
+        ]
+        line = painter.fontMetrics().height()
+        base = float(pulse.shapes.baseline[pulse.chosen])
+        if np.isfinite(base):
+            y = axes.y(base)
+            painter.setPen(QPen(self._colour(QPalette.ColorRole.PlaceholderText), 1.2, _DASHES))
+            painter.drawLine(QPointF(axes.field.left(), y), QPointF(axes.field.right(), y))
+            words = self._words.baseline.format(value=f"{base:g}")
+            box = QRectF(axes.field.right() - 12 * line, y - 1.1 * line, 12 * line, line)
+            painter.drawText(box, int(Qt.AlignmentFlag.AlignRight), words)
+        painter.setPen(QPen(self._colour(QPalette.ColorRole.Link), 1.6))
+        painter.drawPolyline(QPolygonF(places))
+        painter.setBrush(self._colour(QPalette.ColorRole.Link))
+        radius = 1.8 if len(places) * 4 < axes.field.width() else 0.0
+        for place in places if radius else ():
+            painter.drawEllipse(place, radius, radius)
+
+    def _paint_returns(self, painter: QPainter, pulse: ShownPulse, axes: _Axes) -> None:
+        line = painter.fontMetrics().height()
+        for number, place in enumerate(pulse.places_ns.tolist()):
+            is_chosen = number == pulse.chosen
+            colour = self._colour(
+                QPalette.ColorRole.Highlight if is_chosen else QPalette.ColorRole.Text
+            )
+            painter.setPen(
+                QPen(colour, 2.0 if is_chosen else 1.0, _PLAIN if is_chosen else _DASHES)
+            )
+            x = axes.x(min(max(place, 0.0), axes.time_ns))
+            painter.drawLine(QPointF(x, axes.field.top()), QPointF(x, axes.field.bottom()))
+            box = QRectF(x - 2 * line, axes.field.top() - line, 4 * line, line)
+            painter.drawText(box, int(Qt.AlignmentFlag.AlignHCenter), str(number + 1))
+
+    def _write_upright(self, painter: QPainter, words: str, left: float) -> None:
+        line = painter.fontMetrics().height()
+        painter.save()
+        painter.translate(left, self.height() / 2)
+        painter.rotate(-90)
+        box = QRectF(-self.height() / 2, 0, self.height(), line)
+        painter.drawText(box, int(Qt.AlignmentFlag.AlignHCenter), words)
+        painter.restore()
+
+    def _colour(self, role: QPalette.ColorRole) -> QColor:
+        return self.palette().color(role)
+
+
+_DASHES, _PLAIN = Qt.PenStyle.DashLine, Qt.PenStyle.SolidLine
+
+
+def nice_steps(low: float, high: float, most: float) -> Sequence[float]:
+    """Round numbers between two ends, about so many at most."""
+    if not (np.isfinite([low, high]).all() and high > low):
+        return ()
+    raw = (high - low) / max(most, 1.0)
+    decade = 10.0 ** np.floor(np.log10(raw))
+    step = next((nice * decade for nice in _NICE if nice * decade >= raw), 10 * decade)
+    numbers = np.arange(np.ceil(low / step), np.floor(high / step) + 1) * step
+    return [round(number, 10) + 0.0 for number in numbers.tolist()]
