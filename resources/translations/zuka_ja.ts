@@ -1753,6 +1753,10 @@ kept</source>
         <translation>スキャンラインと判定</translation>
     </message>
     <message>
+        <source>Waveforms along their rays</source>
+        <translation>照射方向に沿った波形</translation>
+    </message>
+    <message>
         <source>Heights</source>
         <translation>高さ</translation>
     </message>

@@ -36,6 +36,7 @@ from widgets.section_view.picture.marks import (
 from widgets.section_view.picture.point_search import measured_point, points_within, shown_point
 from widgets.section_view.picture.projection import SectionProjection
 from widgets.section_view.picture.section_position import SectionPosition
+from widgets.section_view.picture.section_waveforms import paint_waveforms
 from widgets.section_view.picture.settings import SectionSettings
 from widgets.section_view.picture.titles import frame_words
 from widgets.section_view.view_menu import add_settings
@@ -214,6 +215,8 @@ class SectionPane(PlaneView):
             return
         selected = self._shared.selection.features
         self._ground.paint(painter, viewport, picture)
+        projection = SectionProjection(picture.request.cut)
+        paint_waveforms(painter, picture.waveforms, projection, viewport)
         self._diagnostics.paint(painter, picture, viewport)
         paint_marks(painter, marks, viewport, catalogue, selected)
         words = frame_words(

@@ -29,6 +29,12 @@ def add_settings(
     diagnostics.setCheckable(True)
     diagnostics.setChecked(settings.shows_diagnostics)
     diagnostics.toggled.connect(lambda is_on: choose(replace(settings, shows_diagnostics=is_on)))
+    waveforms = menu.addAction(
+        QCoreApplication.translate("SectionMenu", "Waveforms along their rays")
+    )
+    waveforms.setCheckable(True)
+    waveforms.setChecked(settings.shows_waveforms)
+    waveforms.toggled.connect(lambda is_on: choose(replace(settings, shows_waveforms=is_on)))
     heights = menu.addMenu(QCoreApplication.translate("SectionMenu", "Heights"))
     for factor in EXAGGERATIONS:
         entry = heights.addAction(f"{factor:g}×")

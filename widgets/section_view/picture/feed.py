@@ -20,6 +20,7 @@ from processing.section.points_in_cut import MOST_POINTS, SectionPoints, section
 from widgets.section_view.picture.found_ground import FoundGround
 from widgets.section_view.picture.section_diagnostics import FoundDiagnostics, diagnostics_at
 from widgets.section_view.picture.section_position import SectionPosition
+from widgets.section_view.picture.section_waveforms import SectionWaveform, waveforms_in
 from widgets.section_view.picture.settings import SectionSettings
 from widgets.shared.view_settings import PointStyle
 
@@ -80,6 +81,8 @@ class SectionPicture:
         In the plane of the cut, as the tool “ground” found it.
     diagnostics : FoundDiagnostics or None
         None where they aren't shown, or nothing is known as yet.
+    waveforms : tuple of SectionWaveform
+        Empty where they aren't shown.
     """
 
     request: SectionRequest
@@ -91,6 +94,7 @@ class SectionPicture:
     is_final: bool = True
     ground: tuple[SurfaceLine, ...] = ()
     diagnostics: FoundDiagnostics | None = None
+    waveforms: tuple[SectionWaveform, ...] = ()
 
 
 class SectionFeed(QObject):
@@ -160,6 +164,9 @@ class SectionFeed(QObject):
         if is_slow and self._is_outdated():
             return
         picture = replace(picture_of(request, parts, request.look.attribute), ground=ground)
+        if request.settings.shows_waveforms:
+            waveforms = waveforms_in(request.drives, parts, request.cut)
+            picture = replace(picture, waveforms=waveforms)
         if not request.settings.shows_diagnostics or request.standing.is_along:
             self._report(picture)
             return

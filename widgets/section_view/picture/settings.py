@@ -29,6 +29,8 @@ class SectionSettings:
         Whether the ground that the tool “ground” found is drawn.
     shows_diagnostics : bool
         Whether the normalised scanline is drawn, with the places that tools look at on it.
+    shows_waveforms : bool
+        Whether pulses with waveforms are drawn along their rays.
     """
 
     width_m: float = 1.0
@@ -39,8 +41,14 @@ class SectionSettings:
     is_by_distance: bool = False
     shows_ground: bool = True
     shows_diagnostics: bool = False
+    shows_waveforms: bool = False
 
     @property
-    def wanted(self) -> tuple[bool, bool, bool]:
-        """What has to be looked up: colours by distance, the found ground, what tools look at."""
-        return self.is_by_distance, self.shows_ground, self.shows_diagnostics
+    def wanted(self) -> tuple[bool, bool, bool, bool]:
+        """What is looked up: colours by distance, found ground, what tools look at, waveforms."""
+        return (
+            self.is_by_distance,
+            self.shows_ground,
+            self.shows_diagnostics,
+            self.shows_waveforms,
+        )
