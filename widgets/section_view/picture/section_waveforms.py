@@ -28,7 +28,9 @@ _CLEAR_SIGMAS = 3.0
 _MARGIN = 4
 """Samples shown before the first echo and behind the last one."""
 
-_PEAK_PX = 26.0
+_LEAST_PEAK_PX, _MOST_PEAK_PX = 6.0, 26.0
+_SPACINGS = 3.0
+"""The highest peak reaches over so many neighbours, so that curves stay apart on the screen."""
 _CURVE, _RAY = QColor("#f0e442"), QColor(240, 228, 66, 60)
 
 
@@ -102,14 +104,16 @@ def paint_waveforms(
     if highest <= 0:
         return
     painter.setRenderHint(QPainter.RenderHint.Antialiasing, on=True)
-    for one in waveforms:
-        spots = viewport.to_screen(projection.on_plane(one.section))
+    rays = [viewport.to_screen(projection.on_plane(one.section)) for one in waveforms]
+    spacing = float(np.ptp([spots[0, 0] for spots in rays])) / len(rays)
+    peak_px = min(max(_SPACINGS * spacing, _LEAST_PEAK_PX), _MOST_PEAK_PX)
+    for one, spots in zip(waveforms, rays, strict=True):
         way = spots[-1] - spots[0]
         length = float(np.hypot(*way))
         if length == 0:
             continue
         beside = np.array([way[1], -way[0]]) / length
-        curve = spots + one.above_base[:, None] / highest * _PEAK_PX * beside
+        curve = spots + one.above_base[:, None] / highest * peak_px * beside
         painter.setPen(QPen(_RAY, 1.0))
         painter.drawLine(QPointF(*spots[0].tolist()), QPointF(*spots[-1].tolist()))
         painter.setPen(QPen(_CURVE, 1.2))

@@ -26,6 +26,7 @@ from processing.image.attributes.colour_maps import (
     segment_colours,
     stretch_values,
 )
+from processing.image.attributes.waveform_values import WAVEFORM_ATTRIBUTES
 from processing.image.images_of_drives import image_of
 from processing.recording.camera_images.colouring import colours_from_images
 from processing.recording.camera_images.image_list import CameraImage, ImageList
@@ -58,7 +59,8 @@ def lightness(rgb: NDArray[np.uint8]) -> NDArray[np.float64]:
 
 def test_the_eight_attributes_of_the_contract_are_there_and_what_an_evaluation_shows() -> None:
     wanted = ["intensity", "height", "normal", "shape", "segment", "color", "label", "class"]
-    assert list(ATTRIBUTES) == [*wanted, "confidence", "judged", *POINT_FEATURES]
+    more = ["confidence", "judged", *POINT_FEATURES, *WAVEFORM_ATTRIBUTES]
+    assert list(ATTRIBUTES) == [*wanted, *more]
     for attribute in ATTRIBUTES.values():
         assert attribute.title.en
         assert attribute.title.ja
