@@ -88,7 +88,7 @@ _NO_WAVEFORMS = Text(
 )
 _NO_RANGE = Text(
     "Add the flight's trajectory: the range to each point is needed.",
-    "各点までの距離が必要です。航跡（軌跡）ファイルを追加してください。",
+    "各点までの距離が必要です。走行軌跡ファイルを追加してください。",
 )
 
 ATTRIBUTES: Mapping[str, Attribute] = {
