@@ -63,6 +63,9 @@ _LEAST_SIDE_M = 0.05
 _ROUNDS = 16
 """Steps of one length at most."""
 
+_BACK = (3, 2, 1, 0, 7, 6, 5, 4, 9, 8, 11, 10, 13, 12)
+"""Of each way in which a rectangle is changed, the one that undoes it."""
+
 STARTS = 9
 """Places from which an outline is moved, at most."""
 
@@ -98,13 +101,15 @@ def _chord(corners: Floats, u: float, v: float, a: float, b: float) -> tuple[flo
         half = math.sqrt(inside)
         return along - half, along + half
     enters, leaves = -1e9, 1e9
-    count = corners.shape[0]
-    for k in range(count):
-        following = k + 1 if k + 1 < count else 0
-        eu, ev = corners[following, 0] - corners[k, 0], corners[following, 1] - corners[k, 1]
+    last = corners.shape[0] - 1
+    from_u, from_v = corners[last, 0], corners[last, 1]
+    for k in range(corners.shape[0]):
+        to_u, to_v = corners[k, 0], corners[k, 1]
+        eu, ev = to_u - from_u, to_v - from_v
         # Left of each side is inside: side × (place − corner) ≥ 0.
-        height = eu * (v - corners[k, 1]) - ev * (u - corners[k, 0])
+        height = eu * (v - from_v) - ev * (u - from_u)
         slope = eu * b - ev * a
+        from_u, from_v = to_u, to_v
         if abs(slope) < 1e-12:
             if height < 0.0:
                 return 1.0, 0.0
@@ -178,25 +183,29 @@ def fit_kernel(
     tested = np.empty(3)
     for number in range(steps.shape[0]):
         step = steps[number]
-        for _ in range(_ROUNDS):
-            moved = False
-            for way in range(10 if step <= _FINE_STEP_M else 8):
-                tested[:] = pose
-                if way < 8:
-                    turn = way * math.pi / 4
-                    tested[0] += step * math.cos(turn)
-                    tested[1] += step * math.sin(turn)
-                else:
-                    tested[2] += _ROLL_PER_M * step * (1.0 if way == 8 else -1.0)
-                    if abs(tested[2]) > _MOST_ROLL_RAD:
-                        continue
-                cost = cost_of(corners, lines, tested, sigma_m, best)
-                if cost < best - 1e-9:
-                    best = cost
-                    pose[:] = tested
-                    moved = True
-            if not moved:
+        ways, failed, back = 10 if step <= _FINE_STEP_M else 8, 0, -1
+        for trial in range(_ROUNDS * ways):
+            # All ways fail from here, or lead back to where it cost more.
+            if failed == ways:
                 break
+            way = trial % ways
+            failed += 1
+            if way == back:
+                continue
+            tested[:] = pose
+            if way < 8:
+                turn = way * math.pi / 4
+                tested[0] += step * math.cos(turn)
+                tested[1] += step * math.sin(turn)
+            else:
+                tested[2] += _ROLL_PER_M * step * (1.0 if way == 8 else -1.0)
+                if abs(tested[2]) > _MOST_ROLL_RAD:
+                    continue
+            cost = cost_of(corners, lines, tested, sigma_m, best)
+            if cost < best - 1e-9:
+                best = cost
+                pose[:] = tested
+                failed, back = 0, (way + 4) % 8 if way < 8 else 17 - way
     return best
 
 
@@ -225,6 +234,7 @@ def search_kernel(
         Filled; infinite where a start is not needed, or far from the best ones.
     """
     pose = np.empty(3)
+    least = np.full(_MOVED + 1, math.inf)
     for number in range(outlines.shape[0]):
         costs[number, :] = math.inf
         if counts[number] == 0:
@@ -242,17 +252,30 @@ def search_kernel(
                 pose[1] = (box[0, 1] + box[1, 1]) / 2 + j * spare_v / 2
                 pose[2] = 0.0
                 poses[number, start] = pose
-                costs[number, start] = cost_of(corners, lines, pose, 2 * steps[0], math.inf)
+                cost = cost_of(corners, lines, pose, 2 * steps[0], least[_MOVED])
+                costs[number, start] = cost
+                _insert(cost, least)
                 start += 1
-    bound = np.sort(costs.ravel())[min(_MOVED, costs.size - 1)]
     for number in range(outlines.shape[0]):
         for start in range(STARTS):
-            if costs[number, start] > bound or math.isinf(costs[number, start]):
+            if costs[number, start] > least[_MOVED] or math.isinf(costs[number, start]):
                 costs[number, start] = math.inf
                 continue
             corners = outlines[number, : counts[number]]
             pose = poses[number, start]
             costs[number, start] = fit_kernel(corners, lines, steps, steps[0], pose)
+
+
+@kernel
+def _insert(value: float, rising: Floats) -> None:
+    """Put a value in its place among rising ones; the last of them falls out."""
+    place = len(rising) - 1
+    if value >= rising[place]:
+        return
+    while place > 0 and rising[place - 1] > value:
+        rising[place] = rising[place - 1]
+        place -= 1
+    rising[place] = value
 
 
 @kernel
@@ -280,29 +303,31 @@ def stretch_kernel(
     """
     corners = np.empty((4, 2))
     _set_corners(corners, sides[0], sides[1])
-    best = math.inf
+    best, sigma_m = math.inf, 0.0
     tested, other = np.empty(3), np.empty(2)
     for number in range(steps.shape[0]):
         step = steps[number]
-        sigma_m = max(SIGMA_M, step / 2)
-        _set_corners(corners, sides[0], sides[1])
-        best = cost_of(corners, lines, pose, sigma_m, math.inf)
-        for _ in range(_ROUNDS):
-            moved = False
-            for way in range(14 if step <= _FINE_STEP_M else 12):
-                tested[:] = pose
-                other[:] = sides
-                if not _changed(way, step, fixed, tested, other):
-                    continue
-                _set_corners(corners, other[0], other[1])
-                cost = cost_of(corners, lines, tested, sigma_m, best)
-                if cost < best - 1e-9:
-                    best = cost
-                    pose[:] = tested
-                    sides[:] = other
-                    moved = True
-            if not moved:
+        if number == 0 or max(SIGMA_M, step / 2) != sigma_m:
+            sigma_m = max(SIGMA_M, step / 2)
+            _set_corners(corners, sides[0], sides[1])
+            best = cost_of(corners, lines, pose, sigma_m, math.inf)
+        ways, failed, back = 14 if step <= _FINE_STEP_M else 12, 0, -1
+        for trial in range(_ROUNDS * ways):
+            if failed == ways:
                 break
+            way = trial % ways
+            failed += 1
+            tested[:] = pose
+            other[:] = sides
+            if way == back or not _changed(way, step, fixed, tested, other):
+                continue
+            _set_corners(corners, other[0], other[1])
+            cost = cost_of(corners, lines, tested, sigma_m, best)
+            if cost < best - 1e-9:
+                best = cost
+                pose[:] = tested
+                sides[:] = other
+                failed, back = 0, _BACK[way]
     return best
 
 

@@ -9,6 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from processing.core.arrays import Floats, Integers
+from processing.core.monitor import Monitor
 from processing.methods.road.signs.fit_kernels import (
     ALONG_U,
     ALONG_V,
@@ -157,7 +158,12 @@ class _Outlines(NamedTuple):
 
 
 def fit_plates(
-    lines: Floats, empty: Floats, shapes: Sequence[SignShape], *, with_rectangles: bool = True
+    lines: Floats,
+    empty: Floats,
+    shapes: Sequence[SignShape],
+    monitor: Monitor,
+    *,
+    with_rectangles: bool = True,
 ) -> Fit:
     """The plates that explain lines best.
 
@@ -179,7 +185,7 @@ def fit_plates(
     """
     outlines = _outlines(tuple(shapes), with_rectangles=with_rectangles)
     step = -(-len(lines) // _MOST_LINES)
-    return _solve(lines[::step], empty, outlines, ())
+    return _solve(lines[::step], empty, outlines, (), monitor)
 
 
 def _outlines(shapes: tuple[SignShape, ...], *, with_rectangles: bool) -> _Outlines:
@@ -197,9 +203,14 @@ def _outlines(shapes: tuple[SignShape, ...], *, with_rectangles: bool) -> _Outli
 
 
 def _solve(
-    lines: Floats, empty: Floats, outlines: _Outlines, above: tuple[FittedPlate, ...]
+    lines: Floats,
+    empty: Floats,
+    outlines: _Outlines,
+    above: tuple[FittedPlate, ...],
+    monitor: Monitor,
 ) -> Fit:
     """The plates beside those that were found already."""
+    monitor.check()
     unexplained = _unexplained(lines)
     best = Fit((), unexplained, unexplained)
     if len(above) == len(_BESIDE) or len(lines) < 2 or unexplained <= _PLATE_COST:
@@ -230,7 +241,7 @@ def _solve(
             continue
         step = max(1, len(one.blocked) // _MOST_EMPTY)
         nothing = np.concatenate([empty, one.blocked[::step]])
-        further = _solve(one.rest, nothing, outlines, (*above, one.plate))
+        further = _solve(one.rest, nothing, outlines, (*above, one.plate), monitor)
         if one.own + further.cost < best.cost:
             best = Fit((one.plate, *further.plates), one.own + further.cost, unexplained)
     return best

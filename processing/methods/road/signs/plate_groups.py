@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -116,11 +117,17 @@ def plate_groups(pieces: ScanPieces, reaches: Floats, monitor: Monitor) -> list[
         order = np.argsort(linked, kind="stable")
         cuts = np.flatnonzero(np.diff(linked[order])) + 1
         for members in np.split(mine[order], cuts):
+            monitor.check()
             if members.size >= _FEWEST_PIECES:
                 groups += _planes(pieces, members)
     search = _PieceSearch(pieces)
-    whole = [search.completed(one) for one in _joined(pieces, groups)]
-    return [one for one in whole if is_bright[one.pieces].any() or _may_be_dull(pieces, one)]
+    found: list[PlateGroup] = []
+    for joined in _joined(pieces, groups):
+        monitor.check()
+        one = search.completed(joined)
+        if is_bright[one.pieces].any() or _may_be_dull(pieces, one):
+            found.append(one)
+    return found
 
 
 def _planes(pieces: ScanPieces, members: Integers) -> list[PlateGroup]:
@@ -177,12 +184,19 @@ def group_of(values: Floats, members: Integers) -> PlateGroup | None:
         return None
     if (values[members, VIEW : VIEW + 3] @ normal * values[members, COUNT]).sum() > 0:
         normal = -normal
-    right = np.array([-normal[1], normal[0], 0.0])
-    right /= np.linalg.norm(right)
-    up = np.cross(normal, right)
+    right, up = _axes_of(normal)
     noise = float(np.sqrt(weights @ (about @ normal) ** 2))
     flat = about @ np.column_stack([right, up])
     return PlateGroup(members, middle, right, up, normal, noise, flat.min(axis=0), flat.max(axis=0))
+
+
+def _axes_of(normal: Floats) -> tuple[Floats, Floats]:
+    """(3,) each: level to the right and upwards in the plane that a normal stands on."""
+    east, north, rise = normal.tolist()
+    right = np.array([-north, east, 0.0])
+    right /= math.sqrt(right @ right)
+    x, y, _ = right.tolist()
+    return right, np.array([-rise * y, rise * x, east * y - north * x])
 
 
 def _joined(pieces: ScanPieces, groups: list[PlateGroup]) -> list[PlateGroup]:
@@ -238,15 +252,17 @@ class _PieceSearch:
         low, high = group.low - 0.1, group.high + 0.1
         reach = float(np.hypot(*(high - low)) / 2)
         about = group.xyz((low + high) / 2)
-        near = np.setdiff1d(
-            np.array(self._tree.query_ball_point(about, reach), np.int64), group.pieces
-        )
-        is_in = np.ones(near.size, np.bool_)
+        near = np.array(self._tree.query_ball_point(about, reach), np.int64)
         for side in (FROM, TO):
             xyz = values[near, side : side + 3]
-            flat = group.flat(xyz)
-            is_in &= np.abs((xyz - group.middle) @ group.normal) <= FLAT_M
-            is_in &= ((flat >= low) & (flat <= high)).all(axis=1)
+            near = near[np.abs((xyz - group.middle) @ group.normal) <= FLAT_M]
+        near = np.setdiff1d(near, group.pieces)
+        for side in (FROM, TO):
+            flat = group.flat(values[near, side : side + 3])
+            near = near[((flat >= low) & (flat <= high)).all(axis=1)]
+        if not near.size:
+            return group
+        is_in = np.ones(near.size, np.bool_)
         views = values[:, VIEW : VIEW + 3]
         of_near, of_group = views[near] @ group.normal, views[group.pieces] @ group.normal
         for sign in (-1.0, 1.0):

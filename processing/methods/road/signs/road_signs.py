@@ -126,7 +126,7 @@ def road_signs(
         if not shapes:
             return []
         lines = lines_of(pieces, group)
-        fit = fit_plates(lines, empty_lines(pieces, group, lines), shapes)
+        fit = fit_plates(lines, empty_lines(pieces, group, lines), shapes, monitor)
         return _signs(plates_of(pieces, group, lines, fit), pieces, (plan, ground), ways)
 
     found: list[RoadSign] = []

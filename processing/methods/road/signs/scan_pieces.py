@@ -198,7 +198,7 @@ def scan_pieces(
     drives: Sequence[Drive], plan: SparsePlan, ground: NDArray[np.float32], monitor: Monitor
 ) -> ScanPieces:
     """All straight pieces of scan lines above the ground that end in the free, or are bright."""
-    heads = [_Head(drive, plan, ground) for drive in drives]
+    heads = list(in_order(lambda drive: _Head(drive, plan, ground), drives))
     values: list[Floats] = []
     owners: list[Integers] = []
     rows: list[Integers] = []

@@ -68,7 +68,8 @@ def sign_diagnostics(asked: RequestedPosition, least_confidence: float) -> tuple
         if math.hypot(*(group.middle - place)[:2]) > _ABOUT_M:
             continue
         lines = lines_of(pieces, group)
-        fit = fit_plates(lines, empty_lines(pieces, group, lines), looked_for())
+        empty = empty_lines(pieces, group, lines)
+        fit = fit_plates(lines, empty, looked_for(), SilentMonitor())
         for plate in plates_of(pieces, group, lines, fit):
             ground = float(np.median(pieces.ground[plate.pieces]))
             chance = chance_of(facts_of(plate, ground, ways.at(plate.centre + plan.origin)))

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from processing.core.arrays import Floats
+from processing.core.monitor import SilentMonitor
 from processing.methods.road.signs.fit_kernels import (
     LINE,
     OPEN_END,
@@ -50,7 +51,7 @@ def lines_on(shape: SignShape, middle: tuple[float, float], hidden_m: float = np
 
 
 def fitted(lines: Floats) -> Fit:
-    return fit_plates(lines, np.empty((0, LINE)), standard_shapes())
+    return fit_plates(lines, np.empty((0, LINE)), standard_shapes(), SilentMonitor())
 
 
 @pytest.mark.parametrize(
