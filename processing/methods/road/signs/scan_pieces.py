@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.core.arrays import Floats, Integers
-from processing.core.monitor import Monitor
+from processing.core.monitor import Monitor, SilentMonitor
 from processing.core.worked_ahead import in_order
 from processing.methods.road.gutters.notches.head_position import head_position
 from processing.methods.road.objects.drive_chunks import DriveChunk, chunks_of
@@ -118,7 +118,13 @@ class ScanPieces:
 class _Head:
     """What is known of a drive's scanner: where it was, how fine it looks, what is bright to it."""
 
-    def __init__(self, drive: Drive, plan: SparsePlan, ground: NDArray[np.float32] | None) -> None:
+    def __init__(
+        self,
+        drive: Drive,
+        plan: SparsePlan,
+        ground: NDArray[np.float32] | None,
+        monitor: Monitor,
+    ) -> None:
         self._drive, self._plan = drive, plan
         self._ground = None if ground is None else ground.reshape(-1)
         self._lever = head_position(drive)
@@ -128,9 +134,11 @@ class _Head:
             _LOWEST_M, 2 * np.pi / self.pulses, _FEWEST_STRAIGHT_M, _SHORTEST_M, _LONGEST_M,
             drive.trajectory is not None, 10.0,
         )  # fmt: skip
-        samples = self._samples()
+        samples = self._samples(monitor)
+        monitor.check()
         straight = _STRAIGHT_NOISES * _noise([one.local for one, _ in samples])
         limit = min(max(straight, _FEWEST_STRAIGHT_M), _MOST_STRAIGHT_M)
+        monitor.check()
         brightness = self._brightness(samples)
         self.limits = self.limits._replace(straight_m=limit, brightness=brightness)
 
@@ -171,11 +179,12 @@ class _Head:
         turned = np.einsum("nij,j->ni", trajectory.rotations_at(times), self._lever)
         return np.asarray(trajectory.positions_at(times) + turned - self._plan.origin)
 
-    def _samples(self) -> list[tuple[ChunkPoints, NDArray[np.float32]]]:
+    def _samples(self, monitor: Monitor) -> list[tuple[ChunkPoints, NDArray[np.float32]]]:
         drive = self._drive
         step = max(1, drive.count // _SAMPLES)
         found = []
         for start in range(0, drive.count, step):
+            monitor.check()
             stop = min(start + min(step, _SAMPLE_POINTS), drive.count)
             local = drive.coordinates.chunk_about(start, stop, self._plan.origin)
             none = np.zeros(len(local), np.bool_)
@@ -198,7 +207,7 @@ def scan_pieces(
     drives: Sequence[Drive], plan: SparsePlan, ground: NDArray[np.float32], monitor: Monitor
 ) -> ScanPieces:
     """All straight pieces of scan lines above the ground that end in the free, or are bright."""
-    heads = list(in_order(lambda drive: _Head(drive, plan, ground), drives))
+    heads = list(in_order(lambda drive: _Head(drive, plan, ground, monitor), drives))
     values: list[Floats] = []
     owners: list[Integers] = []
     rows: list[Integers] = []
@@ -221,7 +230,7 @@ def scan_pieces(
 
 def pieces_between(drive: Drive, start: int, stop: int, plan: SparsePlan) -> ScanPieces:
     """Pieces of some points of a drive alone, with the road there for ground."""
-    head = _Head(drive, plan, None)
+    head = _Head(drive, plan, None, SilentMonitor())
     local = drive.coordinates.chunk_about(start, stop, plan.origin)
     is_noise = class_columns(drive.columns).noise_between(start, stop)
     found, pulses = _pieces_of(DriveChunk(0, start, local, is_noise), head)

@@ -16,10 +16,11 @@ from scipy.spatial import cKDTree
 
 from processing.core.arrays import Floats, Integers
 from processing.core.monitor import Monitor
+from processing.core.worked_ahead import in_order
 from processing.methods.road.objects.column_points import ColumnPoints
 from processing.methods.road.objects.columns import FoundColumns
 from processing.methods.road.objects.foot import foot_height, ground_seen
-from processing.methods.road.trees.drive_shifts import without_shifts
+from processing.methods.road.trees.drive_shifts import JoinedPoints, without_shifts
 from processing.methods.road.trees.rises import followed
 from processing.methods.road.trees.stems import HIGHEST_M, stems_of
 from processing.methods.road.trees.trunks import Trunk, trunk_of
@@ -72,19 +73,22 @@ def column_trunks(
     2. Columns whose stems leave the ground together and move apart are looked at as one.
     3. Where most columns say that drives lie apart, their points are laid onto each other.
     """
-    found: list[ColumnTrunk] = []
-    for number in range(len(columns)):
+
+    def of_column(number: int) -> ColumnTrunk | None:
         monitor.check()
         part = gathered.of(number)
         lines = np.arange(part.start, part.stop)
         ground = float(columns.ground[number])
-        one = _trunk_about(gathered, lines, (columns.middles[number], ground), most_diameter_m)
+        return _trunk_about(gathered, lines, (columns.middles[number], ground), most_diameter_m)
+
+    found: list[ColumnTrunk] = []
+    for number, one in enumerate(in_order(of_column, range(len(columns)))):
         if one is not None:
             found.append(one)
         monitor.report((number + 1) / len(columns))
-    whole = _clumps_joined(found, gathered, most_diameter_m)
+    whole = _clumps_joined(found, gathered, most_diameter_m, monitor)
     has_several = np.unique(gathered.drives).size > 1
-    return _drives_joined(whole, gathered, most_diameter_m) if has_several else whole
+    return _drives_joined(whole, gathered, most_diameter_m, monitor) if has_several else whole
 
 
 def _trunk_about(
@@ -108,7 +112,10 @@ def _trunk_in(about: Floats, most_diameter_m: float) -> Trunk | None:
 
 
 def _clumps_joined(
-    trunks: Sequence[ColumnTrunk], gathered: ColumnPoints, most_diameter_m: float
+    trunks: Sequence[ColumnTrunk],
+    gathered: ColumnPoints,
+    most_diameter_m: float,
+    monitor: Monitor,
 ) -> list[ColumnTrunk]:
     """Trunks that are stems of one tree as one trunk."""
     if len(trunks) < 2:
@@ -120,6 +127,7 @@ def _clumps_joined(
     clumps = connected_components(ties, directed=False)[1]
     joined: list[ColumnTrunk] = []
     for clump in np.unique(clumps):
+        monitor.check()
         members = [trunks[number] for number in np.flatnonzero(clumps == clump).tolist()]
         whole = _whole(members, gathered, most_diameter_m) if len(members) > 1 else None
         joined += members if whole is None else [whole]
@@ -151,16 +159,22 @@ def _whole(
 
 
 def _drives_joined(
-    trunks: Sequence[ColumnTrunk], gathered: ColumnPoints, most_diameter_m: float
+    trunks: Sequence[ColumnTrunk],
+    gathered: ColumnPoints,
+    most_diameter_m: float,
+    monitor: Monitor,
 ) -> list[ColumnTrunk]:
     """The trunks by points of all drives laid onto each other, where these lie apart.
 
     Bark that is not round looks like a shift too: drives lie apart where most columns that are
     near say so.
     """
-    moved = [
-        without_shifts(one.about, gathered.drives[one.lines], one.trunk.stems[0]) for one in trunks
-    ]
+
+    def laid_together(one: ColumnTrunk) -> JoinedPoints:
+        monitor.check()
+        return without_shifts(one.about, gathered.drives[one.lines], one.trunk.stems[0])
+
+    moved = list(in_order(laid_together, trunks))
     told = [number for number, one in enumerate(moved) if one.is_told]
     if not told:
         return list(trunks)
@@ -169,6 +183,7 @@ def _drives_joined(
     is_apart = np.array([moved[number].points is not None for number in told])
     joined: list[ColumnTrunk] = []
     for place, one, shifted in zip(places, trunks, moved, strict=True):
+        monitor.check()
         points = shifted.points
         near = np.asarray(tree.query(place, k=_NEIGHBOURS)[1])
         if points is not None and is_apart[near[near < len(told)]].mean() > _MOST:

@@ -96,8 +96,6 @@ class CrownCells:
         Whether that is a plane or a level or upright line: a wall, a sign, an arm, a wire, a pipe.
     is_bough : (n,) bool
         Whether it is a line that rises as boughs do.
-    slots : (2, m) int64
-        Keys of the table and the cell of each, −1: free.
     """
 
     places: Integers
@@ -108,7 +106,6 @@ class CrownCells:
     is_told: NDArray[np.bool_]
     is_flat: NDArray[np.bool_]
     is_bough: NDArray[np.bool_]
-    slots: Integers
 
     def __len__(self) -> int:
         return len(self.counts)
@@ -128,7 +125,16 @@ class CrownCells:
             Cells from one to the next at most: 1 where they touch.
         """
         parts = np.full(len(self), -1, np.int64)
-        components_kernel(self.places, is_open, self.slots, link, parts)
+        cells = np.flatnonzero(is_open)
+        keys = _keys_of(self.places[cells])
+        order = np.argsort(keys, kind="stable")
+        roots = np.empty(len(cells), np.int64)
+        components_kernel(keys[order], link, roots)
+        root_of = np.empty(len(cells), np.int64)
+        root_of[order] = roots
+        # Parts are numbered by the first of their cells.
+        _, first, part = np.unique(root_of, return_index=True, return_inverse=True)
+        parts[cells] = np.argsort(np.argsort(first))[part]
         return parts
 
 
@@ -175,10 +181,12 @@ def crown_cells(
                 sums, boxes, places = _wider(sums), _wider(boxes), _wider(places)
     sums, boxes, trunks, places = sums[:used], boxes[:used], places[:used, 3], places[:used, :3]
     is_told, is_flat, is_bough = np.zeros((3, used), np.bool_)
-    shapes_kernel(places, sums, slots, (is_told, is_flat, is_bough))
+    keys = _keys_of(places)
+    order = np.argsort(keys, kind="stable")
+    shapes_kernel(keys[order], order, sums, (is_told, is_flat, is_bough))
     counts = sums[:, 0].astype(np.int64)
     return CrownCells(
-        places, trunks, counts, boxes[:, :3], boxes[:, 3:], is_told, is_flat, is_bough, slots
+        places, trunks, counts, boxes[:, :3], boxes[:, 3:], is_told, is_flat, is_bough
     )
 
 
@@ -196,6 +204,12 @@ def _wider(rows: NDArray[_Number]) -> NDArray[_Number]:
 @kernel
 def _key(i: int, j: int, k: int) -> int:
     return (((i + _HALF) << _BITS) + (j + _HALF) << _BITS) + (k + _HALF)
+
+
+def _keys_of(places: Integers) -> Integers:
+    """(n,) int64: the keys of cells; of neighbours the one farther east, north or up is greater."""
+    i, j, k = (places + _HALF).T
+    return np.asarray((((i << _BITS) + j) << _BITS) + k)
 
 
 @kernel
@@ -297,25 +311,38 @@ def _is_on(east: float, north: float, up: float, trunk: int, stems: StandingStem
 
 @kernel
 def shapes_kernel(
-    places: Integers,
+    keys: Integers,
+    order: Integers,
     sums: NDArray[np.float32],
-    slots: Integers,
     told: tuple[NDArray[np.bool_], NDArray[np.bool_], NDArray[np.bool_]],
 ) -> None:
-    """Tell of each cell whether its shape is known, whether it is flat, whether a bough."""
+    """Tell of each cell whether its shape is known, whether it is flat, whether a bough.
+
+    Parameters
+    ----------
+    keys : (n,) int64
+        Of the cells, rising.
+    order : (n,) int64
+        The cell of each.
+    """
     is_told, is_flat, is_bough = told
     wide = np.zeros(_SUMS)
-    for cell in range(len(places)):
+    # Of each of nine upright rows, the first cell that is not below: keys rise, so these do.
+    firsts = np.zeros((3, 3), np.int64)
+    for at in range(len(keys)):
+        cell = order[at]
         wide[:] = 0.0
         for di in range(-1, 2):
             for dj in range(-1, 2):
-                for dk in range(-1, 2):
-                    key = _key(places[cell, 0] + di, places[cell, 1] + dj, places[cell, 2] + dk)
-                    slot = _slot_of(key, slots)
-                    if slots[0, slot] != _EMPTY_KEY:
-                        _add_moved(
-                            wide, sums[slots[1, slot]], di * CELL_M, dj * CELL_M, dk * CELL_M
-                        )
+                key = keys[at] + (di << 2 * _BITS) + (dj << _BITS)
+                near = firsts[di + 1, dj + 1]
+                while near < len(keys) and keys[near] < key - 1:
+                    near += 1
+                firsts[di + 1, dj + 1] = near
+                while near < len(keys) and keys[near] <= key + 1:
+                    up = (keys[near] - key) * CELL_M
+                    _add_moved(wide, sums[order[near]], di * CELL_M, dj * CELL_M, up)
+                    near += 1
         if wide[0] < _FEWEST:
             continue
         is_told[cell] = True
@@ -375,31 +402,41 @@ def _shape(sums: Floats) -> int:
 
 
 @kernel
-def components_kernel(
-    places: Integers, is_open: NDArray[np.bool_], slots: Integers, link: int, parts: Integers
-) -> None:
-    """Number the components of open cells."""
-    waiting = np.empty(len(places), np.int64)
-    count = 0
-    for first in range(len(places)):
-        if not is_open[first] or parts[first] >= 0:
-            continue
-        parts[first] = count
-        waiting[0] = first
-        left = 1
-        while left > 0:
-            left -= 1
-            cell = waiting[left]
-            for di in range(-link, link + 1):
-                for dj in range(-link, link + 1):
-                    for dk in range(-link, link + 1):
-                        key = _key(places[cell, 0] + di, places[cell, 1] + dj, places[cell, 2] + dk)
-                        slot = _slot_of(key, slots)
-                        if slots[0, slot] == _EMPTY_KEY:
-                            continue
-                        other = slots[1, slot]
-                        if is_open[other] and parts[other] < 0:
-                            parts[other] = count
-                            waiting[left] = other
-                            left += 1
-        count += 1
+def components_kernel(keys: Integers, link: int, roots: Integers) -> None:
+    """Find the components of cells.
+
+    Parameters
+    ----------
+    keys : (n,) int64
+        Of the cells, rising.
+    link : int
+        Cells from one to the next at most.
+    roots : (n,) int64
+        Written: one cell of its component for each, the same for all of them.
+    """
+    for at in range(len(keys)):
+        roots[at] = at
+    for di in range(link + 1):
+        # Pairs are met once: the other cell is the farther one.
+        for dj in range(-link if di > 0 else 0, link + 1):
+            low = -link if di > 0 or dj > 0 else 1
+            step = (di << 2 * _BITS) + (dj << _BITS)
+            first = 0
+            for at in range(len(keys)):
+                while first < len(keys) and keys[first] < keys[at] + step + low:
+                    first += 1
+                near = first
+                while near < len(keys) and keys[near] <= keys[at] + step + link:
+                    one, other = _root(roots, at), _root(roots, near)
+                    roots[max(one, other)] = min(one, other)
+                    near += 1
+    for at in range(len(keys)):
+        roots[at] = _root(roots, at)
+
+
+@kernel
+def _root(roots: Integers, cell: int) -> int:
+    while roots[cell] != cell:
+        roots[cell] = roots[roots[cell]]
+        cell = roots[cell]
+    return cell

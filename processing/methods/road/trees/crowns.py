@@ -19,6 +19,7 @@ from scipy.spatial import cKDTree
 
 from processing.core.arrays import Floats, Integers
 from processing.core.kernels import kernel
+from processing.core.monitor import Monitor
 from processing.methods.road.trees.crown_cells import CELL_M, LOW_M, CrownCells
 from processing.methods.road.trees.rises import StemRise
 from processing.methods.road.trees.trunks import Trunk
@@ -145,7 +146,8 @@ class CrownShares:
        the width that crowns of such trunks have.
     """
 
-    def __init__(self, cells: CrownCells, trunks: Sequence[UprightTrunk]) -> None:
+    def __init__(self, cells: CrownCells, trunks: Sequence[UprightTrunk], monitor: Monitor) -> None:
+        monitor.check()
         self._cells, self._trunks = cells, trunks
         self._middles = cells.middles
         self._tops = np.array([one.top for one in trunks]).reshape(-1, 2)
@@ -160,6 +162,7 @@ class CrownShares:
         self._parts = np.stack(
             [cells.components(is_open & ~cells.is_bough, 1), cells.components(is_open, _BARE_LINK)]
         )
+        monitor.check()
         plan = cKDTree(self._middles[:, :2])
         self._near = [
             np.array(plan.query_ball_point(top, 2 * _AXIS_M, return_sorted=True), np.int64)
@@ -171,7 +174,7 @@ class CrownShares:
         # Which of both links, and which part.
         self._part_of = np.array(touched, np.int64).reshape(-1, 2)
 
-    def crowns(self, is_asked: NDArray[np.bool_]) -> list[Crown]:
+    def crowns(self, is_asked: NDArray[np.bool_], monitor: Monitor) -> list[Crown]:
         """What each trunk carries if only those that are asked for share."""
         order = np.argsort(self._tops[:, 0], kind="stable")
         order = order[is_asked[order]]
@@ -186,10 +189,12 @@ class CrownShares:
         starts = np.searchsorted(shares[by_trunk], np.arange(len(self._trunks) + 1))
         of = [by_trunk[a:b] for a, b in itertools.pairwise(starts.tolist())]
         middles = [_PlanMoments.of(self._middles[cells, :2]) for cells in of]
-        return [
-            self._crown(number, of[number], self._rival(number, middles, is_asked))
-            for number in range(len(self._trunks))
-        ]
+        found = []
+        for number in range(len(self._trunks)):
+            monitor.check()
+            rival = self._rival(number, middles, is_asked)
+            found.append(self._crown(number, of[number], rival))
+        return found
 
     def _touched(self, number: int) -> tuple[int, int]:
         """By which link, and the largest part near the axis above the stem; −1: none."""

@@ -166,12 +166,12 @@ def _crowns(
     feet = np.array([one.foot[:2] for one in trunks])
     owners = nearest_columns(plan, feet, CROWN_M)
     cells = crown_cells(drives, plan, owners, _stems_of(trunks), monitor)
-    shares = CrownShares(cells, trunks)
+    shares = CrownShares(cells, trunks, monitor)
     is_asked = np.ones(len(trunks), np.bool_)
-    crowns = shares.crowns(is_asked)
+    crowns = shares.crowns(is_asked, monitor)
     chances = [chance_of(facts_of(*one)) for one in zip(trunks, crowns, strict=True)]
     is_asked &= np.array(chances) >= _LEAST_CHANCE
-    again = shares.crowns(is_asked)
+    again = shares.crowns(is_asked, monitor)
     return [
         (again[k], chance_of(facts_of(one, again[k]))) if is_asked[k] else (crowns[k], chances[k])
         for k, one in enumerate(trunks)
@@ -206,7 +206,10 @@ def _standing_trunks(
     about = column_trunks(
         columns, gathered, settings.most_diameter_m, PartMonitor(monitor, 0.5, 0.9)
     )
-    trunks = [_standing(gathered, one) for one in about]
+    trunks = []
+    for one in about:
+        monitor.check()
+        trunks.append(_standing(gathered, one))
     return [one for one in trunks if is_round(one.standing.trunk)]
 
 

@@ -104,3 +104,17 @@ def test_kernels_say_the_same_as_plain_functions() -> None:
     assert cost == pytest.approx(plain)
     assert pose == pytest.approx(other)
     assert np.hypot(*pose[:2]) < 0.01
+
+
+def test_a_stop_is_asked_before_every_set_of_plates_is_looked_for() -> None:
+    asked: list[int] = []
+
+    class Counting(SilentMonitor):
+        def check(self) -> None:
+            asked.append(1)
+
+    above = lines_on(shape_of("circle", 0.6), (0.0, 0.5))
+    below = lines_on(shape_of("square", 0.6), (0.0, -0.5))
+    lines = np.concatenate([above, below])
+    fit_plates(lines, np.empty((0, LINE)), standard_shapes(), Counting())
+    assert len(asked) > len(fitted(lines).plates)

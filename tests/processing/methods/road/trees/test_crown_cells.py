@@ -4,11 +4,19 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.sparse import coo_matrix
+from scipy.sparse.csgraph import connected_components
 
 from processing.core.arrays import Floats
 from processing.methods.road.objects.columns import _columns_of
 from processing.methods.road.objects.sparse_plan import TILE
-from processing.methods.road.trees.crown_cells import StandingStems, fill_kernel, shapes_kernel
+from processing.methods.road.trees.crown_cells import (
+    CrownCells,
+    StandingStems,
+    _keys_of,
+    fill_kernel,
+    shapes_kernel,
+)
 
 
 def shapes_of(points: Floats) -> tuple[float, float]:
@@ -24,7 +32,9 @@ def shapes_of(points: Floats) -> tuple[float, float]:
     assert end == len(points)
     assert sums[:used, 0].sum() == len(points)
     told = tuple(np.zeros((3, used), np.bool_))
-    shapes_kernel(places[:used, :3], sums[:used], slots, (told[0], told[1], told[2]))
+    keys = _keys_of(places[:used, :3])
+    order = np.argsort(keys)
+    shapes_kernel(keys[order], order, sums[:used], (told[0], told[1], told[2]))
     known = told[0]
     return float(told[1][known].mean()), float(told[2][known].mean())
 
@@ -53,6 +63,32 @@ def along(direction: Floats, step_m: float = 0.02) -> Floats:
 )
 def test_the_shape_of_cells_is_told(points: Floats, flat: float, bough: float) -> None:
     assert shapes_of(points) == pytest.approx((flat, bough), abs=0.1)
+
+
+def cells_at(places: list[tuple[int, int, int]]) -> CrownCells:
+    count = len(places)
+    none, flags = np.zeros((count, 3), np.float32), np.zeros(count, np.bool_)
+    at, ones = np.array(places, np.int64), np.ones(count, np.int64)
+    return CrownCells(at, ones, ones, none, none, flags, flags, flags)
+
+
+def test_cells_that_touch_hang_together_and_parts_count_from_the_first_cell() -> None:
+    cells = cells_at([(5, -3, 2), (0, 0, 0), (1, 1, 1), (1, 1, -1), (3, 1, 1), (0, -1, 0)])
+    is_open = np.ones(len(cells), np.bool_)
+    assert cells.components(is_open, 1).tolist() == [0, 1, 1, 1, 2, 1]
+    assert cells.components(is_open, 2).tolist() == [0, 1, 1, 1, 1, 1]
+    is_open[1] = False
+    assert cells.components(is_open, 1).tolist() == [0, -1, 1, 2, 3, 4]
+
+
+@pytest.mark.parametrize("link", [1, 2])
+def test_components_are_those_of_all_pairs_within_reach(link: int) -> None:
+    places = np.unique(np.random.default_rng(link).integers(-9, 9, (500, 3)), axis=0)
+    cells = cells_at(list(map(tuple, places.tolist())))
+    is_near = (np.abs(places[:, None] - places[None]) <= link).all(axis=2)
+    expected = connected_components(coo_matrix(is_near), directed=False)[1]
+    parts = cells.components(np.ones(len(cells), np.bool_), link)
+    assert parts.tolist() == expected.tolist()
 
 
 def test_a_thick_trunk_is_a_column_though_its_middle_is_empty() -> None:
