@@ -37,6 +37,10 @@ SAME_LEVEL_M = 1.0
 COVERED = 0.5
 """More of a line lies on what was decided, or of the smaller of two areas within the other."""
 
+_THING_OF_KIND = {"mirror": "pole"}
+"""Kinds that may be one thing, under the kind of one of them: a mirror was found as the pole that
+carries it before it had a kind of its own, and who took one for the other decided about both."""
+
 _STEP_M = 0.1
 _FLAT_M2 = 1e-6
 
@@ -134,7 +138,9 @@ def _replaces(found: FoundFeatures, run: Run) -> bool:
 
 
 def are_known(features: Sequence[Feature], decided: Iterable[Feature]) -> list[bool]:
-    """Of each feature, whether one of the decided is of its kind and at its place.
+    """Of each feature, whether one of the decided may be the same thing and is at its place.
+
+    It is where its kind is the same, or may be: a mirror and the pole that carries it.
 
     A point: within :data:`SAME_POINT_M`. A line: more than half of it within
     :data:`SAME_LINE_M` of decided lines. An area: it shares more than half of the smaller one's
@@ -144,19 +150,23 @@ def are_known(features: Sequence[Feature], decided: Iterable[Feature]) -> list[b
     groups: dict[tuple[str, Geometry], tuple[list[int], list[Floats], list[Floats]]] = {}
     for number, feature in enumerate(features):
         geometry, xyz = _compared(feature)
-        numbers, new, _ = groups.setdefault((feature.kind, geometry), ([], [], []))
+        numbers, new, _ = groups.setdefault((_thing_of(feature), geometry), ([], [], []))
         numbers.append(number)
         new.append(xyz)
     for feature in decided:
         geometry, xyz = _compared(feature)
-        if (feature.kind, geometry) in groups:
-            groups[feature.kind, geometry][2].append(xyz)
+        if (_thing_of(feature), geometry) in groups:
+            groups[_thing_of(feature), geometry][2].append(xyz)
     known = [False] * len(features)
     for (_, geometry), (numbers, new, old) in groups.items():
         if old:
             for number, is_known in zip(numbers, _KNOWN[geometry](new, old), strict=True):
                 known[number] = bool(is_known)
     return known
+
+
+def _thing_of(feature: Feature) -> str:
+    return _THING_OF_KIND.get(feature.kind, feature.kind)
 
 
 def _compared(feature: Feature) -> tuple[Geometry, Floats]:

@@ -188,6 +188,9 @@ def upright(x: float, y: float = 0.0) -> Feature:
         (point(0, 0, 0), point(0.6, 0, 0), False),
         (point(0, 0, 0), point(0, 0, 0.7), False),  # the other plate of a post
         (point(0, 0, 0), point(0, 0, 0, "other"), False),
+        (point(0, 0, 0, "mirror"), point(0.1, 0, 0, "pole"), True),  # found as a pole once
+        (point(0, 0, 0, "pole"), point(0.1, 0, 0, "mirror"), True),
+        (point(0, 0, 0, "sign"), point(0.1, 0, 0, "pole"), False),
         (straight(0, 10), straight(0, 10, 0.1), True),
         (straight(0, 10), straight(0, 10, 0.3), False),
         (straight(0, 10), straight(0, 10, 0.0, 0.4), False),  # the wire above
@@ -203,7 +206,7 @@ def upright(x: float, y: float = 0.0) -> Feature:
         (point(0, 0, 0), straight(0, 1), False),
     ],
 )
-def test_the_same_is_what_is_of_one_kind_at_one_place(
+def test_the_same_is_what_may_be_one_thing_at_one_place(
     new: Feature, decided: Feature, is_known: bool
 ) -> None:
     assert are_known([new], [decided]) == [is_known]

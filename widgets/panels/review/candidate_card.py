@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from pathlib import Path
+
 from PySide6.QtCore import QRectF, QSize, Qt
 from PySide6.QtGui import QPainter, QPaintEvent, QPalette
 from PySide6.QtWidgets import (
@@ -17,10 +20,12 @@ from typing_extensions import override
 
 from processing.core.text import Language
 from processing.map.catalogue import Catalogue
-from processing.map.feature import Feature
+from processing.map.feature import AttributeValue, Feature
 from processing.map.measured_fields import field_of
+from processing.project.photos import FIELD as PHOTO
 from widgets.feature_drawing.feature_style import colour_of_kind
 from widgets.feature_drawing.swatch import SWATCH_PX, swatch_of
+from widgets.panels.attributes.photo_row import PhotoRow
 from widgets.panels.feature_words import (
     STATUS_NAMES,
     name_of_kind,
@@ -35,6 +40,11 @@ _MOST_ROWS = 12
 _WIDEST_TITLE_PX = 150
 """Longer names are written in two lines, so that the value beside them is seen whole in a narrow
 panel."""
+
+
+def _without_photo(feature: Feature) -> dict[str, AttributeValue]:
+    """The attributes but for the name of the picture's file, which says nothing beside it."""
+    return {id_: value for id_, value in feature.attributes.items() if id_ != PHOTO}
 
 
 class ConfidenceBar(QWidget):
@@ -90,6 +100,8 @@ class CandidateCard(QFrame):
         self._status = QLabel(self)
         self._status.hide()
         self.confidence = ConfidenceBar(self)
+        self._photo = PhotoRow(self)
+        self._photo.hide()
         top = QHBoxLayout()
         top.setSpacing(8)
         top.addWidget(self._swatch)
@@ -105,6 +117,7 @@ class CandidateCard(QFrame):
         layout.addLayout(top)
         layout.addWidget(self._status)
         layout.addWidget(self.confidence)
+        layout.addWidget(self._photo)
         layout.addLayout(self._rows)
 
     def lines(self) -> tuple[str, ...]:
@@ -118,18 +131,27 @@ class CandidateCard(QFrame):
         return (self._kind.text(), self._position.text(), *status, *rows)
 
     def show_feature(
-        self, feature: Feature, catalogue: Catalogue, position: int, total: int
+        self,
+        feature: Feature,
+        catalogue: Catalogue,
+        position: int,
+        total: int,
+        *,
+        photo: Path | None = None,
     ) -> None:
-        """Show a feature, which has this place among all."""
+        """Show a feature, which has this place among all, and the file of its picture."""
         colour = colour_of_kind(catalogue, feature.kind)
         self._swatch.setPixmap(swatch_of(colour).pixmap(SWATCH_PX, SWATCH_PX))
         self._kind.setText(name_of_kind(catalogue, feature.kind, self._language))
         self._position.setText(f"{position:,} / {total:,}")
         self._show_status(feature)
         self.confidence.show_value(feature.provenance.confidence)
+        is_seen = self._photo.show_photo(photo)
+        self._photo.setVisible(is_seen)
         while self._rows.rowCount():
             self._rows.removeRow(0)
-        for name, words in self._facts(feature, catalogue)[:_MOST_ROWS]:
+        told = replace(feature, attributes=_without_photo(feature)) if is_seen else feature
+        for name, words in self._facts(told, catalogue)[:_MOST_ROWS]:
             self._add_row(name, words)
 
     def _show_status(self, feature: Feature) -> None:

@@ -152,7 +152,13 @@ class ReviewPanel(QWidget):
         self._done.setVisible(feature is None)
         if feature is not None:
             catalogue = self._source.catalogue()
-            self._card.show_feature(feature, catalogue, progress.position, progress.total)
+            self._card.show_feature(
+                feature,
+                catalogue,
+                progress.position,
+                progress.total,
+                photo=self._source.photo(feature),
+            )
         for button in (self._accept, self._reject, self._edit, self._next):
             button.setEnabled(feature is not None)
         self._show_line(line_count)

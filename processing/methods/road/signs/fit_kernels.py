@@ -184,11 +184,11 @@ def fit_kernel(
     for number in range(steps.shape[0]):
         step = steps[number]
         ways, failed, back = 10 if step <= _FINE_STEP_M else 8, 0, -1
-        for trial in range(_ROUNDS * ways):
+        for count in range(_ROUNDS * ways):
             # All ways fail from here, or lead back to where it cost more.
             if failed == ways:
                 break
-            way = trial % ways
+            way = count % ways
             failed += 1
             if way == back:
                 continue
@@ -312,10 +312,10 @@ def stretch_kernel(
             _set_corners(corners, sides[0], sides[1])
             best = cost_of(corners, lines, pose, sigma_m, math.inf)
         ways, failed, back = 14 if step <= _FINE_STEP_M else 12, 0, -1
-        for trial in range(_ROUNDS * ways):
+        for count in range(_ROUNDS * ways):
             if failed == ways:
                 break
-            way = trial % ways
+            way = count % ways
             failed += 1
             tested[:] = pose
             other[:] = sides

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
+import numpy as np
 import pytest
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QAction
@@ -13,9 +15,11 @@ from pytestqt.qtbot import QtBot
 from processing.core.text import Text
 from processing.map.change import Change, Replacement
 from processing.map.feature import Feature, Status
+from processing.project.photos import photo_folder, photo_name, write_photos
 from processing.project.review.review_state import ReviewOrder, ReviewProgress, ReviewState
 from tests.processing.project.candidates import found_lines
 from tests.widgets.builders import OpenMap
+from widgets.panels.attributes.photo_row import PhotoRow
 from widgets.panels.review.candidate_card import CandidateCard
 from widgets.panels.review.review_panel import ReviewPanel
 from widgets.panels.review.run_chooser import RunChooser
@@ -235,3 +239,30 @@ def test_the_review_can_be_ended(qtbot: QtBot, panel: ReviewPanel, open_map: Ope
     assert asked.args == [(), ReviewOrder.CONFIDENCE]
     panel.show_review(ReviewProgress(ReviewState()), None)
     assert any("wait for a decision" in words for words in labels(panel))
+
+
+def test_the_picture_of_a_candidate_is_seen_while_it_is_judged(
+    qtbot: QtBot, tmp_path: Path
+) -> None:
+    open_map = OpenMap(folder=tmp_path)
+    panel = ReviewPanel(open_map, open_map.shared, "en")
+    qtbot.addWidget(panel)
+    panel.resize(300, 620)
+    panel.show()
+    run, (first, second, *_) = store(open_map)
+    (tmp_path / photo_folder(run)).mkdir(parents=True)
+    face = np.full((40, 40, 3), (215, 0, 15), np.uint8)
+    write_photos({photo_name(run, 1): face}, tmp_path / photo_folder(run))
+    pictured = replace(first, attributes={**first.attributes, "photo": photo_name(run, 1)})
+    progress = ReviewProgress(ReviewState((run,)), left=8, position=1)
+    panel.show_review(progress, pictured)
+    row = card(panel).findChild(PhotoRow)
+    assert isinstance(row, PhotoRow)
+    assert row.isVisible()
+    shown = row.pixmap().toImage()
+    assert shown.pixelColor(shown.width() // 2, shown.height() // 2).name() == "#d7000f"
+    assert row.width() >= shown.width()
+    assert not any("photo" in line for line in card(panel).lines())
+    assert "height_m: 0.15" in card(panel).lines()
+    panel.show_review(progress, second)
+    assert not row.isVisible()
