@@ -16,13 +16,20 @@ _MOST_ENLARGED = 4
 
 
 class PhotoRow(QLabel):
-    """A picture, as large as there is room and use for."""
+    """A picture, as large as there is room and use for.
 
-    def __init__(self, parent: QWidget | None = None) -> None:
+    Parameters
+    ----------
+    side_px : int
+        Of the largest picture.
+    """
+
+    def __init__(self, parent: QWidget | None = None, *, side_px: int = _SIDE_PX) -> None:
         super().__init__(parent)
         self.setAccessibleName(self.tr("Picture"))
         self.setAlignment(Qt.AlignmentFlag.AlignHCenter)
         self.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
+        self._side_px = side_px
         self._path: Path | None = None
 
     @property
@@ -34,14 +41,15 @@ class PhotoRow(QLabel):
         """Show a file's picture; says whether there is one."""
         if path != self._path:
             self._path = path
-            self.setPixmap(_fitted(QPixmap() if path is None else QPixmap(str(path))))
+            picture = QPixmap() if path is None else QPixmap(str(path))
+            self.setPixmap(_fitted(picture, self._side_px))
         return not self.pixmap().isNull()
 
 
-def _fitted(picture: QPixmap) -> QPixmap:
+def _fitted(picture: QPixmap, side_px: int) -> QPixmap:
     if picture.isNull():
         return picture
-    room = QSize(_SIDE_PX, _SIDE_PX).boundedTo(picture.size() * _MOST_ENLARGED)
+    room = QSize(side_px, side_px).boundedTo(picture.size() * _MOST_ENLARGED)
     return picture.scaled(
         room, Qt.AspectRatioMode.KeepAspectRatio, Qt.TransformationMode.SmoothTransformation
     )

@@ -37,6 +37,9 @@ from widgets.parts.elided_label import ElidedLabel
 
 _MOST_ROWS = 12
 
+_PHOTO_PX = 120
+"""Of a picture's longer side: on a screen of 768 rows the first facts are seen below it."""
+
 _WIDEST_TITLE_PX = 150
 """Longer names are written in two lines, so that the value beside them is seen whole in a narrow
 panel."""
@@ -100,7 +103,7 @@ class CandidateCard(QFrame):
         self._status = QLabel(self)
         self._status.hide()
         self.confidence = ConfidenceBar(self)
-        self._photo = PhotoRow(self)
+        self._photo = PhotoRow(self, side_px=_PHOTO_PX)
         self._photo.hide()
         top = QHBoxLayout()
         top.setSpacing(8)

@@ -262,6 +262,7 @@ def test_the_picture_of_a_candidate_is_seen_while_it_is_judged(
     shown = row.pixmap().toImage()
     assert shown.pixelColor(shown.width() // 2, shown.height() // 2).name() == "#d7000f"
     assert row.width() >= shown.width()
+    assert shown.height() <= 120
     assert not any("photo" in line for line in card(panel).lines())
     assert "height_m: 0.15" in card(panel).lines()
     panel.show_review(progress, second)
