@@ -59,6 +59,8 @@ class StreetRequest:
         What time made of the kerb stones.
     avenue : bool
         Rows of large trees along both sides, with posts and lamps under their crowns.
+    noise : float
+        How many times as many points of nothing as such a scanner usually gives.
     """
 
     seed: int = count(1, low=0, high=2**31 - 1, name=_SEED, explanation=_SEED_MEANING)
@@ -163,6 +165,17 @@ class StreetRequest:
         explanation=Text(
             "Rows of large trees whose crowns touch each other and hang over posts and lamps.",
             "樹冠が互いに接し、標識柱や街灯の上に覆いかぶさる大きな並木。",
+        ),
+    )
+    noise: float = ratio(
+        1.0,
+        low=0.0,
+        high=1000.0,
+        name=Text("Noise, times the usual", "ノイズの量（通常比）"),
+        explanation=Text(
+            "Arcs, drops, dust and other points of nothing, so many times as often as such a "
+            "scanner usually has them.",
+            "円弧状のノイズ、雨滴、粉じんなど、物のない所の点を、通常の何倍含めるか。",
         ),
     )
     images: bool = switch(

@@ -138,7 +138,7 @@ class _Work:
         self.scan_pattern = ScanPattern(
             request.pulses or sensor.pulses, request.turns_per_s or sensor.turns_per_s, 0.0
         )
-        self.setup = Setup(sensor, self.scan_pattern, self.weather)
+        self.setup = Setup(sensor, self.scan_pattern, self.weather, request.noise)
         slow, fast = street.style.speed_m_s
         usual = float(chance(request.seed, "speed").uniform(slow, fast))
         self.driving = Driving(

@@ -22,6 +22,7 @@ from processing.laboratory.simulate.assembly.street import BuiltSection, Street
 from processing.laboratory.simulate.scanning.beams import ScanPattern, beams_of
 from processing.laboratory.simulate.scanning.casting import RaycastScene
 from processing.laboratory.simulate.scanning.moving import MovingScene
+from processing.laboratory.simulate.scanning.passing_noise import Path
 from processing.laboratory.simulate.scanning.returns import (
     BeamHits,
     Returns,
@@ -54,11 +55,14 @@ class Setup:
     scan_pattern : ScanPattern
         Of all heads; each starts at an angle of its own.
     weather : Weather
+    noise : float
+        How many times as much as is usual.
     """
 
     sensor: Sensor
     scan_pattern: ScanPattern
     weather: Weather
+    noise: float = 1.0
 
 
 @dataclass(frozen=True)
@@ -90,7 +94,14 @@ class SimulatedRecording:
             for number in range(len(self._spins))
         ]
         self._noise = [
-            NoiseSource(street.seed, (driven.number, number), setup.sensor, scan_pattern)
+            NoiseSource(
+                street.seed,
+                (driven.number, number),
+                setup.sensor,
+                scan_pattern,
+                Path(driven.time_s, driven.positions),
+                often=setup.noise,
+            )
             for number, scan_pattern in enumerate(self._spins)
         ]
 

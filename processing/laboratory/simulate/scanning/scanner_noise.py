@@ -14,6 +14,8 @@ from numpy.typing import NDArray
 
 from processing.laboratory.simulate.scanning.beams import Beams, ScanPattern
 from processing.laboratory.simulate.scanning.casting import NOWHERE, RaycastScene
+from processing.laboratory.simulate.scanning.noise_options import noise_options
+from processing.laboratory.simulate.scanning.passing_noise import PassingNoise, Path
 from processing.laboratory.simulate.scanning.returns import (
     HIGH_NOISE,
     LOW_NOISE,
@@ -36,55 +38,12 @@ _MIRRORS = (Material.GLASS, Material.MIRROR, Material.WATER)
 _MIRRORED_SHARE = 0.25
 _MIRRORED_POWER = 0.008  # of a white surface seen in a pane, twice through a tenth of the light
 _LEVEL = 0.7  # of a normal's z: water and wet ground rather than windows
+_LONE_M = 40.0  # beyond it a receiver's own noise is as seldom as far things
 _WEAK = 0.02  # of the power that a white surface 10 m away gives
 _JUMPING_SHARE = 0.02
 _FINER_WAVES = 60.0  # in the range of unambiguity
 _LEAST_DETOUR_M = 0.2  # shorter ones are one echo with the first; a metre more in the mean
 _OWN_LIKE_M = 0.05  # noise that falls so near to the true surface is none
-
-
-@dataclass(frozen=True)
-class NoiseOptions:
-    """How much noise a recording has, as shares of pulses.
-
-    Attributes
-    ----------
-    arcs_per_s : float
-        Arcs that begin in a second.
-    folded : float
-        Of what lies beyond the range of unambiguity.
-    streaks : float
-        Of pulses on retro-reflecting plates.
-    drops : float
-        Of all pulses: rain, dust, insects.
-    late : float
-        Of all pulses: echoes by way of a second surface, behind what the beam met.
-    """
-
-    arcs_per_s: float
-    folded: float
-    streaks: float
-    drops: float
-    late: float = 0.0
-
-
-def noise_options(seed: int, sensor: Sensor) -> NoiseOptions:
-    """How noisy a recording of this seed is."""
-    random = chance(seed, "noise")
-    if sensor.measures_by == "phase":
-        return NoiseOptions(
-            float(random.uniform(0.5, 6.0)),
-            float(random.uniform(0.3, 0.9)),
-            float(random.uniform(0.1, 0.4)),
-            float(10 ** random.uniform(-4, -2.7)),
-        )
-    return NoiseOptions(
-        0.0,
-        0.0,
-        float(random.uniform(0.0, 0.03)),
-        float(10 ** random.uniform(-5.5, -3.5)),
-        float(10 ** random.uniform(-5.5, -4.0)),
-    )
 
 
 @dataclass(frozen=True)
@@ -114,10 +73,21 @@ class NoiseSource:
     ----------
     position : tuple of int
         Number of the pass, number of the head.
+    path : Path
+        Of the pass.
+    often : float
+        How many times as much noise as is usual.
     """
 
     def __init__(
-        self, seed: int, position: tuple[int, int], sensor: Sensor, scan_pattern: ScanPattern
+        self,
+        seed: int,
+        position: tuple[int, int],
+        sensor: Sensor,
+        scan_pattern: ScanPattern,
+        path: Path,
+        *,
+        often: float = 1.0,
     ) -> None:
         self._seed, self._position, self._sensor, self._scan_pattern = (
             seed,
@@ -125,13 +95,24 @@ class NoiseSource:
             sensor,
             scan_pattern,
         )
-        self._request = noise_options(seed, sensor)
+        options = noise_options(seed, sensor, often)
+        self._request = options
+        self._passing = PassingNoise(
+            seed,
+            path,
+            clouds_per_s=options.clouds_per_s,
+            patches_per_s=options.patches_per_s,
+            sun=options.sun,
+        )
         self._key = int(chance(seed, "noise key", *position).integers(1 << 40))
 
     def added(self, recorded: PulseHits) -> Returns:
         """The returns with some replaced by noise, and noise where nothing came back."""
         beams, met = recorded.beams, recorded.met
         ranges = np.full(met.ranges.size, np.nan)
+        is_ground = np.isin(met.label, _GROUND_LABELS) & np.isfinite(met.ranges)
+        self._passing.measure(beams, met, np.flatnonzero(is_ground), self._key, ranges)
+        self._lone(beams, met, ranges)
         self._arcs(beams, ranges)
         self._folded(beams, met, ranges)
         self._jumps(recorded, ranges)
@@ -205,6 +186,13 @@ class NoiseSource:
         """Rain, dust and insects: single points, most of them near the scanner."""
         rows = self._chosen(beams, np.arange(met.ranges.size), self._request.drops, 300)
         away = _LEAST_M - 4.0 * np.log(np.maximum(shares_of(beams.first + rows, 301), 1e-9))
+        is_free = away < met.ranges[rows]
+        ranges[rows[is_free]] = away[is_free]
+
+    def _lone(self, beams: Beams, met: BeamHits, ranges: Floats) -> None:
+        """Ranges of nothing, before what the beam met: the receiver's own noise."""
+        rows = self._chosen(beams, np.arange(met.ranges.size), self._request.lone, 800)
+        away = _LEAST_M + (_LONE_M - _LEAST_M) * shares_of(beams.first + rows, self._key + 801)
         is_free = away < met.ranges[rows]
         ranges[rows[is_free]] = away[is_free]
 

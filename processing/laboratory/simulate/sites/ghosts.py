@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from processing.laboratory.simulate.scanning.beams import Beams
 from processing.laboratory.simulate.scanning.casting import CastHits, RaycastScene
+from processing.laboratory.simulate.scanning.passing_noise import way_through
 from processing.laboratory.simulate.scanning.returns import (
     NO_EVIDENCE,
     BeamHits,
@@ -197,15 +198,8 @@ def _dust(random: Generator, beams: Beams, met: BeamHits, cloud: DustCloud) -> G
     if last < cloud.from_s or first > cloud.to_s:
         return _ghosts(np.empty(0, np.int64), np.empty(0), 0.0)
     centre = cloud.centre + cloud.drift * (first - cloud.from_s)
-    start = (beams.origins - centre) / cloud.radii
-    direction = beams.directions / cloud.radii
-    a = np.einsum("ij,ij->i", direction, direction)
-    b = np.einsum("ij,ij->i", start, direction)
-    inside = b * b - a * (np.einsum("ij,ij->i", start, start) - 1)
-    rays = np.flatnonzero(inside > 0)
-    root = np.sqrt(inside[rays])
-    near = np.maximum((-b[rays] - root) / a[rays], 1.5)
-    far = np.minimum((-b[rays] + root) / a[rays], met.ranges[rays])
+    rays, enters, leaves = way_through(beams, centre, cloud.radii)
+    near, far = np.maximum(enters, 1.5), np.minimum(leaves, met.ranges[rays])
     long = np.maximum(far - near, 0.0)
     struck = random.random(rays.size) < 1 - np.exp(-cloud.per_m * long)
     ranges = (near + random.random(rays.size) * long)[struck]

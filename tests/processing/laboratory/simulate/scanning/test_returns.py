@@ -9,6 +9,7 @@ import pytest
 
 from processing.laboratory.simulate.scanning.beams import Beams, ScanPattern
 from processing.laboratory.simulate.scanning.casting import RaycastScene
+from processing.laboratory.simulate.scanning.passing_noise import Path
 from processing.laboratory.simulate.scanning.returns import (
     NO_EVIDENCE,
     BeamHits,
@@ -23,6 +24,7 @@ from processing.laboratory.simulate.scene.materials import Material
 from processing.laboratory.simulate.scene.mesh import Mesh, MeshBuilder, box, grid
 
 _PULSE, _PHASE = SENSORS["vq250"], SENSORS["zf9012"]
+_STANDS = Path(np.array([0.0, 10.0]), np.tile([0.0, 0.0, 2.5], (2, 1)))
 
 
 def _floor(material: Material, half_m: float = 60.0) -> MeshBuilder:
@@ -156,7 +158,7 @@ def test_what_lies_beyond_the_range_of_unambiguity_is_folded_back() -> None:
     met = BeamHits.of(scene.cast(beams.origins, beams.directions), mesh)
     scanner = scanner_numbers(_PHASE, 5080, Weather(0.0, 0.5))
     returns, _ = returns_of(beams, met, scene, scanner, 99)
-    noise = NoiseSource(3, (0, 0), _PHASE, ScanPattern(5080, 200.0, 0.0))
+    noise = NoiseSource(3, (0, 0), _PHASE, ScanPattern(5080, 200.0, 0.0), _STANDS)
     noisy = noise.added(PulseHits(beams, met, returns, scene))
     folded = np.abs(np.linalg.norm(noisy.xyz - beams.origins[0], axis=1) - 31.0) < 1.0
     assert folded.sum() > 1000
@@ -173,7 +175,7 @@ def test_points_in_a_window_are_told_to_be_noise() -> None:
     met = BeamHits.of(scene.cast(beams.origins, beams.directions), mesh)
     returns, _ = returns_of(beams, met, scene, scanner_numbers(_PULSE, 3000, Weather(0.0, 0.5)), 99)
     quiet = replace(_PULSE, most_m=100.0)
-    noisy = NoiseSource(3, (0, 0), quiet, ScanPattern(3000, 100.0, 0.0)).added(
+    noisy = NoiseSource(3, (0, 0), quiet, ScanPattern(3000, 100.0, 0.0), _STANDS).added(
         PulseHits(beams, met, returns, scene)
     )
     behind = noisy.xyz[:, 0] > 6
@@ -188,7 +190,7 @@ def test_weak_returns_of_a_phase_scanner_jump_by_whole_waves() -> None:
     met = BeamHits.of(scene.cast(beams.origins, beams.directions), mesh)
     scanner = scanner_numbers(_PHASE, 5080, Weather(0.0, 0.5))
     returns, truths = returns_of(beams, met, scene, scanner, 99)
-    noise = NoiseSource(3, (0, 0), _PHASE, ScanPattern(5080, 200.0, 0.0))
+    noise = NoiseSource(3, (0, 0), _PHASE, ScanPattern(5080, 200.0, 0.0), _STANDS)
     noisy = noise.added(PulseHits(beams, met, returns, scene))
     off = np.linalg.norm(noisy.xyz - beams.origins[0], axis=1) - truths[noisy.pulse - beams.first]
     waves = off * 60.0 / _PHASE.most_m
@@ -206,7 +208,7 @@ def test_what_a_pane_mirrors_from_the_ground_is_noise_below_the_ground() -> None
     met = BeamHits.of(scene.cast(beams.origins, beams.directions), mesh)
     quiet = replace(_PULSE, noise_m=0.0)
     returns = returns_of(beams, met, scene, scanner_numbers(quiet, 3000, Weather(0.0, 0.5)), 99)[0]
-    noisy = NoiseSource(3, (0, 0), quiet, ScanPattern(3000, 100.0, 0.0)).added(
+    noisy = NoiseSource(3, (0, 0), quiet, ScanPattern(3000, 100.0, 0.0), _STANDS).added(
         PulseHits(beams, met, returns, scene)
     )
     is_low = noisy.xyz[:, 2] < -0.1

@@ -1,0 +1,101 @@
+"""How much noise a recording has: of what kinds, and how often each."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+from processing.laboratory.simulate.scanning.sensors import Sensor
+from processing.laboratory.simulate.scene.chance import chance
+
+_DUSTY_SHARE = 0.25
+"""Of streets: where something throws up dust, spray or steam beside the road."""
+
+_SUNNY_SHARE = 0.5
+"""Of recordings: where a head may look towards the sun."""
+
+
+@dataclass(frozen=True)
+class NoiseOptions:
+    """How much noise a recording has, as shares of pulses where nothing else is said.
+
+    Attributes
+    ----------
+    arcs_per_s : float
+        Arcs that begin in a second.
+    folded : float
+        Of what lies beyond the range of unambiguity.
+    streaks : float
+        Of pulses on retro-reflecting plates.
+    drops : float
+        Of all pulses: rain, dust, insects.
+    late : float
+        Of all pulses: echoes by way of a second surface, behind what the beam met.
+    lone : float
+        Of all pulses: ranges of nothing, as a receiver measures its own noise.
+    clouds_per_s : float
+        Clouds of dust, spray or steam that the vehicle passes in a second.
+    patches_per_s : float
+        Patches of ground that a second way of the light shows lower, passed in a second.
+    sun : float
+        Of pulses that look into the sun.
+    """
+
+    arcs_per_s: float
+    folded: float
+    streaks: float
+    drops: float
+    late: float = 0.0
+    lone: float = 0.0
+    clouds_per_s: float = 0.0
+    patches_per_s: float = 0.0
+    sun: float = 0.0
+
+    def times(self, often: float) -> NoiseOptions:
+        """The same kinds so many times as often; shares of what is bright or far are the same."""
+        if often == 1.0:
+            return self
+        shares = {name: min(1.0, often * getattr(self, name)) for name in ("drops", "late", "lone")}
+        counts = ("arcs_per_s", "clouds_per_s", "patches_per_s")
+        return replace(self, **shares, **{name: often * getattr(self, name) for name in counts})
+
+
+def noise_options(seed: int, sensor: Sensor, often: float = 1.0) -> NoiseOptions:
+    """How noisy a recording of this seed is.
+
+    Parameters
+    ----------
+    often : float
+        How many times the usual.
+
+    Notes
+    -----
+    A phase-based scanner compares waves all the time and gives a range for whatever light comes
+    in; one of pulses waits for an echo that stands out, and sees little where nothing is.
+    """
+    random, others = chance(seed, "noise"), chance(seed, "more noise")
+    dust = float(others.uniform(0.05, 0.5)) if others.random() < _DUSTY_SHARE else 0.0
+    is_sunny = bool(others.random() < _SUNNY_SHARE)
+    if sensor.measures_by == "phase":
+        found = NoiseOptions(
+            float(random.uniform(0.5, 6.0)),
+            float(random.uniform(0.3, 0.9)),
+            float(random.uniform(0.1, 0.4)),
+            float(10 ** random.uniform(-4, -2.7)),
+            lone=float(10 ** others.uniform(-4, -2.7)),
+            clouds_per_s=dust,
+            patches_per_s=float(others.uniform(0.0, 1.0)),
+            sun=float(others.uniform(0.05, 0.4)) if is_sunny else 0.0,
+        )
+    else:
+        found = NoiseOptions(
+            0.0,
+            0.0,
+            float(random.uniform(0.0, 0.03)),
+            float(10 ** random.uniform(-5.5, -3.5)),
+            float(10 ** random.uniform(-5.5, -4.0)),
+            lone=float(10 ** others.uniform(-6.5, -5.0)),
+            clouds_per_s=dust,
+            patches_per_s=float(others.uniform(0.0, 0.1)),
+            sun=float(others.uniform(0.0, 0.02)) if is_sunny else 0.0,
+        )
+    return found.times(often)
