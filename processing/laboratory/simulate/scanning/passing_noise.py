@@ -47,10 +47,20 @@ _LEAST = 1e-12
 
 @dataclass(frozen=True)
 class Path:
-    """Where the vehicle was: ``time_s`` (m,) float64, ``positions`` (m, 3) float64, m."""
+    """Where the scanner's carrier was.
+
+    Attributes
+    ----------
+    time_s : (m,) float64
+    positions : (m, 3) float64
+        m.
+    stands : bool
+        On a tripod: it sees the same places all the time, as many as others pass in some seconds.
+    """
 
     time_s: Floats
     positions: Floats
+    stands: bool = False
 
     def at(self, time_s: float) -> Floats:
         """(3,) m."""
@@ -89,7 +99,7 @@ def way_through(
 
 
 class PassingNoise:
-    """Dust, patches and sun of one pass, the same for all of its heads.
+    """Dust, patches and sun of one pass or scan, the same for all heads of a vehicle.
 
     Parameters
     ----------
@@ -135,7 +145,8 @@ class PassingNoise:
         if per_s <= 0:
             return
         first = int((beams.time_s[0] - _SEEN_S) // _SLOT_S)
-        for slot in range(first, int((beams.time_s[-1] + _SEEN_S) // _SLOT_S) + 1):
+        slots = range(first, int((beams.time_s[-1] + _SEEN_S) // _SLOT_S) + 1)
+        for slot in range(int(2 * _SEEN_S)) if self._path.stands else slots:
             random = chance(self._seed, what, slot)
             for number in range(int(random.poisson(per_s * _SLOT_S))):
                 middle = self._path.at((slot + random.random()) * _SLOT_S)

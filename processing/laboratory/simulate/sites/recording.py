@@ -166,24 +166,47 @@ def _rows(survey: SiteSurvey, station: Station) -> Floats:
     return np.asarray(LOWEST_RAD + np.arange(count) * survey.pattern.step_rad, np.float64)
 
 
-def _beams(survey: SiteSurvey, number: int, columns: range, rows: Floats) -> Beams:
-    pattern, station = survey.pattern, survey.stations[number]
+def tripod_beams(
+    pattern: TripodScanPattern,
+    station: tuple[Floats, float],
+    columns: range,
+    rows: Floats,
+    before: tuple[int, float],
+) -> Beams:
+    """Some columns of a scan.
+
+    Parameters
+    ----------
+    station : ((3,) float64, float)
+        Where the scanner stands, m, and where its first column points, rad anticlockwise from east.
+    rows : (r,) float64
+        Elevations, rad, downwards to upwards.
+    before : (int, float)
+        Pulses that were sent before this scan, and when it began, s.
+    """
+    (position, start_rad), (sent, start_s) = station, before
     ids = np.arange(columns.start, columns.stop)
-    azimuth = np.repeat(station.start_rad - ids * pattern.step_rad, rows.size)
+    azimuth = np.repeat(start_rad - ids * pattern.step_rad, rows.size)
     elevation = np.tile(rows, ids.size)
     flat = np.cos(elevation)
     directions = np.column_stack(
         [flat * np.cos(azimuth), flat * np.sin(azimuth), np.sin(elevation)]
     )
-    start = scans_at(pattern, number + 1)[-1]
     row_s = np.arange(rows.size) * pattern.pulse_s
-    time_s = start + (ids[:, None] * pattern.column_s + row_s).ravel()
-    first = (number * pattern.columns + columns.start) * rows.size
-    return Beams(first, time_s, np.broadcast_to(station.position, directions.shape), directions)
+    time_s = start_s + (ids[:, None] * pattern.column_s + row_s).ravel()
+    first = sent + columns.start * rows.size
+    return Beams(first, time_s, np.broadcast_to(position, directions.shape), directions)
 
 
 def _stretch(survey: SiteSurvey, number: int, columns: range, rows: Floats) -> SitePoints:
-    beams = _beams(survey, number, columns, rows)
+    pattern, station = survey.pattern, survey.stations[number]
+    beams = tripod_beams(
+        pattern,
+        (station.position, station.start_rad),
+        columns,
+        rows,
+        (number * pattern.columns * rows.size, scans_at(pattern, number + 1)[-1]),
+    )
     hits = survey.scene.cast(beams.origins, beams.directions)
     met = BeamHits.of(hits, survey.scene.mesh)
     survey.moving.meet(beams, met)
