@@ -65,6 +65,7 @@ def main(arguments: list[str]) -> int:
     parser.add_argument("--pictures", type=Path)
     parser.add_argument("--only", choices=list(HEADINGS), action="append")
     parser.add_argument("--ours", action="store_true", help="without peers")
+    parser.add_argument("--folder", type=Path, help="where simulated recordings are kept")
     chosen = parser.parse_args(arguments)
     for part in chosen.only or HEADINGS:
         section = "\n".join((f"{HEADINGS[part]}\n", *_PARTS[part](chosen)))
@@ -119,9 +120,9 @@ def _of_streets(chosen: argparse.Namespace) -> Iterator[str]:
     yield markdown_table(list(street_rows(chosen.data)))
 
 
-def _of_unseen(_: argparse.Namespace) -> Iterator[str]:
+def _of_unseen(chosen: argparse.Namespace) -> Iterator[str]:
     yield _ABOUT_UNSEEN
-    yield markdown_table(list(unseen_rows()))
+    yield markdown_table(list(unseen_rows(folder=chosen.folder)))
 
 
 def _of_sites(chosen: argparse.Namespace) -> Iterator[str]:
@@ -189,10 +190,12 @@ asks for. What is lost is a share of the true points of each kind.
 _ABOUT_UNSEEN = """\
 `python -m processing.laboratory.accuracy.filters.filters DATA_FOLDER --only unseen \
 --markdown docs/accuracy.md` makes \
-this section from the simulator that the models learned from, with seeds that were never used \
-before: streets, scanners, kinds and shares of noise are drawn anew for each. The upper rows know \
-the scanner's beams (a drive with its trajectory, a scan with its place), the lower ones places \
-alone, most of them thinned. Shares are 0 to 1; the last two columns are the study's methods.
+this section from recordings of the project's own simulator, which the models did not learn from: \
+streets from vehicles and tripods, sites and flights, with one to some hundred times the usual \
+noise, by scanners that measure by phase or by pulses. The upper rows know the scanner's beams (a \
+drive with its trajectory, a tripod's sweeps), the lower ones places alone, most of them thinned. \
+Noise counts however near it lies to something true. Shares are 0 to 1; the last two columns are \
+the study's methods. `--folder` keeps the recordings.
 """
 _BY_TRUTH = """\
 Peers run as they are installed, CSF and SMRF from PyPI (`cloth-simulation-filter`, `pysmrf`). \

@@ -1,68 +1,82 @@
-"""Noise of simulated scenes that no model learned from and nobody looked at, as a table.
+"""Noise of simulated recordings that no model learned from, as a table.
 
-Seeds 1 to 120 of :mod:`processing.laboratory.noise_training` are learned from, seeds from
-501 on were looked at while the method was worked out; these are for the score alone.
+The models learned from another, simpler world (:mod:`processing.laboratory.noise_training`); these
+are streets from vehicles and tripods, sites and flights of the simulator, as they are delivered.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 
 from processing.core.arrays import Flags
-from processing.laboratory.accuracy.filters.filter_scenes import THIN_KINDS
-from processing.laboratory.noise_training.scanners import AIRBORNE, MOBILE, STANDING
-from processing.laboratory.noise_training.scenes import TrainingScene, scene_of, thin_scene
+from processing.laboratory.noise_training.recordings import (
+    AIRBORNE,
+    MOBILE,
+    SITE,
+    STANDING,
+    RecordedScene,
+    recorded_scene,
+    thin_scene,
+)
 from processing.laboratory.noise_training.scores import f_measure
-from processing.laboratory.noise_training.streets import KINDS
 from processing.methods.noise.combined import noise_codes_in_space, noise_codes_with_beams
 from processing.methods.noise.neighbours.radius import radius_outliers
 from processing.methods.noise.neighbours.statistical import statistical_outliers
 
 SEEDS = range(901, 913)
-_PULSES = 250_000
 _FEWEST = 50
-_SCANNERS_WITH_BEAMS = (MOBILE, MOBILE, STANDING)
-_SCANNERS_IN_SPACE = (STANDING, MOBILE, AIRBORNE)
+_BEAMS, _PLACES = "beams", "places"
+_SCANNERS = {_BEAMS: (MOBILE, MOBILE, STANDING), _PLACES: (STANDING, SITE, AIRBORNE, MOBILE)}
+_THIN = {"wire": (14,), "pole, trunk": (66,), "sign": (65,), "low plant": (3, 4), "crown": (5,)}
 
 
-def unseen_rows(seeds: Sequence[int] = SEEDS, pulses: int = _PULSES) -> Iterator[list[str]]:
-    """Rows of cells, the head first: one a scene, then the middle of each kind of knowledge."""
-    thin = [KINDS[kind] for kind in THIN_KINDS]
+def unseen_rows(seeds: Sequence[int] = SEEDS, folder: Path | None = None) -> Iterator[list[str]]:
+    """Rows of cells, the head first: one a scene, then the middle of each kind of knowledge.
+
+    Parameters
+    ----------
+    folder : Path or None
+        Where recordings are kept; None for nowhere.
+    """
     head = ["known", "scanner, seed", "points", "noise", "kept F", "noise P", "R", "**F**"]
-    yield [*head, *(f"{name} kept" for name in thin), "radius F", "statistical F"]
-    for knows_beams in (True, False):
-        name = "beams" if knows_beams else "places"
-        figures = []
-        for seed in seeds:
-            scanner, scene, said = _make_judged_scene(seed, pulses, knows_beams=knows_beams)
-            mine = _figures(scene, said)
-            figures.append(mine)
-            yield [name, f"{scanner} {seed}", f"{scene.noise.size:,}", *map(_cell, mine)]
-        columns = np.array(figures).T
-        known = [one[~np.isnan(one)] for one in columns]
-        middles = [float(np.median(one)) if one.size else np.nan for one in known]
-        yield [name, "**middle**", "", *map(_cell, middles)]
+    yield [*head, *(f"{name} kept" for name in _THIN), "radius F", "statistical F"]
+    with TemporaryDirectory(prefix="zuka-") as made:
+        for known in (_BEAMS, _PLACES):
+            figures = []
+            for which, scene in _scenes(known, seeds, folder or Path(made)):
+                mine = _figures(scene, _said_of(scene))
+                figures.append(mine)
+                yield [known, which, f"{scene.labels.size:,}", *map(_cell, mine)]
+            columns = np.array(figures).T
+            told = [one[~np.isnan(one)] for one in columns]
+            middles = [float(np.median(one)) if one.size else np.nan for one in told]
+            yield [known, "**middle**", "", *map(_cell, middles)]
 
 
-def _make_judged_scene(
-    seed: int, pulses: int, *, knows_beams: bool
-) -> tuple[str, TrainingScene, Flags]:
-    scanners = _SCANNERS_WITH_BEAMS if knows_beams else _SCANNERS_IN_SPACE
-    scanner = scanners[seed % len(scanners)]
-    scene, turn = scene_of(seed, scanner, pulses)
-    if not knows_beams:
-        scene = thin_scene(scene, seed)
-        return scanner, scene, noise_codes_in_space(scene.xyz) > 0
-    scene = scene.chosen(scene.scans == 0)
-    return scanner, scene, noise_codes_with_beams(scene.beams(turn), scene.intensity) > 0
+def _scenes(known: str, seeds: Sequence[int], folder: Path) -> Iterator[tuple[str, RecordedScene]]:
+    for seed in seeds:
+        how = _SCANNERS[known][seed % len(_SCANNERS[known])]
+        scene = recorded_scene(how, seed, folder)
+        if known == _PLACES:
+            scene = thin_scene(scene, seed)
+        if known == _PLACES or scene.beams is not None:
+            yield f"{how} {seed}", scene
 
 
-def _figures(scene: TrainingScene, said: Flags) -> list[float]:
-    is_noise = scene.noise > 0
+def _said_of(scene: RecordedScene) -> Flags:
+    if scene.beams is not None:
+        return np.asarray(noise_codes_with_beams(scene.beams, scene.intensity) > 0, np.bool_)
+    return np.asarray(noise_codes_in_space(scene.xyz) > 0, np.bool_)
+
+
+def _figures(scene: RecordedScene, said: Flags) -> list[float]:
+    is_noise = scene.is_noise
     found = int((said & is_noise).sum())
-    kept = [scene.kinds == kind for kind in THIN_KINDS]
+    kept = [np.isin(scene.labels, codes) for codes in _THIN.values()]
     peers = [
         radius_outliers(scene.xyz, 0.5, 113),
         statistical_outliers(scene.xyz, 113, 1.5),
