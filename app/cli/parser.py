@@ -209,16 +209,17 @@ def _add_extract(commands: _Commands[_Parser]) -> None:
 def _add_simulate(commands: _Commands[_Parser]) -> None:
     simulating = commands.add_parser(
         "simulate",
-        help="a street or a site with its truth",
-        epilog="street and site take --seed N --length M --style S --sensor S "
+        help="a street, a site or a flight with its truth",
+        epilog="street, site and flight take --seed N --length M --style S --sensor S "
         "--set NAME=VALUE --out DIR; each tells more by its own --help",
     )
     whats = simulating.add_subparsers(
-        metavar="street|site|density", required=True, parser_class=_OrderParser
+        metavar="street|site|flight|density", required=True, parser_class=_OrderParser
     )
     for what, reported in (
         ("street", "a street, recorded by a vehicle"),
         ("site", "an earthwork site of two dates, scanned from tripods"),
+        ("flight", "a full-waveform flight over a landscape"),
     ):
         making = whats.add_parser(what, help=reported)
         making.what = what

@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from processing.laboratory.simulate.requests import SiteRequest, StreetRequest
+from processing.laboratory.simulate.airborne.flight_lines import Flight, flight_seconds
+from processing.laboratory.simulate.airborne.flight_sensors import flight_sensor_of
+from processing.laboratory.simulate.requests import FlightRequest, SiteRequest, StreetRequest
 from processing.laboratory.simulate.scanning.density import DensityMap, density_map, survey_of
 from processing.laboratory.simulate.scanning.sensors import sensor_of
 from processing.laboratory.simulate.sites.recording import duration_s, pattern_of
@@ -23,6 +25,8 @@ _CAMERAS = 2  # one to three, by the seed
 _SPACING_AT_M = 10.0
 _HIGHEST_DEG, _LOWEST_DEG = 90.0, -60.0
 _EPOCHS = 2
+_RETURNS_PER_BEAM = 1.2  # of landscapes with trees
+_BYTES_PER_RETURN = 59 + 5 + 110  # LAS point format 9, LAZ, and the truth of points and beams
 
 
 @dataclass(frozen=True)
@@ -89,3 +93,20 @@ def forecast_site(request: SiteRequest) -> Forecast:
     points = round(stations * pulses * _SITE_RETURNS_PER_PULSE)
     seconds = duration_s(pattern_of(sensor, request.spacing_m), stations)
     return Forecast(points, round(points * _BYTES_PER_POINT), seconds)
+
+
+def forecast_flight(request: FlightRequest) -> Forecast:
+    """About what a flight would give.
+
+    Raises
+    ------
+    OutOfRange
+        There is no such sensor.
+    """
+    sensor = flight_sensor_of(request.sensor)
+    density, height_m = request.density or sensor.density, request.height_m or sensor.height_m
+    pulses = request.length_m**2 * density
+    points = round(pulses * _RETURNS_PER_BEAM)
+    size = round(points * _BYTES_PER_RETURN + pulses * sensor.samples * sensor.bits / 8)
+    flight = Flight(request.length_m, density, height_m, 0.0)
+    return Forecast(points, size, flight_seconds(sensor, flight))

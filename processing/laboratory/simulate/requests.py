@@ -15,6 +15,8 @@ from processing.core.parameters import (
     switch,
 )
 from processing.core.text import Text
+from processing.laboratory.simulate.airborne.flight_scene import FLIGHT_STYLES
+from processing.laboratory.simulate.airborne.flight_sensors import FLIGHT_SENSORS
 from processing.laboratory.simulate.scanning.sensors import SENSORS
 from processing.laboratory.simulate.street.styles import STYLES
 
@@ -230,3 +232,46 @@ class SiteRequest:
         high=0.2,
         name=Text("Point spacing at 10 m", "10 m 先の点間隔"),
     )
+
+
+@dataclass(frozen=True)
+class FlightRequest:
+    """A landscape flown over by a scanner that records waveforms.
+
+    Attributes
+    ----------
+    length_m : float
+        Side of the square that is flown over.
+    height_m, density : float
+        Above the ground, and pulses per m² of all lines together; 0 for the sensor's usual ones.
+    """
+
+    seed: int = count(1, low=0, high=2**31 - 1, name=_SEED, explanation=_SEED_MEANING)
+    length_m: float = length(
+        100.0, low=40.0, high=500.0, name=Text("Length", "長さ"),
+        explanation=Text("Side of the square that is flown over.", "計測する正方形の一辺。"),
+    )  # fmt: skip
+    style: str = choice(
+        "village",
+        choices=tuple(ParameterChoice(id_, one.name) for id_, one in FLIGHT_STYLES.items()),
+        name=_STYLE,
+    )
+    sensor: str = choice(
+        "corridor",
+        choices=tuple(ParameterChoice(one.id, one.name) for one in FLIGHT_SENSORS.values()),
+        name=_SENSOR,
+    )
+    height_m: float = length(
+        0.0, low=0.0, high=3000.0, name=Text("Flying height", "対地高度"),
+        explanation=Text(
+            "Above the ground; 0: what is usual for the sensor.",
+            "地面からの高さ。0 の場合はセンサーの標準。",
+        ),
+    )  # fmt: skip
+    density: float = ratio(
+        0.0, low=0.0, high=100.0, name=Text("Pulses per m²", "パルス密度 (1 m²あたり)"),
+        explanation=Text(
+            "Of all lines together; 0: what is usual for the sensor.",
+            "全コースの合計。0 の場合はセンサーの標準。",
+        ),
+    )  # fmt: skip

@@ -9,8 +9,13 @@ from typing import Any
 
 from processing.core.monitor import Monitor
 from processing.core.text import Text
-from processing.laboratory.simulate.forecast import Forecast, forecast_site, forecast_street
-from processing.laboratory.simulate.requests import SiteRequest, StreetRequest
+from processing.laboratory.simulate.forecast import (
+    Forecast,
+    forecast_flight,
+    forecast_site,
+    forecast_street,
+)
+from processing.laboratory.simulate.requests import FlightRequest, SiteRequest, StreetRequest
 from processing.laboratory.simulate.simulated import Simulated
 
 
@@ -48,11 +53,24 @@ def _make_site(request: SiteRequest, folder: Path, monitor: Monitor) -> Simulate
     return simulate_site(request, folder, monitor)
 
 
+def _make_flight(request: FlightRequest, folder: Path, monitor: Monitor) -> Simulated:
+    from processing.laboratory.simulate.airborne.waveform_flight import simulate_flight
+
+    return simulate_flight(request, folder, monitor)
+
+
 SIMULATIONS: Mapping[str, SimulationKind] = {
     "street": SimulationKind(
         "street", Text("Street", "道路"), StreetRequest, forecast_street, _make_street
     ),
     "site": SimulationKind(
         "site", Text("Earthwork site", "土工現場"), SiteRequest, forecast_site, _make_site
+    ),
+    "flight": SimulationKind(
+        "flight",
+        Text("Full-waveform flight", "航空レーザ（全波形）"),
+        FlightRequest,
+        forecast_flight,
+        _make_flight,
     ),
 }

@@ -48,6 +48,23 @@ class DeliveredPoints:
     source_id: int
 
 
+def delivered_header(point_format: int, offset: Floats) -> laspy.LasHeader:
+    """The head of a LAS 1.4 file in :data:`CRS_NAME`, as all simulated clouds have it.
+
+    Parameters
+    ----------
+    offset : (3,) float64
+        Near the points, m; coordinates are whole millimetres from it.
+    """
+    header = laspy.LasHeader(point_format=point_format, version="1.4")
+    header.scales, header.offsets = np.full(3, SCALE_M), np.floor(offset)
+    header.generating_software, header.creation_date = _SOFTWARE, _SURVEYED
+    header.system_identifier = "SIMULATION"
+    header.global_encoding.gps_time_type = laspy.header.GpsTimeType.STANDARD
+    header.add_crs(CRS.from_user_input(CRS_NAME))
+    return header
+
+
 class PointFile:
     """A LAZ 1.4 file of point format 6, written chunk by chunk; closed by ``with``.
 
@@ -58,16 +75,10 @@ class PointFile:
     """
 
     def __init__(self, path: Path, offset: Floats) -> None:
-        header = laspy.LasHeader(point_format=6, version="1.4")
-        header.scales, header.offsets = np.full(3, SCALE_M), np.floor(offset)
-        header.generating_software, header.creation_date = _SOFTWARE, _SURVEYED
-        header.system_identifier = "SIMULATION"
-        header.global_encoding.gps_time_type = laspy.header.GpsTimeType.STANDARD
-        header.add_crs(CRS.from_user_input(CRS_NAME))
-        self._header, self.count = header, 0
+        self._header, self.count = delivered_header(6, offset), 0
         self._file = ReportedWrites(path.open("wb"))
         self._writer = laspy.LasWriter(
-            self._file, header, do_compress=True, laz_backend=laspy.LazBackend.LazrsParallel
+            self._file, self._header, do_compress=True, laz_backend=laspy.LazBackend.LazrsParallel
         )
 
     def write(self, points: DeliveredPoints) -> None:
@@ -98,10 +109,16 @@ class PointFile:
 
 
 class ArrayFile:
-    """A one-dimensional ``.npy`` file that grows; closed by ``with``."""
+    """A ``.npy`` file that grows; closed by ``with``.
 
-    def __init__(self, path: Path, dtype: type[np.generic]) -> None:
-        self._dtype, self._count = np.dtype(dtype), 0
+    Parameters
+    ----------
+    width : int
+        Of its rows; 0 for one dimension.
+    """
+
+    def __init__(self, path: Path, dtype: type[np.generic], width: int = 0) -> None:
+        self._dtype, self._count, self._width = np.dtype(dtype), 0, width
         self._file: BinaryIO = path.open("wb")
         self._write_head()
 
@@ -109,7 +126,7 @@ class ArrayFile:
         """Add values behind those that are there."""
         array = np.ascontiguousarray(values, self._dtype)
         self._file.write(array.tobytes())
-        self._count += array.size
+        self._count += len(array)
 
     def __enter__(self) -> ArrayFile:
         return self
@@ -127,7 +144,7 @@ class ArrayFile:
 
     def _write_head(self) -> None:
         """The head leaves room for any count (numpy pads the axis that can grow)."""
+        shape = (self._count, self._width) if self._width else (self._count,)
         np.lib.format.write_array_header_1_0(
-            self._file,
-            {"descr": self._dtype.str, "fortran_order": False, "shape": (self._count,)},
+            self._file, {"descr": self._dtype.str, "fortran_order": False, "shape": shape}
         )
