@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from processing.laboratory.simulate.airborne.flight_lines import Flight, flight_seconds
+from processing.laboratory.simulate.airborne.flight_lines import FlightPlan, flight_seconds
 from processing.laboratory.simulate.airborne.flight_sensors import flight_sensor_of
 from processing.laboratory.simulate.requests import FlightRequest, SiteRequest, StreetRequest
 from processing.laboratory.simulate.scanning.density import DensityMap, density_map, survey_of
@@ -108,5 +108,5 @@ def forecast_flight(request: FlightRequest) -> Forecast:
     pulses = request.length_m**2 * density
     points = round(pulses * _RETURNS_PER_BEAM)
     size = round(points * _BYTES_PER_RETURN + pulses * sensor.samples * sensor.bits / 8)
-    flight = Flight(request.length_m, density, height_m, 0.0)
+    flight = FlightPlan(request.length_m, density, height_m, 0.0)
     return Forecast(points, size, flight_seconds(sensor, flight))

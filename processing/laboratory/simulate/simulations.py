@@ -54,7 +54,7 @@ def _make_site(request: SiteRequest, folder: Path, monitor: Monitor) -> Simulate
 
 
 def _make_flight(request: FlightRequest, folder: Path, monitor: Monitor) -> Simulated:
-    from processing.laboratory.simulate.airborne.waveform_flight import simulate_flight
+    from processing.laboratory.simulate.flights import simulate_flight
 
     return simulate_flight(request, folder, monitor)
 

@@ -36,11 +36,11 @@ _WALL_REFLECTANCE = 0.35
 _BUILDING = 6
 
 
-class BeamHits(NamedTuple):
+class FootprintHits(NamedTuple):
     """What n beams meet, in the order of range.
 
-    ``met`` (n,) int32, hits of each beam; ``range_m`` float64, ``energy`` float32 and ``code`` uint8 (n,
-    :data:`MOST_HITS`). An energy of 1 is a whole beam on a white surface across it.
+    ``met`` (n,) int32, hits of each beam; ``range_m`` float64, ``energy`` float32 and ``code``
+    uint8 (n, :data:`MOST_HITS`). An energy of 1 is a whole beam on a white surface across it.
     """
 
     met: NDArray[np.int32]
@@ -69,7 +69,7 @@ _OUTERMOST = 1.15
 
 def cast_beams(
     scene: FlightScene, origins: Floats, directions: Floats, radius_rad: float, turns: Floats
-) -> BeamHits:
+) -> FootprintHits:
     """What beams meet.
 
     Parameters
@@ -82,7 +82,7 @@ def cast_beams(
         By which each beam's rays are turned about its axis.
     """
     n = len(origins)
-    hits = BeamHits(
+    hits = FootprintHits(
         np.zeros(n, np.int32),
         np.zeros((n, MOST_HITS)),
         np.zeros((n, MOST_HITS), np.float32),
@@ -342,7 +342,7 @@ def _cast_kernel(
         NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]
     ],
     size: tuple[float, float, float],
-    hits: BeamHits,
+    hits: FootprintHits,
 ) -> None:
     rods, crowns = things
     origins, directions, turns, pattern = beams

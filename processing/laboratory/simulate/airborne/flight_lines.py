@@ -26,7 +26,7 @@ _INSET_M = 2.0
 """No pulse is aimed nearer to the landscape's edge, behind which nothing stands."""
 
 
-class Flight(NamedTuple):
+class FlightPlan(NamedTuple):
     """How a square is flown: its side, m; pulses per m²; above its middle height, m."""
 
     extent_m: float
@@ -35,7 +35,7 @@ class Flight(NamedTuple):
     ground_m: float
 
 
-class Pulses(NamedTuple):
+class SentPulses(NamedTuple):
     """Pulses in the order of time.
 
     ``origin`` and ``direction`` (n, 3) float64, the landscape's frame; ``time_s`` (n,) float64
@@ -50,19 +50,19 @@ class Pulses(NamedTuple):
     angle_deg: Floats
 
 
-def line_count(sensor: FlightSensor, flight: Flight) -> int:
+def line_count(sensor: FlightSensor, flight: FlightPlan) -> int:
     """Lines side by side that cover the square, each place twice."""
     swath = 2.0 * flight.height_m * np.tan(np.radians(sensor.half_swath_deg))
     return max(_LEAST_LINES, int(np.ceil(1.1 * flight.extent_m / (swath * (1 - _SIDE_OVERLAP)))))
 
 
-def flight_seconds(sensor: FlightSensor, flight: Flight) -> float:
+def flight_seconds(sensor: FlightSensor, flight: FlightPlan) -> float:
     """How long the flight takes, with the turns between its lines."""
     lines = line_count(sensor, flight)
     return lines * flight.extent_m / SPEED_M_S + (lines - 1) * _BETWEEN_LINES_S
 
 
-def pulses_of(sensor: FlightSensor, flight: Flight, random: Generator) -> Iterator[Pulses]:
+def pulses_of(sensor: FlightSensor, flight: FlightPlan, random: Generator) -> Iterator[SentPulses]:
     """All pulses that are aimed into the square, some thousand at a time."""
     lines = line_count(sensor, flight)
     swath = 2.0 * flight.height_m * np.tan(np.radians(sensor.half_swath_deg))
@@ -85,8 +85,8 @@ class _Line(NamedTuple):
 
 
 def _line_pulses(
-    sensor: FlightSensor, flight: Flight, line: _Line, phases: Floats
-) -> Iterator[Pulses]:
+    sensor: FlightSensor, flight: FlightPlan, line: _Line, phases: Floats
+) -> Iterator[SentPulses]:
     is_conical = sensor.pattern == "conical"
     half = np.radians(sensor.half_swath_deg)
     reach = 0.75 * flight.extent_m + (flight.height_m * np.tan(half) if is_conical else 5.0)
@@ -94,7 +94,7 @@ def _line_pulses(
     rows = np.arange(-reach, reach, line.spacing_m * (2.0 if is_conical else 1.0))
     scan = _scan_angles(sensor, flight, line.spacing_m)
     share = np.arange(len(scan)) / len(scan)
-    waiting: list[Pulses] = []
+    waiting: list[SentPulses] = []
     count = 0
     for number, along in enumerate(rows):
         place = along + share * (rows[1] - rows[0])
@@ -103,16 +103,16 @@ def _line_pulses(
         seconds = _BETWEEN_LINES_S * line.number + (place + reach) / SPEED_M_S
         if inside.any():
             pulses = pulses._replace(time_s=seconds, line=np.full(len(scan), line.number, np.uint8))
-            waiting.append(Pulses._make(one[inside] for one in pulses))
+            waiting.append(SentPulses._make(one[inside] for one in pulses))
             count += int(inside.sum())
         if waiting and (count >= CHUNK or number + 1 == rows.size):
-            joined = Pulses._make(np.concatenate(one) for one in zip(*waiting, strict=True))
+            joined = SentPulses._make(np.concatenate(one) for one in zip(*waiting, strict=True))
             for begin in range(0, count, CHUNK):
-                yield Pulses._make(one[begin : begin + CHUNK] for one in joined)
+                yield SentPulses._make(one[begin : begin + CHUNK] for one in joined)
             waiting, count = [], 0
 
 
-def _scan_angles(sensor: FlightSensor, flight: Flight, spacing_m: float) -> Floats:
+def _scan_angles(sensor: FlightSensor, flight: FlightPlan, spacing_m: float) -> Floats:
     """(k, 2) of one sweep: to the right and forward, tangents of the angles off nadir."""
     half = np.radians(sensor.half_swath_deg)
     if sensor.pattern == "conical":
@@ -125,7 +125,7 @@ def _scan_angles(sensor: FlightSensor, flight: Flight, spacing_m: float) -> Floa
     return np.column_stack([np.tan(angles), np.zeros(len(angles))])
 
 
-def _aimed(flight: Flight, line: _Line, at: tuple[Floats, Floats], scan: Floats) -> Pulses:
+def _aimed(flight: FlightPlan, line: _Line, at: tuple[Floats, Floats], scan: Floats) -> SentPulses:
     place, phases = at
     seconds = place / SPEED_M_S
     swing = 2 * np.pi * seconds / _ATTITUDE_S
@@ -145,10 +145,10 @@ def _aimed(flight: Flight, line: _Line, at: tuple[Floats, Floats], scan: Floats)
         [middle + place[:, None] * forward, flight.ground_m + flight.height_m + sway]
     )
     none = np.zeros(len(plan))
-    return Pulses(origin, direction, none, none.astype(np.uint8), np.degrees(np.arctan(right)))
+    return SentPulses(origin, direction, none, none.astype(np.uint8), np.degrees(np.arctan(right)))
 
 
-def _is_inside(flight: Flight, pulses: Pulses) -> NDArray[np.bool_]:
+def _is_inside(flight: FlightPlan, pulses: SentPulses) -> NDArray[np.bool_]:
     down = (flight.ground_m - pulses.origin[:, 2]) / pulses.direction[:, 2]
     plan = pulses.origin[:, :2] + down[:, None] * pulses.direction[:, :2]
     inside: NDArray[np.bool_] = np.all(

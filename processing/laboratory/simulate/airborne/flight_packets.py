@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.core.kernels import kernel
-from processing.laboratory.simulate.airborne.beam_kernels import BeamHits
+from processing.laboratory.simulate.airborne.beam_kernels import FootprintHits
 from processing.laboratory.simulate.airborne.flight_sensors import FlightSensor
 from processing.laboratory.simulate.airborne.landscapes import Floats
 from processing.laboratory.simulate.airborne.waveform_kernels import (
@@ -21,12 +21,12 @@ _TAIL_NS = 15.0
 """A return nearer to its packet's end begins another packet: its echo would be cut."""
 
 
-class Returns(NamedTuple):
+class PacketReturns(NamedTuple):
     """Returns in the order of pulses and ranges.
 
     ``beam`` int64, row of its pulse; ``packet`` int64, row of its packet; ``range_m`` float64;
-    ``location_ps`` float64 from the packet's first sample; ``height`` float32, counts; ``number`` and
-    ``of_pulse`` uint8; ``label`` uint8.
+    ``location_ps`` float64 from the packet's first sample; ``height`` float32, counts; ``number``
+    and ``of_pulse`` uint8; ``label`` uint8.
     """
 
     beam: NDArray[np.int64]
@@ -40,8 +40,8 @@ class Returns(NamedTuple):
 
 
 def returns_of(
-    hits: BeamHits, records: Records, sensor: FlightSensor
-) -> tuple[Returns, NDArray[np.float32]]:
+    hits: FootprintHits, records: Records, sensor: FlightSensor
+) -> tuple[PacketReturns, NDArray[np.float32]]:
     """Returns, and the packets that they lie in: (k, samples) counts."""
     n = int(records.found.sum())
     beam = np.repeat(np.arange(len(records.found)), records.found)
@@ -60,7 +60,7 @@ def returns_of(
     samples = starts[owner][:, None] + np.arange(sensor.samples)
     wave = records.counts[beam[owner][:, None], np.clip(samples, 0, records.counts.shape[1] - 1)]
     location = (place - starts) * sensor.interval_ns * 1000.0
-    returns = Returns(
+    returns = PacketReturns(
         beam,
         packet,
         range_m,
@@ -93,7 +93,7 @@ def _packet_kernel(
 
 @kernel
 def _label_kernel(
-    hits: BeamHits,
+    hits: FootprintHits,
     beam: NDArray[np.int64],
     range_m: NDArray[np.float64],
     labels: NDArray[np.uint8],

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.core.kernels import kernel
-from processing.laboratory.simulate.airborne.beam_kernels import BeamHits
+from processing.laboratory.simulate.airborne.beam_kernels import FootprintHits
 from processing.laboratory.simulate.airborne.flight_sensors import (
     PULSE_BEFORE_NS,
     PULSE_STEP_NS,
@@ -65,7 +65,7 @@ class Records(NamedTuple):
     height: NDArray[np.float32]
 
 
-def true_echoes(hits: BeamHits) -> Echoes:
+def true_echoes(hits: FootprintHits) -> Echoes:
     """Groups of hits with gaps of less than :data:`ECHO_GAP_M`."""
     n = int(hits.met.sum())
     echoes = Echoes(
@@ -82,7 +82,7 @@ def true_echoes(hits: BeamHits) -> Echoes:
 
 
 def record(
-    hits: BeamHits, sensor: FlightSensor, scale: float, random: np.random.Generator
+    hits: FootprintHits, sensor: FlightSensor, scale: float, random: np.random.Generator
 ) -> Records:
     """Waveforms as a sensor digitises them, and its returns.
 
@@ -119,7 +119,7 @@ def record(
 
 
 def clean_waves(
-    hits: BeamHits,
+    hits: FootprintHits,
     beams: NDArray[np.int64],
     first_m: Floats,
     order: tuple[FlightSensor, float, int],
@@ -138,13 +138,13 @@ def clean_waves(
     sensor, scale, samples = order
     waves = np.zeros((len(beams), samples), np.float32)
     used = np.full(len(beams), samples, np.int32)
-    chosen = BeamHits._make(one[beams] for one in hits)
+    chosen = FootprintHits._make(one[beams] for one in hits)
     _wave_kernel(chosen, pulse_table(sensor), (1.0, scale), (first_m, used, waves))
     return np.maximum(waves, 0.0)
 
 
 @kernel
-def _echo_kernel(hits: BeamHits, echoes: Echoes) -> int:
+def _echo_kernel(hits: FootprintHits, echoes: Echoes) -> int:
     found = 0
     of_code = np.zeros(256)
     for beam in range(len(hits.met)):
@@ -179,7 +179,7 @@ def _echo_kernel(hits: BeamHits, echoes: Echoes) -> int:
 
 @kernel
 def _wave_kernel(
-    hits: BeamHits,
+    hits: FootprintHits,
     table: NDArray[np.float64],
     size: tuple[float, float],
     waves: tuple[NDArray[np.float64], NDArray[np.int32], NDArray[np.float32]],

@@ -13,10 +13,10 @@ import numpy as np
 from processing.core.monitor import Monitor
 from processing.core.parameters import fill_parameters
 from processing.core.text import Text
-from processing.laboratory.simulate.airborne.beam_kernels import BeamHits, cast_beams
+from processing.laboratory.simulate.airborne.beam_kernels import FootprintHits, cast_beams
 from processing.laboratory.simulate.airborne.flight_files import ArrayArchive, Columns, WaveformFile
-from processing.laboratory.simulate.airborne.flight_lines import Flight, Pulses, pulses_of
-from processing.laboratory.simulate.airborne.flight_packets import Returns, returns_of
+from processing.laboratory.simulate.airborne.flight_lines import FlightPlan, SentPulses, pulses_of
+from processing.laboratory.simulate.airborne.flight_packets import PacketReturns, returns_of
 from processing.laboratory.simulate.airborne.flight_scene import FlightScene, flight_scene
 from processing.laboratory.simulate.airborne.flight_sensors import (
     PULSE_BEFORE_NS,
@@ -120,13 +120,13 @@ class _Order:
 
     request: FlightRequest
     sensor: FlightSensor
-    flight: Flight
+    flight: FlightPlan
     shift: Floats
     scale: float
 
 
 def _ordered(request: FlightRequest, sensor: FlightSensor, scene: FlightScene) -> _Order:
-    flight = Flight(
+    flight = FlightPlan(
         request.length_m,
         request.density or sensor.density,
         request.height_m or sensor.height_m,
@@ -157,9 +157,9 @@ class _Files:
 class _Chunk(NamedTuple):
     """Pulses, what they meet, what is told of it, and the packets: (k, samples) counts."""
 
-    pulses: Pulses
-    hits: BeamHits
-    returns: Returns
+    pulses: SentPulses
+    hits: FootprintHits
+    returns: PacketReturns
     packets: np.typing.NDArray[np.float32]
 
 

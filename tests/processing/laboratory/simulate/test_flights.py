@@ -18,7 +18,7 @@ from processing.laboratory.simulate.airborne.flight_sensors import (
     PULSE_STEP_NS,
     pulse_table,
 )
-from processing.laboratory.simulate.airborne.waveform_flight import simulate_flight
+from processing.laboratory.simulate.flights import simulate_flight
 from processing.laboratory.simulate.requests import FlightRequest
 
 REQUEST = FlightRequest(seed=5, length_m=40.0, density=6.0)
@@ -35,7 +35,10 @@ def packets(folder: Path, cloud: laspy.LasData) -> NDArray[np.uint8]:
     """Counts of each point's packet."""
     size = int(cloud.wavepacket_size[0])
     raw = np.fromfile(folder / "in" / "flight.wdp", np.uint8)
-    return raw[np.asarray(cloud.wavepacket_offset, np.int64)[:, None] + np.arange(size)]
+    found: NDArray[np.uint8] = raw[
+        np.asarray(cloud.wavepacket_offset, np.int64)[:, None] + np.arange(size)
+    ]
+    return found
 
 
 def test_points_lie_where_their_pulse_went(made: Path) -> None:
