@@ -9,6 +9,9 @@ import numpy as np
 
 from processing.core.arrays import Floats, Integers
 
+KINDS = ("alone", "apart", "near", "weak")
+"""Of true echoes: by how far the next is, and weak ones."""
+
 APART_M, NEAR_M = 1.2, 0.6
 """A pulse of 4 ns separates targets 0.6 m apart (Shinohara 2022, equation 2.2)."""
 
@@ -78,9 +81,6 @@ class EchoScore:
         for name, errors in (("range_cm", self.errors_m), ("compact_cm", self.compact_errors_m)):
             values[name] = 100.0 * float(np.sqrt(np.mean(np.square(errors)))) if errors else np.nan
         return values
-
-
-KINDS = ("alone", "apart", "near", "weak")
 
 
 def echo_score(truth: TrueEchoes, pulse: Integers, range_m: Floats) -> EchoScore:
