@@ -30,7 +30,7 @@ from processing.laboratory.simulate.flights import simulate_flight
 from processing.laboratory.simulate.requests import FlightRequest
 from processing.methods.waveforms.decomposition import Digitiser, decompose
 from processing.methods.waveforms.system_pulse import noise_of, own_pulse, system_pulse
-from processing.scoring.echo_scores import EchoScore, TrueEchoes, echo_score
+from processing.laboratory.accuracy.echo_scores import EchoScore, TrueEchoes, echo_score
 
 _LENGTH_M = 60.0
 _MOST = 6000

@@ -134,7 +134,7 @@ def _fit(
     jac = np.zeros((n, y.size))
     normal, right = np.empty((n, n)), np.empty(n)
     whole, gradient = np.empty((n, n)), np.empty(n)
-    trial, moved = p.copy(), model.copy()
+    other_model, moved = p.copy(), model.copy()
     _model(table, grid, p, count, model)
     best = _chi(y, model, sigma, share, top)
     for _ in range(_ROUNDS):
@@ -149,13 +149,13 @@ def _fit(
             if not _solve(normal, right, n):
                 damping *= 10.0
                 continue
-            _move(p[:count], right, y.size - 1.0, widest, trial)
-            _model(table, grid, trial, count, moved)
+            _move(p[:count], right, y.size - 1.0, widest, other_model)
+            _model(table, grid, other_model, count, moved)
             chi = _chi(y, moved, sigma, share, top)
             if chi < best:
                 improved = best - chi > _ENOUGH * best
                 best = chi
-                p[:count, :3] = trial[:count, :3]
+                p[:count, :3] = other_model[:count, :3]
                 model[:] = moved
                 damping = max(1e-7, 0.2 * damping)
                 break
@@ -332,7 +332,7 @@ def _drop_weak(
     sigma, share, top, _, gain, _ = rule
     noise = (sigma, share, top)
     other = np.zeros_like(p)
-    trial = np.zeros(y.size)
+    other_model = np.zeros(y.size)
     while count > 1:
         chi = _fit(y, table, grid, noise, p, count, model, inverse)
         weakest = 0
@@ -344,10 +344,10 @@ def _drop_weak(
             other[one] = p[one + 1]
         for one in range(count - 1):
             other[one, 3] = 1.0 if other[one, 0] > _WIDTH_FROM * sigma else 0.0
-        without = _fit(y, table, grid, noise, other, count - 1, trial, inverse)
+        without = _fit(y, table, grid, noise, other, count - 1, other_model, inverse)
         if without - chi > gain:
             return count
-        p[:], model[:] = other, trial
+        p[:], model[:] = other, other_model
         count -= 1
     return count
 
@@ -369,7 +369,7 @@ def _split_broad(
     if count == 0:
         return 0
     chi = _fit(y, table, grid, noise, p, count, model, inverse)
-    other, trial = p.copy(), model.copy()
+    other, other_model = p.copy(), model.copy()
     one = 0
     while one < count and count < MOST_ECHOES:
         width = p[one, 2]
@@ -381,11 +381,11 @@ def _split_broad(
         other[one, 1], other[count, 1] = p[one, 1] - width, p[one, 1] + width
         other[one, 2], other[count, 2] = 0.0, 0.0
         other[one, 3], other[count, 3] = 0.0, 0.0
-        two = _fit(y, table, grid, noise, other, count + 1, trial, inverse)
+        two = _fit(y, table, grid, noise, other, count + 1, other_model, inverse)
         least = min(other[one, 0], other[count, 0])
         apart = abs(other[one, 1] - other[count, 1])
         if chi - two > split and least > _LEAST_PART * sigma and apart > _APART * grid[3]:
-            p[:], model[:] = other, trial
+            p[:], model[:] = other, other_model
             chi = two
             count += 1
         one += 1

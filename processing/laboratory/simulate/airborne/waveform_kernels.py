@@ -35,7 +35,7 @@ _VALLEY = 3.0
 """Standard deviations of the noise by which the waveform falls between two returns."""
 
 
-class Echoes(NamedTuple):
+class FootprintEchoes(NamedTuple):
     """True echoes of beams: ``beam`` int32 (m,), m in all; ranges in m; ``energy`` relative."""
 
     beam: NDArray[np.int32]
@@ -65,10 +65,10 @@ class Records(NamedTuple):
     height: NDArray[np.float32]
 
 
-def true_echoes(hits: FootprintHits) -> Echoes:
+def true_echoes(hits: FootprintHits) -> FootprintEchoes:
     """Groups of hits with gaps of less than :data:`ECHO_GAP_M`."""
     n = int(hits.met.sum())
-    echoes = Echoes(
+    echoes = FootprintEchoes(
         np.empty(n, np.int32),
         np.empty(n),
         np.empty(n, np.float32),
@@ -78,7 +78,7 @@ def true_echoes(hits: FootprintHits) -> Echoes:
         np.empty(n, np.uint8),
     )
     found = _echo_kernel(hits, echoes)
-    return Echoes._make(one[:found] for one in echoes)
+    return FootprintEchoes._make(one[:found] for one in echoes)
 
 
 def record(
@@ -144,7 +144,7 @@ def clean_waves(
 
 
 @kernel
-def _echo_kernel(hits: FootprintHits, echoes: Echoes) -> int:
+def _echo_kernel(hits: FootprintHits, echoes: FootprintEchoes) -> int:
     found = 0
     of_code = np.zeros(256)
     for beam in range(len(hits.met)):

@@ -15,7 +15,6 @@ from processing.methods.waveforms.system_pulse import (
     own_pulse,
     system_pulse,
 )
-from processing.scoring.echo_scores import TrueEchoes, echo_score
 
 SIGMA_NS, NOISE, BASELINE, SAMPLES = 1.7, 1.2, 9.0, 100
 TIMES = np.arange(-12, 12, 0.25)
@@ -110,20 +109,3 @@ def test_too_little_to_learn_a_pulse_from_is_told() -> None:
         own_pulse(waves([]), np.full(200, SAMPLES, np.int32), RecordNoise(BASELINE, NOISE), 255.0)
     with pytest.raises(Unsuitable):
         system_pulse(np.arange(9.0), np.arange(9.0))
-
-
-def test_echoes_are_scored_by_how_near_the_next_is() -> None:
-    truth = TrueEchoes(
-        np.array([0, 1, 1, 2, 2, 3]),
-        np.array([50.0, 50.0, 50.9, 50.0, 50.4, 60.0]),
-        np.zeros(6),
-        np.array([90.0, 90.0, 90.0, 90.0, 90.0, 5.0]),
-        np.ones(6, np.bool_),
-    )
-    score = echo_score(
-        truth, np.array([0, 1, 1, 2, 3, 3]), np.array([50.01, 50.0, 50.9, 50.2, 60.0, 70.0])
-    )
-    assert score.wanted == {"alone": 1, "apart": 2, "near": 2, "weak": 1}
-    assert score.found == {"alone": 1, "apart": 2, "near": 1, "weak": 1}
-    assert score.false == 1
-    assert score.measures["range_cm"] == pytest.approx(1.0)
