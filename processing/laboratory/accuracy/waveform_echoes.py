@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from processing.core.arrays import Floats, Integers
 from processing.core.monitor import SilentMonitor
 from processing.core.output_streams import write_every_character
+from processing.laboratory.accuracy.echo_scores import EchoScore, TrueEchoes, echo_score
 from processing.laboratory.seed_ranges import seeds_of
 from processing.laboratory.simulate.airborne.flight_scene import FLIGHT_STYLES
 from processing.laboratory.simulate.airborne.flight_sensors import FLIGHT_SENSORS
@@ -30,7 +31,6 @@ from processing.laboratory.simulate.flights import simulate_flight
 from processing.laboratory.simulate.requests import FlightRequest
 from processing.methods.waveforms.decomposition import Digitiser, decompose
 from processing.methods.waveforms.system_pulse import noise_of, own_pulse, system_pulse
-from processing.laboratory.accuracy.echo_scores import EchoScore, TrueEchoes, echo_score
 
 _LENGTH_M = 60.0
 _MOST = 6000
