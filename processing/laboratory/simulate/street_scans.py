@@ -161,4 +161,4 @@ def _stretches(
         beams = tripod_beams(pattern, (position, start_rad), columns, rows, (0, 0.0))
         met = BeamHits.of(scene.cast(beams.origins, beams.directions), scene.mesh)
         returns, _ = returns_of(beams, met, scene, scanner, key)
-        yield source.added(PulseHits(beams, met, returns, scene))
+        yield source.added(PulseHits(beams, met, returns, scene, scanner))

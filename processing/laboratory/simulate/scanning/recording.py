@@ -196,7 +196,7 @@ class SimulatedRecording:
         met = BeamHits.of(scene.cast(beams.origins, beams.directions), scene.mesh)
         self._moving.meet(beams, met)
         returns, _ = returns_of(beams, met, scene, self._scanner, self._keys[number])
-        noisy = self._noise[number].added(PulseHits(beams, met, returns, scene))
+        noisy = self._noise[number].added(PulseHits(beams, met, returns, scene, self._scanner))
         return HeadChunk(head, noisy)
 
 

@@ -31,13 +31,15 @@ REFLECTANCE, SPREAD, ROUGHNESS, GRAIN, SHINE, RETRO, STANDS, OPEN = range(8)
     WETNESS,
     LENGTH,
     GROWTH,
-) = range(11)
+    PASSED,
+) = range(12)
 
 TRUE, MIXED = 0, 1
 _BASE_M = 10.0
 # Grains of the surface within a beam make its echo stronger or weaker.
 _LEAST_SPECKLE, _MOST_SPECKLE, _SPECKLE_PER_M = 0.05, 0.2, 80.0
 _NEAR_M = 8.0  # nearer than this a receiver sees its own beam only in part
+_SLOPE_OF = 0.1  # of a grain on either side: over so much a surface's slope is told
 _LENGTHS_AS_ONE = 4.0  # of a pulse, within which a receiver of one return takes one range
 _OWN_LIKE_M = 0.05  # a range so near to what a beam met is of that, as in `scanner_noise`
 
@@ -107,6 +109,48 @@ def _strength(surface: Floats, reach: float, cosine: float, light: tuple[float, 
 
 
 @kernel
+def _lies_off(x: float, y: float, z: float, surface: Floats) -> float:
+    """How far a surface stands off its triangles at a place, m."""
+    u, v = (x + 0.37 * z) / surface[GRAIN], (y + 0.61 * z) / surface[GRAIN]
+    off: float = surface[ROUGHNESS] * 2.0 * relief(u, v, 7)
+    return off
+
+
+@kernel
+def mirrored_ways(
+    beams: tuple[Floats, Floats],
+    met: tuple[Floats, NDArray[np.uint8]],
+    surfaces: Floats,
+    out: Floats,
+) -> None:
+    """Ways on of beams that surfaces mirror, bent by how those lie off their triangles.
+
+    ``beams``: places on the surfaces, and ways there. ``met``: normals of the triangles, materials.
+    """
+    positions, ways = beams
+    normals, materials = met
+    across, tilted = np.empty((2, 3)), np.empty(3)
+    for ray in range(positions.shape[0]):
+        surface, normal = surfaces[materials[ray]], normals[ray]
+        least = np.argmin(np.abs(normal))
+        for axis in range(3):
+            across[0, axis] = (1.0 if axis == least else 0.0) - normal[least] * normal[axis]
+        across[0] /= math.sqrt(np.sum(across[0] ** 2))
+        across[1, 0] = normal[1] * across[0, 2] - normal[2] * across[0, 1]
+        across[1, 1] = normal[2] * across[0, 0] - normal[0] * across[0, 2]
+        across[1, 2] = normal[0] * across[0, 1] - normal[1] * across[0, 0]
+        tilted[:] = normal
+        step = _SLOPE_OF * surface[GRAIN]
+        for one in range(2):
+            low, high = positions[ray] - step * across[one], positions[ray] + step * across[one]
+            rise = _lies_off(high[0], high[1], high[2], surface)
+            rise -= _lies_off(low[0], low[1], low[2], surface)
+            tilted -= rise / (2 * step) * across[one]
+        tilted /= math.sqrt(np.sum(tilted**2))
+        out[ray] = ways[ray] - 2.0 * np.sum(ways[ray] * tilted) * tilted
+
+
+@kernel
 def first_returns(
     beams: tuple[int, Floats, Floats],
     met: tuple[Floats, Floats, NDArray[np.uint8]],
@@ -137,7 +181,7 @@ def first_returns(
         z = origins[ray, 2] + reach * directions[ray, 2]
         u, v = x + 0.37 * z, y + 0.61 * z
         spread = relief(u / 0.35, v / 0.35, 3) + 0.5 * relief(u / 0.04, v / 0.04, 5)
-        high = surface[ROUGHNESS] * 2.0 * relief(u / surface[GRAIN], v / surface[GRAIN], 7)
+        high = _lies_off(x, y, z, surface)
         if surface[STANDS] > 0.0:
             grown = 0.5 + 0.5 * relief(u / 1.3, v / 1.3, 11)
             blade = share_of(number, key + 1)
@@ -149,7 +193,7 @@ def first_returns(
         if scanner[WETNESS] > 0.0:
             wet = relief(x / 2.7, y / 2.7, 13) + 0.4 * relief(x / 0.5, y / 0.5, 17)
             wet = min(1.0, max(0.0, (wet - 1.0 + 1.4 * scanner[WETNESS]) * 3.0))
-        power = _strength(surface, reach, cosine, (spread, wet))
+        power = scanner[PASSED] * _strength(surface, reach, cosine, (spread, wet))
         weak = scanner[WEAKEST]
         if power < weak * (0.5 + share_of(number, key + 2)):
             continue
@@ -229,9 +273,10 @@ def warm_up() -> None:
     """Compile the kernels."""
     one, three = np.ones(1), np.ones((1, 3))
     bytes_, body = np.zeros(1, np.uint8), np.zeros(1, np.int64)
-    surfaces, scanner = np.ones((1, 8)), np.ones(GROWTH + 1)
+    surfaces, scanner = np.ones((1, 8)), np.ones(PASSED + 1)
     out = np.ones(1), np.ones(1), np.ones(1)
     start, key = 0, 1
+    mirrored_ways((three, three), (three, bytes_), surfaces, three.copy())
     first_returns((start, three, three), (one, one, bytes_), surfaces, scanner, key, out)
     echoes = one.copy(), one.copy(), one.copy(), body.copy(), bytes_
     edge_returns(start, (one, body), scanner, key, echoes)

@@ -31,8 +31,7 @@ _PASSES_ON = 0.55
 _PULSE_LENGTH_M = 0.7
 _FEWEST_M = 1.2  # nearer is the vehicle itself
 _WEAKEST_SHARE = 0.02
-# All materials as the kernels take them.
-_SURFACES: Floats = np.array(
+OPTICS: Floats = np.array(
     [
         (
             one.reflectance,
@@ -47,7 +46,9 @@ _SURFACES: Floats = np.array(
         for one in (SURFACES[material] for material in Material)
     ]
 )
-_IS_OPEN = _SURFACES[:, OPEN] > 0
+"""(materials, 8) All materials as the kernels take them."""
+
+_IS_OPEN = OPTICS[:, OPEN] > 0
 
 
 @dataclass(frozen=True)
@@ -170,7 +171,7 @@ def weakest_of(sensor: Sensor) -> float:
 
 
 def scanner_numbers(sensor: Sensor, pulses: int, weather: Weather) -> Floats:
-    """The numbers of a scanner for the kernels: (11,) float64."""
+    """The numbers of a scanner for the kernels: (12,) float64."""
     return np.array(
         [
             sensor.noise_m,
@@ -184,6 +185,7 @@ def scanner_numbers(sensor: Sensor, pulses: int, weather: Weather) -> Floats:
             weather.wetness,
             _PULSE_LENGTH_M,
             weather.growth,
+            1.0,
         ]
     )
 
@@ -197,7 +199,7 @@ def returns_of(
     ----------
     scene : RaycastScene
         What the beams go on into behind leaves and nets.
-    scanner : (11,) float64
+    scanner : (12,) float64
         `scanner_numbers`.
     key : int
         Of the recording's chance.
@@ -215,7 +217,7 @@ def returns_of(
     first_returns(
         (beams.first, beams.origins, beams.directions),
         (met.ranges, met.cosines, met.material),
-        _SURFACES,
+        OPTICS,
         scanner,
         key,
         (ranges, truths, strengths),

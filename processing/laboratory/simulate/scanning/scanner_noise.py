@@ -14,6 +14,11 @@ from numpy.typing import NDArray
 
 from processing.laboratory.simulate.scanning.beams import Beams, ScanPattern
 from processing.laboratory.simulate.scanning.casting import NOWHERE, RaycastScene
+from processing.laboratory.simulate.scanning.mirrored_echoes import (
+    MIRRORS,
+    MirroredEchoes,
+    mirrored_echoes,
+)
 from processing.laboratory.simulate.scanning.noise_options import noise_options
 from processing.laboratory.simulate.scanning.passing_noise import PassingNoise, Path
 from processing.laboratory.simulate.scanning.returns import (
@@ -24,7 +29,6 @@ from processing.laboratory.simulate.scanning.returns import (
     Returns,
     number_returns,
     shares_of,
-    weakest_of,
 )
 from processing.laboratory.simulate.scanning.sensors import Sensor
 from processing.laboratory.simulate.scene.chance import chance
@@ -34,10 +38,7 @@ from processing.laboratory.simulate.scene.mesh import Floats, Integers
 _GROUND_LABELS = (2, 3, 11, 67)
 _SLOT_S = 1.0
 _LEAST_M = 0.6
-_MIRRORS = (Material.GLASS, Material.MIRROR, Material.WATER)
 _MIRRORED_SHARE = 0.25
-_MIRRORED_POWER = 0.008  # of a white surface seen in a pane, twice through a tenth of the light
-_LEVEL = 0.7  # of a normal's z: water and wet ground rather than windows
 _LONE_M = 40.0  # beyond it a receiver's own noise is as seldom as far things
 _WEAK = 0.02  # of the power that a white surface 10 m away gives
 _JUMPING_SHARE = 0.02
@@ -58,12 +59,15 @@ class PulseHits:
     returns : Returns
         Without this noise.
     scene : RaycastScene
+    scanner : (12,) float64
+        `scanner_numbers`.
     """
 
     beams: Beams
     met: BeamHits
     returns: Returns
     scene: RaycastScene
+    scanner: Floats
 
 
 class NoiseSource:
@@ -119,10 +123,10 @@ class NoiseSource:
         self._streaks(beams, met, ranges)
         self._drops(beams, met, ranges)
         self._late(beams, met, ranges)
-        is_level = self._mirrored(recorded, ranges)
+        images = self._mirrored(recorded, ranges)
         known = np.where(np.isfinite(met.ranges), met.ranges, NOWHERE)
         ranges[np.abs(ranges - known) < _OWN_LIKE_M] = np.nan
-        return self._merged(recorded, ranges, is_level)
+        return self._merged(recorded, ranges, images)
 
     def _chosen(self, beams: Beams, rows: Integers, share: float, salt: int) -> Integers:
         return rows[shares_of(beams.first + rows, self._key + salt) < share]
@@ -203,41 +207,30 @@ class NoiseSource:
         detour = _LEAST_DETOUR_M - np.log(np.maximum(shares_of(beams.first + rows, 701), 1e-9))
         ranges[rows] = met.ranges[rows] + detour
 
-    def _mirrored(self, recorded: PulseHits, ranges: Floats) -> Integers:
-        """Glass and water: some beams come back from what they mirror; rows of level mirrors."""
-        beams, met, scene = recorded.beams, recorded.met, recorded.scene
-        rows = np.flatnonzero(np.isin(met.material, _MIRRORS) & np.isfinite(met.ranges))
+    def _mirrored(self, recorded: PulseHits, ranges: Floats) -> MirroredEchoes:
+        """Glass and water: some beams come back from what they mirror."""
+        beams, met = recorded.beams, recorded.met
+        rows = np.flatnonzero(np.isin(met.material, MIRRORS) & np.isfinite(met.ranges))
         rows = self._chosen(beams, rows, _MIRRORED_SHARE, 400)
-        if rows.size == 0:
-            return rows
-        positions = beams.origins[rows] + beams.directions[rows] * met.ranges[rows, None]
-        hits = scene.cast(beams.origins[rows], beams.directions[rows])
-        is_same = (np.abs(hits.ranges - met.ranges[rows]) < 1e-3) & (hits.triangles >= 0)
-        rows, positions, found = rows[is_same], positions[is_same], hits.triangles[is_same]
-        corners = scene.mesh.vertices[scene.mesh.triangles[found]]
-        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-        normals /= np.maximum(np.linalg.norm(normals, axis=1), 1e-12)[:, None]
-        directions = beams.directions[rows]
-        turned = directions - 2 * np.einsum("ij,ij->i", directions, normals)[:, None] * normals
-        beyond = scene.cast(positions + 0.01 * turned, turned).ranges
-        away = np.where(np.isfinite(beyond), met.ranges[rows] + beyond, NOWHERE)
-        lucky = 0.5 + shares_of(beams.first + rows, self._key + 401)
-        is_back = _MIRRORED_POWER * (10.0 / away) ** 2 > weakest_of(self._sensor) * lucky
-        is_back &= away < self._sensor.most_m
-        ranges[rows[is_back]] = met.ranges[rows[is_back]] + beyond[is_back]
-        return rows[is_back & (np.abs(normals[:, 2]) > _LEVEL)]
+        images = mirrored_echoes(
+            beams, met.ranges, recorded.scene, recorded.scanner, rows, key=self._key
+        )
+        ranges[images.rays] = images.ranges
+        return images
 
-    def _merged(self, recorded: PulseHits, ranges: Floats, is_level: Integers) -> Returns:
+    def _merged(self, recorded: PulseHits, ranges: Floats, images: MirroredEchoes) -> Returns:
         beams, met, returns = recorded.beams, recorded.met, recorded.returns
         rows = np.flatnonzero((ranges > _LEAST_M) & (ranges < self._sensor.most_m))
         if rows.size == 0:
             return returns
         is_below = np.isin(met.label[rows], _GROUND_LABELS) & (ranges[rows] > met.ranges[rows])
-        is_below |= np.isin(rows, is_level)
+        is_below |= np.isin(rows, images.rays[images.is_level])
         positions = beams.origins[rows] + beams.directions[rows] * ranges[rows, None]
         is_below |= _under_ground(recorded.scene, positions)
         label = np.where(is_below, LOW_NOISE, HIGH_NOISE).astype(np.uint8)
         weak = 10.0 ** (-3.0 + 2.5 * shares_of(beams.first + rows, self._key + 500))
+        is_image = np.isin(rows, images.rays)
+        weak[is_image] = images.strengths[np.searchsorted(images.rays, rows[is_image])]
         ones = np.ones(rows.size, np.uint8)
         noise = Returns(
             beams.first + rows,

@@ -9,6 +9,7 @@ import pytest
 
 from processing.laboratory.simulate.scanning.beams import Beams, ScanPattern
 from processing.laboratory.simulate.scanning.casting import RaycastScene
+from processing.laboratory.simulate.scanning.mirrored_echoes import mirrored_echoes
 from processing.laboratory.simulate.scanning.passing_noise import Path
 from processing.laboratory.simulate.scanning.returns import (
     NO_EVIDENCE,
@@ -159,7 +160,7 @@ def test_what_lies_beyond_the_range_of_unambiguity_is_folded_back() -> None:
     scanner = scanner_numbers(_PHASE, 5080, Weather(0.0, 0.5))
     returns, _ = returns_of(beams, met, scene, scanner, 99)
     noise = NoiseSource(3, (0, 0), _PHASE, ScanPattern(5080, 200.0, 0.0), _STANDS)
-    noisy = noise.added(PulseHits(beams, met, returns, scene))
+    noisy = noise.added(PulseHits(beams, met, returns, scene, scanner))
     folded = np.abs(np.linalg.norm(noisy.xyz - beams.origins[0], axis=1) - 31.0) < 1.0
     assert folded.sum() > 1000
     assert set(noisy.label[folded].tolist()) <= {7, 18}
@@ -173,15 +174,35 @@ def test_points_in_a_window_are_told_to_be_noise() -> None:
     mesh, beams = built.mesh(), _fan(20_000, 80, 100)
     scene = RaycastScene(mesh, np.zeros(3))
     met = BeamHits.of(scene.cast(beams.origins, beams.directions), mesh)
-    returns, _ = returns_of(beams, met, scene, scanner_numbers(_PULSE, 3000, Weather(0.0, 0.5)), 99)
+    scanner = scanner_numbers(_PULSE, 3000, Weather(0.0, 0.5))
+    returns, _ = returns_of(beams, met, scene, scanner, 99)
     quiet = replace(_PULSE, most_m=100.0)
     noisy = NoiseSource(3, (0, 0), quiet, ScanPattern(3000, 100.0, 0.0), _STANDS).added(
-        PulseHits(beams, met, returns, scene)
+        PulseHits(beams, met, returns, scene, scanner)
     )
     behind = noisy.xyz[:, 0] > 6
     assert behind.sum() > 2000
     assert (noisy.label[behind] == 18).all()
     assert noisy.xyz[behind, 0] == pytest.approx(13.0, abs=0.3)
+
+
+def test_an_image_in_a_window_is_measured_less_exactly_than_its_wall() -> None:
+    built = MeshBuilder()
+    built.add(box((5.0, -9.0, 0.0), (5.01, 9.0, 9.0)), Material.GLASS, 6, 4)
+    built.add(box((-4.0, -9.0, 0.0), (-3.0, 9.0, 9.0)), Material.PLASTER, 6, 5)
+    mesh, beams = built.mesh(), _fan(20_000, 80, 100)
+    scene, scanner = RaycastScene(mesh, np.zeros(3)), scanner_numbers(_PULSE, 3000, Weather(0, 1))
+    met = BeamHits.of(scene.cast(beams.origins, beams.directions), mesh)
+    rays = np.arange(20_000)
+    images = mirrored_echoes(beams, met.ranges, scene, scanner, rays, key=99)
+    wall = replace(beams, directions=beams.directions * [-1.0, 1.0, 1.0])
+    seen = BeamHits.of(scene.cast(wall.origins, wall.directions), mesh)
+    whole = 13.0 / beams.directions[images.rays, 0]
+    direct = _returned(mesh, wall, _PULSE)
+    rows = direct.pulse - wall.first
+    near = np.linalg.norm(direct.xyz - wall.origins[rows], axis=1) - seen.ranges[rows]
+    assert 1.5 * near.std() < (images.ranges - whole).std() < 0.05
+    assert np.median(images.strengths) < 0.05 * np.median(direct.strength)
 
 
 def test_weak_returns_of_a_phase_scanner_jump_by_whole_waves() -> None:
@@ -191,7 +212,7 @@ def test_weak_returns_of_a_phase_scanner_jump_by_whole_waves() -> None:
     scanner = scanner_numbers(_PHASE, 5080, Weather(0.0, 0.5))
     returns, truths = returns_of(beams, met, scene, scanner, 99)
     noise = NoiseSource(3, (0, 0), _PHASE, ScanPattern(5080, 200.0, 0.0), _STANDS)
-    noisy = noise.added(PulseHits(beams, met, returns, scene))
+    noisy = noise.added(PulseHits(beams, met, returns, scene, scanner))
     off = np.linalg.norm(noisy.xyz - beams.origins[0], axis=1) - truths[noisy.pulse - beams.first]
     waves = off * 60.0 / _PHASE.most_m
     jumped = (np.abs(waves - np.round(waves)) < 0.05) & (np.abs(np.round(waves)) >= 1)
@@ -200,16 +221,17 @@ def test_weak_returns_of_a_phase_scanner_jump_by_whole_waves() -> None:
 
 
 def test_what_a_pane_mirrors_from_the_ground_is_noise_below_the_ground() -> None:
-    built = _floor(Material.ASPHALT)
+    built = _floor(Material.CONCRETE)
     pane = np.array([[[7.95, -5.0, 0.5], [7.95, 5.0, 0.5]], [[8.05, -5.0, 2.4], [8.05, 5.0, 2.4]]])
     built.add(grid(pane), Material.GLASS, 6, 9)
     mesh = built.mesh()
     scene, beams = RaycastScene(mesh, np.zeros(3)), _fan(6000, 75.0, 89.0)
     met = BeamHits.of(scene.cast(beams.origins, beams.directions), mesh)
     quiet = replace(_PULSE, noise_m=0.0)
-    returns = returns_of(beams, met, scene, scanner_numbers(quiet, 3000, Weather(0.0, 0.5)), 99)[0]
+    scanner = scanner_numbers(quiet, 3000, Weather(0.0, 0.5))
+    returns = returns_of(beams, met, scene, scanner, 99)[0]
     noisy = NoiseSource(3, (0, 0), quiet, ScanPattern(3000, 100.0, 0.0), _STANDS).added(
-        PulseHits(beams, met, returns, scene)
+        PulseHits(beams, met, returns, scene, scanner)
     )
     is_low = noisy.xyz[:, 2] < -0.1
     assert is_low.sum() > 20
