@@ -44,7 +44,7 @@ from processing.methods.road.poles.pole_confidence import PoleFacts, facts_of, i
 from processing.methods.road.poles.roofs import fellows_of
 from processing.methods.road.poles.shaft_kernels import FREE
 from processing.methods.road.poles.shaft_sides import seen_sides
-from processing.methods.road.poles.shafts import Shaft, find_shafts
+from processing.methods.road.poles.shafts import Shaft, find_shafts, with_whole_sides
 from processing.methods.road.poles.street_poles import (
     REACH_M,
     carried_if_likely,
@@ -82,9 +82,6 @@ _SEEDS, _AVENUES, _CHECK = "900-917", "600-615", "918-923"
 """Streets that the weights were learnt from, usual ones and avenues, and others to check with."""
 
 _NOISE_CODES = (7, 18)
-
-_LOW_WORTH = 3.0
-"""Of a low pole: streets with rows of bollards have more of them than these."""
 
 _ON_M, _NEAR_M = 0.25, 0.6
 """How near to a true pole a shaft is its own, and how near it counts neither way: a second cone
@@ -127,8 +124,7 @@ def known_shafts(scenes: Iterator[RoadScene]) -> dict[bool, LabelledThings]:
     rows: dict[bool, list[tuple[PoleFacts, bool, float, int]]] = {True: [], False: []}
     for number, scene in enumerate(scenes):
         for low, facts, is_right in _judge_shafts(scene):
-            worth = _LOW_WORTH if low and is_right else 1.0
-            rows[low].append((facts, is_right, worth, number))
+            rows[low].append((facts, is_right, 1.0, number))
         sys.stderr.write(f"{scene.name}: {len(rows[True])} low, {len(rows[False])} high shafts\n")
     return {low: LabelledThings.of(rows[low], len(PoleFacts._fields)) for low in rows}
 
@@ -143,9 +139,10 @@ def _judge_shafts(scene: RoadScene) -> Iterator[tuple[bool, PoleFacts, bool]]:
     truth = read_mapped(scene.truth("poles"))
     poles = truth.of_kinds(POLES, "point", Text("poles", "柱状物"))
     true = positions_of(poles)[:, :2] - plan.origin[:2]
-    usual_m, fellows = usual_noise_m(shafts), fellows_of(shafts)
     feet = np.array([one.foot[:2] for one in shafts])
     around = points_about(scene.drives, plan, feet, REACH_M, monitor)
+    shafts = with_whole_sides(shafts, around, monitor)
+    usual_m, fellows = usual_noise_m(shafts), fellows_of(shafts)
     labels = label_shafts(shafts, true, usual_m)
     codes = _codes(scene)
     for number, (shaft, label) in enumerate(zip(shafts, labels, strict=True)):

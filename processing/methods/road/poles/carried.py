@@ -81,8 +81,12 @@ _PLATE_FEWEST, _LEAST_PLATE_M = 12, 0.25
 _CURVED = 0.3
 """Share of its patches, those across its rim or its back included."""
 
-_PATCH_M, _PATCHES = 0.35, 30
-"""Radius of patches whose bulge is told, and how many: the smallest mirror has 0.3 m."""
+_PATCH_M = 0.35
+"""Radius of patches whose bulge is told: the smallest mirror has 0.3 m."""
+
+_PIECE_M, _PATCHES = 0.4, 6
+"""Height of a piece of a shaft, and patches that are looked at in each: the smallest plates are as
+high, and a crown above a sign has more points than the sign."""
 
 _PATCH_WIDE_M, _SMOOTH_M = 0.06, 0.01
 """Standard deviation of a patch's points along its shorter side, and off its surface: lines, edges
@@ -135,7 +139,8 @@ class Carried:
     curved : float
         Share of its patches that bulge as mirrors do.
     smooth : float
-        Share of the patches beside it that are smooth surfaces: plates, and no twigs.
+        Share of the patches beside it that are smooth surfaces, plates and no twigs, where it is
+        the largest along the shaft.
     mirror_deg : float
         Where its mirror looks, clockwise from north, 0 to 360; of several that to which most of
         their patches belong. NaN where no patch bulges.
@@ -300,15 +305,24 @@ def _plate(points: Floats) -> tuple[int, float, float, float, float]:
     from scipy.spatial import cKDTree
 
     tree = cKDTree(points)
-    shapes = [
-        _bulge_of(points[near] - points[number])
-        for number in np.linspace(0, len(points) - 1, _PATCHES).astype(np.int64).tolist()
-        if len(near := tree.query_ball_point(points[number], _PATCH_M)) >= _PLATE_FEWEST
-    ]
-    told = [one for one in shapes if one is not None]
+    pieces = (high / _PIECE_M).astype(np.int64)
+    order = np.argsort(pieces, kind="stable")
+    told: list[Floats] = []
+    smooth = 0.0
+    for members in np.split(order, np.flatnonzero(np.diff(pieces[order])) + 1):
+        if len(members) < _PLATE_FEWEST:
+            continue
+        shapes = [
+            _bulge_of(points[near] - points[number])
+            for number in members[np.linspace(0, len(members) - 1, _PATCHES).astype(np.int64)]
+            if len(near := tree.query_ball_point(points[number], _PATCH_M)) >= _PLATE_FEWEST
+        ]
+        of_piece = [one for one in shapes if one is not None]
+        told += of_piece
+        smooth = max(smooth, len(of_piece) / _PATCHES)
     looks = [one for one in told if one.any()]
     curved = len(looks) / len(told) if told else 0.0
-    return len(points), width, curved, len(told) / _PATCHES, _facing_deg(looks)
+    return len(points), width, curved, smooth, _facing_deg(looks)
 
 
 def _facing_deg(looks: Sequence[Floats]) -> float:
@@ -330,8 +344,8 @@ def _main_axis(plan: Floats) -> Floats:
 def _bulge_of(patch: Floats) -> Floats | None:
     """Where a patch looks that is a piece of a sphere as mirrors are: (3,) a unit vector.
 
-    0 if it doesn't bulge so, None of what is no smooth surface. A mirror's dish bulges as its glass
-    does, so that it looks the same way from behind.
+    0 if it doesn't bulge so, None of what is no smooth surface, or bulges more, as trunks and
+    people do. A mirror's dish bulges as its glass does, so that it looks the same way from behind.
     """
     middle = patch - patch.mean(axis=0)
     extents, axes = np.linalg.eigh(middle.T @ middle / len(patch))
@@ -347,6 +361,8 @@ def _bulge_of(patch: Floats) -> Floats | None:
         return None
     bulge = abs(float(found[3]))
     is_sure = bulge > 4 * scatter * float(np.sqrt(cofactors[3, 3]))
+    if is_sure and 2 * bulge >= 1 / _LEAST_RADIUS_M:
+        return None
     if not is_sure or not 1 / _MOST_RADIUS_M < 2 * bulge < 1 / _LEAST_RADIUS_M:
         return np.zeros(3)
     # At the patch's own middle: its normal where it is a piece of a sphere.

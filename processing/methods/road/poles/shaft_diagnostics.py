@@ -15,8 +15,11 @@ from processing.methods.road.poles.shaft_kernels import (
     EAST,
     INSIDE,
     LEAN_EAST,
+    LEAST_ARC,
+    LEAST_SLABS,
     LEVEL_M,
     LOW,
+    MOST_INSIDE,
     NOISE,
     NORTH,
     RADIUS,
@@ -26,11 +29,8 @@ from processing.methods.road.poles.shaft_kernels import (
 )
 from processing.methods.road.poles.shafts import (
     ABOUT_M,
-    LEAST_ARC,
     LEAST_LONG_M,
-    LEAST_SLABS,
     MOST_DIAMETER_M,
-    MOST_INSIDE,
     shafts_about,
 )
 from processing.methods.road.poles.surface_lines import SLAB_M

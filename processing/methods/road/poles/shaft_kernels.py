@@ -61,6 +61,13 @@ LEVEL_M = 1.2
 BESIDE_M = 0.3
 """About a shaft: what stands so near hides or holds it."""
 
+LEAST_SLABS, LEAST_ARC, MOST_INSIDE = 0.5, 0.24, 0.6
+"""Of the heights that show it, of its circumference, and of points within it for each on it: a
+scanner sees nearly half of any post on all its heights, and nothing inside."""
+
+_CANE_M = 0.03
+"""Radius of the thickest canes of banners, and of posts of 60.5 mm."""
+
 _TRIES = 4
 """Lines of a column: edges of plates and twigs beside a post make some of their own."""
 
@@ -140,7 +147,7 @@ def shafts_kernel(points: Floats, starts: Integers, limits: ShaftLimits, shafts:
                 break
             strike(part, line, is_left)
             shaft = shafts[column, number]
-            if _touching_circle(part, drawn, limits, line, shaft) and _settled(part, limits, shaft):
+            if _shaft_on(part, drawn, limits, line, shaft):
                 _thinner_above(part, limits, shaft)
                 for point in range(len(part)):
                     if abs(_off(part, point, shaft)) < _APART_M:
@@ -150,6 +157,73 @@ def shafts_kernel(points: Floats, starts: Integers, limits: ShaftLimits, shafts:
                 shaft[:] = 0.0
             if number == shafts.shape[1]:
                 break
+
+
+@kernel
+def _shaft_on(
+    points: Floats, drawn: Integers, limits: ShaftLimits, line: Floats, shaft: Floats
+) -> bool:
+    """The shaft along a line on its surface; whether there is one.
+
+    Where the likeliest circle makes none, the line may be a cane, which is told where no cloth
+    hangs on it: elsewhere cloth has far more points, and circles that touch both are neither.
+    """
+    if (
+        _touching_circle(points, drawn, limits, line, shaft)
+        and _settled(points, limits, shaft)
+        and is_shaft(shaft)
+    ):
+        return True
+    clear = _clear_of_cloth(points, limits, line)
+    if clear.size < 8:
+        return False
+    canes = ShaftLimits(
+        limits.least_m,
+        _CANE_M,
+        limits.steepest,
+        limits.low_m,
+        limits.high_m,
+        limits.gap_m,
+        limits.noise_m,
+    )
+    shaft[:] = 0.0
+    return bool(
+        _touching_circle(points, clear, canes, line, shaft)
+        and _settled(points, canes, shaft)
+        and is_shaft(shaft)
+    )
+
+
+@kernel
+def _clear_of_cloth(points: Floats, limits: ShaftLimits, line: Floats) -> Integers:
+    """Points about a line, at heights that have more on a cane along it than beside."""
+    on, near = np.zeros(MOST_SLABS, np.int64), np.zeros(MOST_SLABS, np.int64)
+    is_near = np.zeros(len(points), np.bool_)
+    for point in range(len(points)):
+        up = points[point, 2]
+        if up < limits.low_m or up > limits.high_m:
+            continue
+        east = points[point, 0] - line[0] - line[2] * up
+        north = points[point, 1] - line[1] - line[3] * up
+        away, slab = math.hypot(east, north), int(up / SLAB_M)
+        is_near[point] = away < BESIDE_M
+        near[slab] += away < BESIDE_M
+        on[slab] += away < 2 * _CANE_M
+    is_clear = 2 * on > near
+    for point in range(len(points)):
+        if is_near[point]:
+            is_near[point] = is_clear[int(points[point, 2] / SLAB_M)]
+    if is_clear.sum() < _FEWEST_CLEAR:
+        is_near[:] = False
+    return np.flatnonzero(is_near)
+
+
+@kernel
+def is_shaft(shaft: Floats) -> bool:
+    """Whether enough of a shaft is seen, and little in it."""
+    return bool(
+        shaft[SLABS] >= LEAST_SLABS and shaft[ARC] >= LEAST_ARC and shaft[INSIDE] <= MOST_INSIDE
+    )
 
 
 @kernel

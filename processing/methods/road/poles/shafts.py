@@ -18,12 +18,16 @@ from processing.methods.road.objects.foot import foot_height
 from processing.methods.road.objects.sparse_plan import SparsePlan
 from processing.methods.road.poles.shaft_kernels import (
     ARC,
+    BESIDE_M,
     DEVIATION,
     EAST,
     INSIDE,
     LEAN_EAST,
+    LEAST_ARC,
+    LEAST_SLABS,
     LEVEL_M,
     LOW,
+    MOST_INSIDE,
     NOISE,
     NORTH,
     POINTS,
@@ -68,9 +72,9 @@ crowns; hidden by plates and twigs for 1.5 m."""
 LEAST_LONG_M = 0.4
 """The shortest delineators, 0.5 m, with a decimetre hidden."""
 
-LEAST_SLABS, LEAST_ARC, MOST_INSIDE = 0.5, 0.24, 0.6
-"""Of the heights that show it, of its circumference, and of points within it for each on it: a
-scanner sees nearly half of any post on all its heights, and nothing inside."""
+_CUT_M = ABOUT_M - BESIDE_M
+"""Of a shaft whose surface lies farther from its column, what stands beside it was cut off, or half
+of itself: hedges and walls beside a post draw its column to them."""
 
 _SAME_M = 0.1
 """Axes nearer than this are of one shaft that two columns showed."""
@@ -138,6 +142,47 @@ def find_shafts(
     for members in passes_of(drives):
         found += _of_pass(columns, _only(gathered, members), monitor)
     return _one_of_each(found)
+
+
+def with_whole_sides(
+    shafts: Sequence[Shaft], around: ColumnPoints, monitor: Monitor
+) -> list[Shaft]:
+    """The same, those far from their column fitted again to what stands about themselves.
+
+    Parameters
+    ----------
+    around : ColumnPoints
+        Points about the shafts, `ABOUT_M` and farther.
+    """
+    whole: list[Shaft] = []
+    for number, shaft in enumerate(shafts):
+        monitor.check()
+        whole.append(_fitted_again(around, number, shaft) if _is_cut(shaft) else shaft)
+    return whole
+
+
+def _is_cut(shaft: Shaft) -> bool:
+    return bool(np.hypot(*shaft.told[EAST : NORTH + 1]) + shaft.radius_m > _CUT_M)
+
+
+def _fitted_again(around: ColumnPoints, number: int, shaft: Shaft) -> Shaft:
+    """The shaft on the same axis that all points about it tell; itself where they tell none."""
+    part = around.of(number)
+    local, drives = around.local[part], around.drives[part]
+    near = np.hypot(*(local[:, :2] - shaft.foot[:2]).T) < ABOUT_M
+    near &= np.isin(drives, np.unique(shaft.drives))
+    about = ColumnPoints(
+        np.array([0, np.count_nonzero(near)], np.int64),
+        local[near],
+        drives[near],
+        around.points[part][near],
+    )
+    place = FoundColumns(shaft.foot[None, :2], shaft.foot[2:], np.zeros(1, np.uint32))
+    told = np.zeros((1, _OF_COLUMN, SHAFT_WIDTH))
+    shafts_kernel(about.local - shaft.foot, about.starts, _LIMITS, told)
+    again = [_standing(place, about, 0, one) for one in told[0][_are_shafts(told)[0]]]
+    off = [float(np.hypot(*(one.foot - shaft.foot)[:2])) for one in again]
+    return again[int(np.argmin(off))] if off and min(off) < _SAME_M else shaft
 
 
 def _distinct(columns: FoundColumns) -> FoundColumns:
@@ -243,13 +288,19 @@ def _standing(columns: FoundColumns, gathered: ColumnPoints, column: int, told: 
 
 def _one_of_each(found: Sequence[Shaft]) -> list[Shaft]:
     """Of shafts on one axis the one with the most points."""
-    kept: list[Shaft] = []
-    for shaft in sorted(found, key=lambda one: -one.told[POINTS]):
-        level = min(shaft.top_m, LEVEL_M)
-        same = any(
-            np.hypot(*(shaft.foot - one.foot)[:2] + level * (shaft.lean - one.lean)) < _SAME_M
-            for one in kept
-        )
-        if not same:
-            kept.append(shaft)
-    return kept
+    from scipy.spatial import cKDTree
+
+    if not found:
+        return []
+    order = sorted(range(len(found)), key=lambda one: -found[one].told[POINTS])
+    feet = np.array([found[one].foot[:2] for one in order]).reshape(-1, 2)
+    leans = np.array([found[one].lean for one in order]).reshape(-1, 2)
+    is_kept = np.zeros(len(order), np.bool_)
+    tree, reach = cKDTree(feet), _SAME_M + 2 * _LIMITS.steepest * LEVEL_M
+    for place, number in enumerate(order):
+        level = min(found[number].top_m, LEVEL_M)
+        near = np.array(tree.query_ball_point(feet[place], reach, return_sorted=True), np.int64)
+        before = near[is_kept[near]]
+        off = feet[place] - feet[before] + level * (leans[place] - leans[before])
+        is_kept[place] = not (np.hypot(off[:, 0], off[:, 1]) < _SAME_M).any()
+    return [found[order[place]] for place in np.flatnonzero(is_kept).tolist()]

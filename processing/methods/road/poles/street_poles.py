@@ -17,13 +17,18 @@ from processing.methods.road.objects.column_points import ColumnPoints, points_a
 from processing.methods.road.objects.survey import survey_columns
 from processing.methods.road.poles.carried import Carried, carried_of, is_short, type_of
 from processing.methods.road.poles.mirror_images import mirror_images
-from processing.methods.road.poles.pole_confidence import chance_of, facts_of, is_low
+from processing.methods.road.poles.pole_confidence import (
+    chance_of,
+    facts_of,
+    is_low,
+    most_chance_of,
+)
 from processing.methods.road.poles.reflectors import ReflectorSearch
 from processing.methods.road.poles.roofs import fellows_of
 from processing.methods.road.poles.shaft_kernels import LEVEL_M, POINTS
 from processing.methods.road.poles.shaft_sides import seen_sides
-from processing.methods.road.poles.shafts import Shaft, find_shafts
-from processing.methods.road.poles.surroundings import surroundings_of
+from processing.methods.road.poles.shafts import Shaft, find_shafts, with_whole_sides
+from processing.methods.road.poles.surroundings import Surroundings, surroundings_of
 from processing.recording.drive import Drive
 
 REACH_M = 5.0
@@ -33,7 +38,10 @@ _APART_M = 0.4
 """Two poles never stand nearer to each other: the surer one stays."""
 
 _LEAST_CHANCE = 0.05
-"""What is less likely a pole is measured no further."""
+"""What is less likely a pole, or would be if all that isn't known yet spoke for it, is measured no
+further."""
+
+_NOTHING = Surroundings(rails=0.0, cover=0.0, over=0.0, roof=0.0, crown=None)
 
 _LIKELY = 0.3
 """Of what is less likely a pole nobody asks whether a pane mirrors it."""
@@ -108,13 +116,18 @@ def street_poles(drives: Sequence[Drive], monitor: Monitor) -> tuple[StreetPole,
         return ()
     feet = np.array([one.foot[:2] for one in shafts])
     around = points_about(drives, plan, feet, REACH_M, PartMonitor(monitor, 0.7, 0.9))
+    shafts = with_whole_sides(shafts, around, monitor)
     usual_m, fellows = usual_noise_m(shafts), fellows_of(shafts)
     sure: list[tuple[float, int, Carried]] = []
     for number, shaft in enumerate(shafts):
         monitor.check()
+        if most_chance_of(shaft, _NOTHING, usual_m) < _LEAST_CHANCE:
+            continue
         local = around.local[around.of(number)] - shaft.foot
-        carried = carried_if_likely(own_points(around, number, shaft), shaft, usual_m)
         beside = surroundings_of(local, shaft, usual_m, fellows[number])
+        if most_chance_of(shaft, beside, usual_m) < _LEAST_CHANCE:
+            continue
+        carried = carried_if_likely(own_points(around, number, shaft), shaft, usual_m)
         sides = seen_sides(drives, shaft, plan.origin)
         facts = facts_of(shaft, beside, carried, sides, usual_m)
         chance = chance_of(facts, is_low=is_low(shaft))
