@@ -213,7 +213,7 @@ def scan_pieces(
     rows: list[Integers] = []
 
     def of_chunk(chunk: DriveChunk) -> tuple[int, Floats, Integers]:
-        return chunk.drive, *_pieces_of(chunk, heads[chunk.drive])
+        return chunk.drive, *_pieces_of(chunk, heads[chunk.drive], monitor)
 
     for drive, found, pulses in in_order(of_chunk, chunks_of(drives, plan.origin, monitor)):
         values.append(found)
@@ -233,19 +233,21 @@ def pieces_between(drive: Drive, start: int, stop: int, plan: SparsePlan) -> Sca
     head = _Head(drive, plan, None, SilentMonitor())
     local = drive.coordinates.chunk_about(start, stop, plan.origin)
     is_noise = class_columns(drive.columns).noise_between(start, stop)
-    found, pulses = _pieces_of(DriveChunk(0, start, local, is_noise), head)
+    found, pulses = _pieces_of(DriveChunk(0, start, local, is_noise), head, SilentMonitor())
     ground = float(np.quantile(local[:, 2], _LOWEST_SHARE))
     rows = (pulses / head.pulses).astype(np.int64)
     return ScanPieces(found, np.zeros(len(found), np.int64), rows, np.full(len(found), ground))
 
 
-def _pieces_of(chunk: DriveChunk, head: _Head) -> tuple[Floats, Integers]:
+def _pieces_of(chunk: DriveChunk, head: _Head, monitor: Monitor) -> tuple[Floats, Integers]:
     """Pieces of a chunk, and the pulse of the first point of each."""
     points = head.points(chunk.start, chunk.local, chunk.is_noise)
     kinds = np.empty(len(chunk.local), np.uint8)
     brightness_kernel(points, head.heights(chunk.local), head.limits, kinds)
+    monitor.check()
     runs = np.empty(len(kinds), np.int32)
     runs_kernel(points, kinds, head.limits, runs)
+    monitor.check()
     room = np.empty((int(np.count_nonzero(kinds)) // 2 + 1, PIECE))
     found = room[: pieces_kernel(points, kinds, runs, head.limits, room)].copy()
     pulses = points.pulses[found[:, 10].astype(np.int64)]
