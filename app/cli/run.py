@@ -8,8 +8,9 @@ from app.cli.opened import inputs_of, terminal_monitor
 from app.cli.output import print_lines
 from app.cli.set_option import settings_of_words
 from app.settings.language import system_language
+from processing.operations.new_points import NewPointsOperation, make_points
 from processing.operations.run import RunOperation, no_single_input, run_operation
-from processing.tools.registry import COMPARISONS
+from processing.tools.registry import COMPARISONS, POINT_MAKERS
 
 
 def command(arguments: argparse.Namespace) -> int:
@@ -19,6 +20,9 @@ def command(arguments: argparse.Namespace) -> int:
         from app.cli import volume
 
         return volume.command(arguments)
+    if arguments.tool in POINT_MAKERS:
+        print_lines(str(make_points(points_operation_of(arguments), terminal_monitor())))
+        return 0
     outcome = run_operation(operation_of(arguments), terminal_monitor())
     print_lines(*(words.in_language(system_language()) for words in outcome.words))
     return 0
@@ -33,8 +37,7 @@ def operation_of(arguments: argparse.Namespace) -> RunOperation:
         They name no input, or a setting without a value.
     """
     given = vars(arguments)
-    if not arguments.inputs or any(given.get(name) for name in ("before", "after", "also")):
-        raise no_single_input(arguments.tool)
+    _check_inputs(arguments)
     return RunOperation(
         arguments.tool,
         inputs_of(arguments),
@@ -42,3 +45,23 @@ def operation_of(arguments: argparse.Namespace) -> RunOperation:
         arguments.output,
         given.get("accept_above"),
     )
+
+
+def points_operation_of(arguments: argparse.Namespace) -> NewPointsOperation:
+    """The operation of a tool that makes points, as a command's arguments ask for it.
+
+    Raises
+    ------
+    MissingInput, OutOfRange
+        They name no input, or a setting without a value.
+    """
+    _check_inputs(arguments)
+    return NewPointsOperation(
+        arguments.tool, inputs_of(arguments), arguments.output, settings_of_words(arguments.set)
+    )
+
+
+def _check_inputs(arguments: argparse.Namespace) -> None:
+    given = vars(arguments)
+    if not arguments.inputs or any(given.get(name) for name in ("before", "after", "also")):
+        raise no_single_input(arguments.tool)

@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 
 from processing.core.monitor import Monitor, SilentMonitor
 from processing.core.text import Text
+from processing.image.neighbourhoods.component_column import ComponentColumn
 from processing.recording.columns.columns import ColumnWriter
-from processing.tools.components import ComponentColumn
 from processing.tools.tool import FinishedColumns, OutputColumn, PointResult
 
 COMPONENT_COLUMNS = frozenset({"segment"})

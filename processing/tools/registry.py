@@ -24,9 +24,10 @@ from processing.tools.poles import POLES
 from processing.tools.segments import SEGMENTS
 from processing.tools.signs import SIGNS
 from processing.tools.template import TEMPLATE
-from processing.tools.tool import Comparison, Tool
+from processing.tools.tool import Comparison, NewPoints, Tool
 from processing.tools.trees import TREES
 from processing.tools.volume import VOLUME
+from processing.tools.waveform_decompose import WAVEFORM_DECOMPOSE
 from processing.tools.wires import WIRES
 
 _DECLARED = (
@@ -45,10 +46,11 @@ _DECLARED = (
     COLOUR,
     TEMPLATE,
     VOLUME,
+    WAVEFORM_DECOMPOSE,
 )
 
 TOOLS: Mapping[str, Tool] = {
-    tool.id: tool for tool in _DECLARED if not isinstance(tool.method, Comparison)
+    tool.id: tool for tool in _DECLARED if not isinstance(tool.method, Comparison | NewPoints)
 }
 
 COMPARISONS: Mapping[str, Tool] = {
@@ -57,9 +59,15 @@ COMPARISONS: Mapping[str, Tool] = {
 """Those that compare two grounds; they run on no drive."""
 
 
+POINT_MAKERS: Mapping[str, Tool] = {
+    tool.id: tool for tool in _DECLARED if isinstance(tool.method, NewPoints)
+}
+"""Those that make points of their own, into a file."""
+
+
 def every_tool() -> Mapping[str, Tool]:
-    """Tools and comparisons."""
-    return {**TOOLS, **COMPARISONS}
+    """Tools, comparisons and what makes points."""
+    return {**TOOLS, **COMPARISONS, **POINT_MAKERS}
 
 
 def point_tools() -> Mapping[str, Tool]:

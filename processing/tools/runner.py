@@ -29,6 +29,7 @@ from processing.tools.tool import (
     Finder,
     FinishedColumns,
     Needs,
+    NewPoints,
     PerDrive,
     PerPoint,
     PerPointOfDrive,
@@ -291,8 +292,8 @@ def _result_of(
                 )
                 monitor.check()
             return result
-        case Comparison():
-            message = f"{tool.id} runs on no drive"
+        case Comparison() | NewPoints():
+            message = f"{tool.id} says nothing about the points of a drive"
             raise ValueError(message)
         case _:
             assert_never(tool.method)

@@ -7,7 +7,7 @@ of a few kinds (:data:`ToolMethod`): no project, no view, no global.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import Enum
 from pathlib import Path
@@ -338,13 +338,49 @@ class Comparison:
     compare: VolumeComparer
 
 
+@dataclass(frozen=True, eq=False)
+class MadePoints:
+    """Points that were not delivered.
+
+    Attributes
+    ----------
+    xyz : (n, 3) float64
+        m, project CRS.
+    columns : mapping
+        (n,) each, by the names that LAS gives them: ``gps_time``, ``intensity``, …
+    extra : mapping
+        (n,) each, by names of their own; the same in all parts of a result.
+    """
+
+    xyz: NDArray[np.float64]
+    columns: Mapping[str, NDArray[Any]]
+    extra: Mapping[str, NDArray[Any]]
+
+
+# A drive, the tool's parameters, whom to tell: its points, some at a time.
+PointMaker = Callable[[Drive, Any, Monitor], Iterator[MadePoints]]
+
+
+@dataclass(frozen=True)
+class NewPoints:
+    """A method that makes points of its own from a drive; they go into a file.
+
+    Attributes
+    ----------
+    make : callable
+        The points, some at a time.
+    """
+
+    make: PointMaker
+
+
 PointMethod = PerPoint | PerPointOfDrive | PerDrive | Together
 """Says something about every point."""
 
 FindingMethod = Finder | SurveyFinder
 """Finds things, which a person accepts or rejects."""
 
-ToolMethod = PointMethod | FindingMethod | Comparison
+ToolMethod = PointMethod | FindingMethod | Comparison | NewPoints
 """How a tool works; :mod:`processing.tools.runner` knows what each needs."""
 
 
