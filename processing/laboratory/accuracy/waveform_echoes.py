@@ -24,12 +24,14 @@ from processing.core.arrays import Floats, Integers
 from processing.core.monitor import SilentMonitor
 from processing.core.output_streams import write_every_character
 from processing.laboratory.accuracy.echo_scores import EchoScore, TrueEchoes, echo_score
+from processing.laboratory.progress_lines import say
 from processing.laboratory.seed_ranges import seeds_of
 from processing.laboratory.simulate.airborne.flight_scene import FLIGHT_STYLES
 from processing.laboratory.simulate.airborne.flight_sensors import FLIGHT_SENSORS
 from processing.laboratory.simulate.flights import simulate_flight
 from processing.laboratory.simulate.requests import FlightRequest
 from processing.methods.waveforms.decomposition import Digitiser, decompose
+from processing.methods.waveforms.pulse_file import read_pulse
 from processing.methods.waveforms.system_pulse import noise_of, own_pulse, system_pulse
 
 _LENGTH_M = 60.0
@@ -60,8 +62,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser.add_argument("--pulse", choices=("given", "own"), default="given")
     options = parser.parse_args(arguments)
     heads = ("alone", "apart", "near", "weak", "false", "split", "range_cm", "compact_cm")
-    _say(f"| flight | {' | '.join(heads)} |")
-    _say("|---|" + "---|" * len(heads))
+    say(f"| flight | {' | '.join(heads)} |")
+    say("|---|" + "---|" * len(heads))
     styles, sensors = sorted(FLIGHT_STYLES), sorted(FLIGHT_SENSORS)
     for number, seed in enumerate(seeds_of(options.seeds)):
         style, sensor = styles[number % len(styles)], sensors[number % len(sensors)]
@@ -69,9 +71,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
             request = FlightRequest(seed=seed, length_m=_LENGTH_M, style=style, sensor=sensor)
             simulate_flight(request, Path(folder) / "flight", SilentMonitor())
             score = score_flight(Path(folder) / "flight", options.pulse)
-        _say(_line(f"{style} {seed}, {sensor}", score))
+        say(_line(f"{style} {seed}, {sensor}", score))
     for delivered in options.folders:
-        _say(_line(delivered.name, score_flight(delivered, options.pulse)))
+        say(_line(delivered.name, score_flight(delivered, options.pulse)))
     return 0
 
 
@@ -85,8 +87,8 @@ def score_flight(folder: Path, pulse: str) -> EchoScore:
     if pulse == "own":
         shape = own_pulse(samples, lengths, noise, packets.digitiser.top)
     else:
-        given = np.genfromtxt(folder / "in" / "system_pulse.csv", delimiter=",", skip_header=1)
-        shape = system_pulse(given[:, 0] / packets.digitiser.interval_ns, given[:, 1])
+        times_ns, amplitudes = read_pulse(folder / "in" / "system_pulse.csv")
+        shape = system_pulse(times_ns / packets.digitiser.interval_ns, amplitudes)
     echoes = decompose(samples, lengths, shape, noise, packets.digitiser)
     found_m = packets.first_m[echoes.row] + echoes.time_ns * _HALF_LIGHT_M_NS
     order = np.lexsort((found_m, packets.beam[echoes.row]))
@@ -134,11 +136,6 @@ def _line(name: str, score: EchoScore) -> str:
 
 
 _SHARES = {"alone", "apart", "near", "weak", "false", "split"}
-
-
-def _say(line: str) -> None:
-    sys.stdout.write(line + "\n")
-    sys.stdout.flush()
 
 
 if __name__ == "__main__":

@@ -21,6 +21,7 @@ from processing.laboratory.simulate.scanning.delivered_files import (
     ArrayFile,
     DeliveredPoints,
     delivered_header,
+    point_records,
 )
 
 _PACKETS_BEGIN = 60
@@ -68,12 +69,7 @@ class WaveformFile:
         """
         location, direction, angle_deg = ray
         size = samples.shape[1] * self._bits // 8
-        record = laspy.ScaleAwarePointRecord.zeros(points.time_s.size, header=self._header)
-        placed = np.rint((points.xyz - self._header.offsets) / self._header.scales)
-        record["X"], record["Y"], record["Z"] = placed.astype(np.int32).T
-        record["gps_time"], record["intensity"] = points.time_s, points.intensity
-        record["return_number"], record["number_of_returns"] = points.number, points.count
-        record["point_source_id"] = np.full(points.time_s.size, points.source_id)
+        record = point_records(points, self._header)
         record["scan_angle"] = np.rint(angle_deg / _SCAN_ANGLE_UNIT_DEG).astype(np.int16)
         record["wavepacket_index"] = np.ones(packet.size, np.uint8)
         record["wavepacket_offset"] = (self._at + packet * size).astype(np.uint64)

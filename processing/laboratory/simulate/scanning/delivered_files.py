@@ -65,6 +65,17 @@ def delivered_header(point_format: int, offset: Floats) -> laspy.LasHeader:
     return header
 
 
+def point_records(points: DeliveredPoints, header: laspy.LasHeader) -> laspy.ScaleAwarePointRecord:
+    """Points as a header's point format holds them; what they don't tell is 0."""
+    record = laspy.ScaleAwarePointRecord.zeros(points.time_s.size, header=header)
+    placed = np.rint((points.xyz - header.offsets) / header.scales)
+    record["X"], record["Y"], record["Z"] = placed.astype(np.int32).T
+    record["gps_time"], record["intensity"] = points.time_s, points.intensity
+    record["return_number"], record["number_of_returns"] = points.number, points.count
+    record["point_source_id"] = np.full(points.time_s.size, points.source_id)
+    return record
+
+
 class PointFile:
     """A LAZ 1.4 file of point format 6, written chunk by chunk; closed by ``with``.
 
@@ -83,12 +94,7 @@ class PointFile:
 
     def write(self, points: DeliveredPoints) -> None:
         """Add points behind those that are there."""
-        record = laspy.ScaleAwarePointRecord.zeros(points.time_s.size, header=self._header)
-        placed = np.rint((points.xyz - self._header.offsets) / self._header.scales)
-        record["X"], record["Y"], record["Z"] = placed.astype(np.int32).T
-        record["gps_time"], record["intensity"] = points.time_s, points.intensity
-        record["return_number"], record["number_of_returns"] = points.number, points.count
-        record["point_source_id"] = np.full(points.time_s.size, points.source_id)
+        record = point_records(points, self._header)
         with report_write_failures(self._file):
             self._writer.write_points(record)
         self.count += points.time_s.size
