@@ -21,7 +21,7 @@ from processing.core.errors import Unsuitable
 from processing.core.text import Text
 from processing.map.change import Change
 from processing.tools.registry import extractors
-from processing.tools.runner import check_needs, tool_of
+from processing.tools.running.runner import check_needs, tool_of
 from widgets.parts.job_view import JobView
 from widgets.parts.literal_text import literal
 

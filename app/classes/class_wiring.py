@@ -24,7 +24,7 @@ from processing.project.evaluation.study_store import KeptStudy
 from processing.project.evaluation.truth_making import CheckedPoints
 from processing.project.evaluation.truth_store import Truth
 from processing.project.results.found_features import parameter_values
-from processing.tools.runner import tool_of
+from processing.tools.running.runner import tool_of
 
 _WROTE = Text("Wrote {path}.", "{path} を書き出しました。")
 

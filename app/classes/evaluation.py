@@ -10,8 +10,8 @@ from processing.map.feature import Feature, Status
 from processing.operations.repeated_runs import runs_before
 from processing.project.evaluation.mapped_map import mapped_of
 from processing.project.evaluation.run_evaluation import RunEvaluation, evaluate_runs, within_drives
-from processing.scoring.file_scores import FeatureScorer, FileScore
-from processing.scoring.mapped_features import MappedFile
+from processing.scoring.features.file_scores import FeatureScorer, FileScore
+from processing.scoring.features.mapped_features import MappedFile
 from processing.tools.registry import scorers
 
 

@@ -20,7 +20,7 @@ from processing.project.evaluation.truth_making import MadeTruth, truth_as_it_st
 from processing.project.evaluation.truth_of_file import coded_truth, truth_of_file
 from processing.project.evaluation.truth_study import study_by_truth
 from processing.recording.drive import Drive
-from processing.tools.runner import tool_of
+from processing.tools.running.runner import tool_of
 from processing.tools.tool import FinishedColumns
 
 

@@ -32,7 +32,7 @@ from processing.project.evaluation.truth_store import TRUTH
 from processing.recording.columns.ordering import read_chunk
 from processing.recording.drive import Drive
 from processing.tools.registry import asked_classes
-from processing.tools.runner import check_needs, tool_of
+from processing.tools.running.runner import check_needs, tool_of
 
 _READING = 0.1
 _HEAD = (Text("precision", "適合率"), Text("recall", "再現率"), Text.same("F"))

@@ -20,7 +20,7 @@ from processing.project.additions import Additions, home_of
 from processing.project.importing.import_request import ImportRequest
 from processing.project.project import Project
 from processing.recording.drive import Drive
-from processing.tools.runner import tool_of
+from processing.tools.running.runner import tool_of
 
 
 def import_work(

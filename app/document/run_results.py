@@ -18,7 +18,7 @@ from processing.project.importing.drive_completion import drive_changed
 from processing.project.project import Project
 from processing.project.results.found_classes import relabel_points
 from processing.project.results.found_features import FoundFeatures
-from processing.tools.runner import tool_of
+from processing.tools.running.runner import tool_of
 
 
 @dataclass(frozen=True)

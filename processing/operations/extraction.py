@@ -25,7 +25,7 @@ from processing.operations.inputs import (
 )
 from processing.operations.run import RunOperation, RunOutcome, run_in_project, run_to_file
 from processing.tools.registry import extractors
-from processing.tools.runner import tool_of
+from processing.tools.running.runner import tool_of
 
 _ENDING = ".geojson"
 

@@ -21,7 +21,7 @@ from processing.project.results.surface_files import delivered_files, surface_fi
 from processing.project.store.exchanged_files import NewStepFiles
 from processing.recording.columns.columns import column_path
 from processing.recording.drive import Drive
-from processing.tools.runner import RunRequest, drives_of, run, run_together, tool_of
+from processing.tools.running.runner import RunRequest, drives_of, run, run_together, tool_of
 from processing.tools.tool import CandidateResult, FinishedColumns
 
 _CLASS = "classification"
@@ -114,7 +114,7 @@ def finish_run(
     Raises
     ------
     UserError
-        As :func:`processing.tools.runner.run`; `Cancelled`.
+        As :func:`processing.tools.running.runner.run`; `Cancelled`.
     """
     started = datetime.now(UTC)
     tool, parameters = tool_of(request.tool), request.parameters

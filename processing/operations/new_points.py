@@ -18,7 +18,7 @@ from processing.formats.registry import FORMATS
 from processing.operations.inputs import OpenedInputs, OperationInputs, opened_inputs
 from processing.recording.vehicle_path.clock import ClockKind, kind_of
 from processing.tools.registry import POINT_MAKERS
-from processing.tools.runner import check_needs
+from processing.tools.running.runner import check_needs
 from processing.tools.tool import NewPoints, Tool
 
 

@@ -31,8 +31,8 @@ from processing.project.own_models import with_own_model
 from processing.project.project import Project
 from processing.project.results.surface_files import surface_beside, surface_file_of
 from processing.recording.drive import Drive
-from processing.tools.run_shares import RunShare, run_shares
-from processing.tools.runner import RunRequest, check_needs, tool_of
+from processing.tools.running.run_shares import RunShare, run_shares
+from processing.tools.running.runner import RunRequest, check_needs, tool_of
 from processing.tools.tool import Tool
 
 _RUNNING = 0.95

@@ -26,8 +26,8 @@ from processing.project.results.surface_files import (
     write_surface_content,
 )
 from processing.recording.drive import Drive
-from processing.tools.run_shares import RunShare, run_shares
-from processing.tools.runner import run, run_together
+from processing.tools.running.run_shares import RunShare, run_shares
+from processing.tools.running.runner import run, run_together
 from processing.tools.tool import CandidateResult, FinishedColumns, Tool
 
 _RUNNING = 0.8

@@ -14,12 +14,12 @@ from processing.formats.reports.number_file import read_numbers
 from processing.formats.vectors.mapped_shapes import read_mapped
 from processing.project.evaluation.mapped_map import agreed_map, found_map
 from processing.project.project import Project, is_project
-from processing.scoring.coded_points import CodedFile, pairs_by_order
-from processing.scoring.file_scores import FeatureScorer, FileScore, VolumeScorer
-from processing.scoring.mapped_features import MappedFile, check_same_system
-from processing.scoring.pairs_by_position import pairs_by_position
-from processing.scoring.point_scores import PointScore, PointScorer
-from processing.scoring.volumes import MEASURES
+from processing.scoring.features.file_scores import FeatureScorer, FileScore, VolumeScorer
+from processing.scoring.features.mapped_features import MappedFile, check_same_system
+from processing.scoring.features.volumes import MEASURES
+from processing.scoring.points.coded_points import CodedFile, pairs_by_order
+from processing.scoring.points.pairs_by_position import pairs_by_position
+from processing.scoring.points.point_scores import PointScore, PointScorer
 from processing.tools.registry import scorer_of
 
 _ORDER, _POSITION = "order", "place"

@@ -23,7 +23,7 @@ from processing.project.work_store import WorkStore
 from processing.recording.drive import Drive
 from processing.recording.recorded_together import recordings_of
 from processing.tools.ground import GROUND_TOOL
-from processing.tools.run_shares import mark_all
+from processing.tools.running.run_shares import mark_all
 
 _NAME_MARK = "#"
 _FOUND = 0.7

@@ -2,29 +2,29 @@
 
 A tool names its scorer in its declaration; ``zuka score``, the accuracy tables and the evaluation
 in the window take it from there. A tool that classifies points has a
-:class:`~processing.scoring.point_scores.PointScorer`, one that maps features a
-:class:`~processing.scoring.file_scores.FeatureScorer`.
+:class:`~processing.scoring.points.point_scores.PointScorer`, one that maps features a
+:class:`~processing.scoring.features.file_scores.FeatureScorer`.
 """
 
 from __future__ import annotations
 
 from processing.core.text import Text
-from processing.scoring.class_scores import class_score
-from processing.scoring.curb_lines import curb_score
-from processing.scoring.file_scores import FeatureScorer, VolumeScorer
-from processing.scoring.gutters import gutter_score
-from processing.scoring.point_scores import (
+from processing.scoring.features.curb_lines import curb_score
+from processing.scoring.features.file_scores import FeatureScorer, VolumeScorer
+from processing.scoring.features.gutters import gutter_score
+from processing.scoring.features.poles import pole_score
+from processing.scoring.features.signs import sign_score
+from processing.scoring.features.trees import tree_score
+from processing.scoring.features.volumes import volume_score
+from processing.scoring.features.wires import wire_score
+from processing.scoring.points.class_scores import class_score
+from processing.scoring.points.point_scores import (
     GROUND_CODES,
     NOISE_CODES,
     PointScorer,
     ground_score,
     noise_score,
 )
-from processing.scoring.poles import pole_score
-from processing.scoring.signs import sign_score
-from processing.scoring.trees import tree_score
-from processing.scoring.volumes import volume_score
-from processing.scoring.wires import wire_score
 
 Scorer = PointScorer | FeatureScorer | VolumeScorer
 """One per kind of result."""

@@ -22,7 +22,7 @@ from processing.methods.ground.ground_columns import CLASS, GROUND, HEIGHT, OTHE
 from processing.methods.ground.stored_surface import FILE_NAME
 from processing.methods.noise.beams.behind_surfaces import echoes_of
 from processing.recording.drive import Drive
-from processing.scoring.asked_classes import GROUND_ASKED
+from processing.scoring.points.asked_classes import GROUND_ASKED
 from processing.scoring.scorers import GROUND_SCORER
 from processing.tools.tool import (
     FinishedColumns,

@@ -19,7 +19,7 @@ from processing.methods.noise.noise_codes import HIGH_NOISE, LOW_NOISE
 from processing.recording.columns.columns import ColumnWriter
 from processing.recording.columns.ordering import chunk_ranges, read_chunk
 from processing.recording.drive import Drive
-from processing.scoring.asked_classes import NOISE_ASKED
+from processing.scoring.points.asked_classes import NOISE_ASKED
 from processing.scoring.scorers import NOISE_SCORER
 from processing.tools.tool import FinishedColumns, Needs, OutputColumn, PerDrive, Tool
 

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 
 from processing.core.errors import name_with_type
 from processing.core.text import Text
-from processing.scoring.asked_classes import AskedClass
+from processing.scoring.points.asked_classes import AskedClass
 from processing.scoring.scorers import Scorer
 from processing.tools.classify import CLASSIFY
 from processing.tools.colour import COLOUR

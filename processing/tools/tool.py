@@ -28,7 +28,7 @@ from processing.methods.road.requested_position import RequestedPosition
 from processing.recording.columns.columns import Columns, column_path
 from processing.recording.columns.ordering import read_chunk
 from processing.recording.drive import Drive
-from processing.scoring.asked_classes import AskedClass
+from processing.scoring.points.asked_classes import AskedClass
 from processing.scoring.scorers import Scorer
 
 CandidateValue = str | float | int | bool | None
@@ -381,7 +381,7 @@ FindingMethod = Finder | SurveyFinder
 """Finds things, which a person accepts or rejects."""
 
 ToolMethod = PointMethod | FindingMethod | Comparison | NewPoints
-"""How a tool works; :mod:`processing.tools.runner` knows what each needs."""
+"""How a tool works; :mod:`processing.tools.running.runner` knows what each needs."""
 
 
 @dataclass(frozen=True)

@@ -33,7 +33,7 @@ from processing.recording.kinds import ImageKind
 from processing.section.cut import Cut
 from processing.section.points_in_cut import points_in_cut
 from processing.tools.registry import TOOLS
-from processing.tools.runner import RunRequest, columns_of, run
+from processing.tools.running.runner import RunRequest, columns_of, run
 
 SILENT = SilentMonitor()
 DAMAGES = 6

@@ -22,7 +22,7 @@ from processing.project.importing.import_request import ImportRequest
 from processing.project.importing.importing import import_drives
 from processing.project.project import Project
 from processing.recording.kinds import ImageKind
-from processing.tools.runner import tool_of
+from processing.tools.running.runner import tool_of
 from resources import path_of
 from tests.journeys.conftest import WAIT_MS
 from tests.processing.project.cells import order_by_cells

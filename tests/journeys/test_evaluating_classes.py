@@ -26,7 +26,7 @@ from processing.project.evaluation.truth_store import has_truth
 from processing.project.importing.importing import ImportRequest
 from processing.recording.columns.error_map import ErrorMapValue
 from processing.tools.noise import NoiseParameters
-from processing.tools.runner import RunRequest, run
+from processing.tools.running.runner import RunRequest, run
 from tests.builders import write_laz, write_trajectory_csv
 from tests.journeys.conftest import WAIT_MS
 from tests.mouse_events import NO_KEYS, move_mouse

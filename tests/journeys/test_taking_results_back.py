@@ -9,7 +9,7 @@ from pathlib import Path
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QImage
 
-from processing.tools.runner import tool_of
+from processing.tools.running.runner import tool_of
 from resources import path_of
 from tests.journeys.conftest import WAIT_MS, Surveyor
 from tests.journeys.earthwork_user import Builder, two_epochs

@@ -25,7 +25,6 @@ from processing.recording.camera_images.image_list import ImageList
 from processing.recording.camera_images.image_store import write_images
 from processing.recording.drive import Drive
 from processing.recording.kinds import ImageKind
-from processing.tools.blocks import JoinedResults, blocks_of
 from processing.tools.classify import CLASSIFY, ClassifyParameters
 from processing.tools.colour import COLOUR, ColourParameters
 from processing.tools.curbs import CURBS
@@ -36,7 +35,8 @@ from processing.tools.noise import NOISE, NoiseParameters
 from processing.tools.normals import NORMALS, NormalsParameters
 from processing.tools.poles import POLES
 from processing.tools.registry import TOOLS, point_tools
-from processing.tools.runner import RunRequest, columns_of, run
+from processing.tools.running.blocks import JoinedResults, blocks_of
+from processing.tools.running.runner import RunRequest, columns_of, run
 from processing.tools.segments import SEGMENTS, SegmentsParameters, compute_segments
 from processing.tools.signs import SIGNS
 from processing.tools.template import TEMPLATE

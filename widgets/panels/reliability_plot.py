@@ -14,7 +14,7 @@ from PySide6.QtGui import QColor, QPainter, QPaintEvent, QPalette, QPen
 from PySide6.QtWidgets import QSizePolicy, QWidget
 from typing_extensions import override
 
-from processing.scoring.reliability import Reliability
+from processing.scoring.points.reliability import Reliability
 
 _STEPS = (0.0, 0.25, 0.5, 0.75, 1.0)
 _STRIP = 0.16

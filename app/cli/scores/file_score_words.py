@@ -13,7 +13,7 @@ from app.cli.scores.score_cells import (
     so_many_of,
 )
 from processing.core.text import Language, Text
-from processing.scoring.file_scores import ErrorStatistics, FileScore
+from processing.scoring.features.file_scores import ErrorStatistics, FileScore
 
 _COUNTS_HEAD = (Text("counted", "評価対象"), *COUNTS_HEAD)
 _ERRORS_HEAD = (

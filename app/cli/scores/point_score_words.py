@@ -13,9 +13,9 @@ from app.cli.scores.score_cells import (
     so_many_of,
 )
 from processing.core.text import Language, Text
-from processing.scoring.confusion_matrix import ConfusionMatrix
-from processing.scoring.point_scores import PointScore
-from processing.scoring.reliability import ShareInterval
+from processing.scoring.points.confusion_matrix import ConfusionMatrix
+from processing.scoring.points.point_scores import PointScore
+from processing.scoring.points.reliability import ShareInterval
 
 _HEAD = (Text("positive class", "正例とするクラス"), *COUNTS_HEAD)
 _KINDS_HEAD = (Text("kind", "種類"), Text("points", "点数"), Text("right", "正解率"))

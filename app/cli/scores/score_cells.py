@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 from processing.core.text import Text
-from processing.scoring.confusion_matrix import BinaryConfusionMatrix
-from processing.scoring.reliability import ShareInterval
+from processing.scoring.points.confusion_matrix import BinaryConfusionMatrix
+from processing.scoring.points.reliability import ShareInterval
 
 COUNTS_HEAD = (
     Text("precision", "適合率"),

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from processing.core.text import Language, Text
 from processing.recording.columns.classes import point_classes
-from processing.scoring.class_scores import balanced_sample, judged_classes
-from processing.scoring.confusion_matrix import ConfusionMatrix
+from processing.scoring.points.class_scores import balanced_sample, judged_classes
+from processing.scoring.points.confusion_matrix import ConfusionMatrix
 
 _CELL, _LEFT, _TOP, _BOTTOM, _COLUMN = 46, 190, 96, 74, 66
 _RIGHT, _WRONG = (0, 114, 178), (213, 94, 0)

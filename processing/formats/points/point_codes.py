@@ -18,7 +18,7 @@ from processing.formats.points.text.text_numbers import TextPart, number_blocks
 from processing.formats.registry import FORMATS
 from processing.recording.columns.array_files import read_arrays
 from processing.recording.columns.quantisation import Quantisation
-from processing.scoring.coded_points import CodedFile, CodedPoints
+from processing.scoring.points.coded_points import CodedFile, CodedPoints
 
 _LOOKED_AT = 4096
 _BLOCK = 1_000_000

@@ -15,7 +15,7 @@ from processing.core.text import Text
 from processing.formats.format import Content
 from processing.formats.registry import FORMATS
 from processing.formats.vectors.geojson_shapes import WHERE, read_collection, shapes_of, system_of
-from processing.scoring.mapped_features import GeometryType, MappedFeature, MappedFile
+from processing.scoring.features.mapped_features import GeometryType, MappedFeature, MappedFile
 
 _GEOPACKAGE_SHAPES: dict[str, GeometryType] = {
     "Point": "point",

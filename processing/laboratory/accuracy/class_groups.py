@@ -18,7 +18,7 @@ from processing.project.importing.import_request import ImportRequest
 from processing.project.importing.importing import import_drives
 from processing.recording.columns.source_order import sources_of
 from processing.recording.drive import Drive
-from processing.tools.run_shares import mark_all
+from processing.tools.running.run_shares import mark_all
 
 
 @dataclass(frozen=True)

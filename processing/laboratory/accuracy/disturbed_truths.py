@@ -13,8 +13,8 @@ from pathlib import Path
 import numpy as np
 
 from processing.formats.vectors.mapped_shapes import read_mapped
-from processing.scoring.file_scores import FeatureScorer
-from processing.scoring.mapped_features import MappedFeature, MappedFile
+from processing.scoring.features.file_scores import FeatureScorer
+from processing.scoring.features.mapped_features import MappedFeature, MappedFile
 from processing.tools.registry import scorers
 
 Disturbance = Callable[[MappedFile], MappedFile]

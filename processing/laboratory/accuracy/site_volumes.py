@@ -40,7 +40,7 @@ from processing.methods.earthwork.volumes.volume_result import VolumeResult
 from processing.project.importing.importing import ImportRequest, import_drives
 from processing.recording.drive import Drive
 from processing.tools.ground import GROUND_TOOL
-from processing.tools.run_shares import mark_all
+from processing.tools.running.run_shares import mark_all
 
 Floats = NDArray[np.float64]
 

@@ -26,7 +26,7 @@ from processing.project.project import Project
 from processing.project.results.label_export import write_labelled_points
 from processing.recording.drive import Drive
 from processing.tools.normals import NORMALS
-from processing.tools.runner import RunRequest, run
+from processing.tools.running.runner import RunRequest, run
 from processing.tools.segments import SEGMENTS
 
 SIZES = (1_000_000, 3_000_000, 10_000_000, 30_000_000, 100_000_000)

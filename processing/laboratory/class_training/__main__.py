@@ -53,9 +53,9 @@ from processing.methods.classes.class_models import AGAIN, ALONE, MODELS, SAMPLE
 from processing.methods.classes.drive_classes import classify_drive
 from processing.methods.classes.example_file import write_examples
 from processing.methods.classes.found_things import NearThings
-from processing.scoring.class_scores import class_score
-from processing.scoring.confusion_matrix import ConfusionMatrix
-from processing.scoring.reliability import Reliability, reliability_of
+from processing.scoring.points.class_scores import class_score
+from processing.scoring.points.confusion_matrix import ConfusionMatrix
+from processing.scoring.points.reliability import Reliability, reliability_of
 from processing.tools.found_things import look_for_things
 from resources import path_of
 

@@ -46,8 +46,8 @@ from processing.methods.classes.class_models import (
 )
 from processing.methods.classes.drive_classes import shares_of_cells
 from processing.methods.ground.filters.adaptive import GroundAssumptions, find_ground
-from processing.scoring.class_scores import class_score
-from processing.scoring.confusion_matrix import ConfusionMatrix
+from processing.scoring.points.class_scores import class_score
+from processing.scoring.points.confusion_matrix import ConfusionMatrix
 
 _PLAN = ForestPlan(
     AERIAL_ALONE,

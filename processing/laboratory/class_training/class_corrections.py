@@ -37,8 +37,8 @@ from processing.methods.classes.found_things import FoundThings
 from processing.methods.classes.learning import learnt_forest
 from processing.methods.classes.painted_cells import PaintedCells, PaintedLabels, painted_cells
 from processing.recording.drive import Drive
-from processing.scoring.class_scores import class_score
-from processing.scoring.confusion_matrix import ConfusionMatrix
+from processing.scoring.points.class_scores import class_score
+from processing.scoring.points.confusion_matrix import ConfusionMatrix
 from processing.tools.found_things import look_for_things
 
 _STROKES = 50

@@ -16,9 +16,9 @@ from numpy.random import Generator
 from numpy.typing import NDArray
 
 from processing.core.arrays import Floats, Integers
-from processing.scoring.class_scores import class_score
-from processing.scoring.confusion_matrix import ConfusionMatrix
-from processing.scoring.point_scores import PointScore
+from processing.scoring.points.class_scores import class_score
+from processing.scoring.points.confusion_matrix import ConfusionMatrix
+from processing.scoring.points.point_scores import PointScore
 
 _TREES, _LEAST_LEAF = 100, 5
 """The thesis names neither: scikit-learn's number of trees, and leaves that no single point makes.

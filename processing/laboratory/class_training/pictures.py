@@ -16,7 +16,7 @@ from processing.image.attributes.colour_maps import EMPTY_COLOUR, class_colours,
 from processing.image.images_of_drives import image_of
 from processing.recording.columns.error_map import ErrorMapValue
 from processing.recording.drive import Drive
-from processing.scoring.confusion_matrix import ConfusionMatrix
+from processing.scoring.points.confusion_matrix import ConfusionMatrix
 
 _WIDEST, _LONGEST = 500, 2000
 """Pixels of a panel: four of them, and a minute of driving, fit a screen to scroll."""

@@ -31,10 +31,10 @@ from processing.laboratory.road_training.learned_confidence import (
 from processing.laboratory.road_training.training_streets import RequestOf, training_streets
 from processing.methods.road.curbs.steps.curb_confidence import CurbFacts, terms_of
 from processing.methods.road.curbs.steps.curb_filters import step_runs
-from processing.scoring.curb_lines import FOUND_SHARE, TOLERANCE_M
-from processing.scoring.curb_sections import kind_of
-from processing.scoring.line_positions import PolylineIndex, length_m, middle_positions
-from processing.scoring.mapped_features import MappedFile
+from processing.scoring.features.curb_lines import FOUND_SHARE, TOLERANCE_M
+from processing.scoring.features.curb_sections import kind_of
+from processing.scoring.features.line_positions import PolylineIndex, length_m, middle_positions
+from processing.scoring.features.mapped_features import MappedFile
 from processing.tools.curbs import CurbParameters, measure_curbs, step_settings
 
 EXPECTED = WeightPrior(

@@ -31,8 +31,8 @@ from processing.laboratory.road_training.learned_confidence import (
 from processing.laboratory.road_training.training_streets import training_streets
 from processing.methods.road.gutters.grating_confidence import GratingTerms, terms_of
 from processing.methods.road.gutters.gutter_confidence import CoverFacts
-from processing.scoring.gutters import score_gutters
-from processing.scoring.mapped_features import MappedFeature, MappedFile
+from processing.scoring.features.gutters import score_gutters
+from processing.scoring.features.mapped_features import MappedFeature, MappedFile
 from processing.tools.gutters import GutterParameters, gutter_evidence
 
 _FACTS = {"lids": CoverFacts._fields, "gratings": GratingTerms._fields}

@@ -52,8 +52,8 @@ from processing.methods.road.poles.street_poles import (
     usual_noise_m,
 )
 from processing.methods.road.poles.surroundings import surroundings_of
-from processing.scoring.object_matches import positions_of
-from processing.scoring.poles import POLES
+from processing.scoring.features.object_matches import positions_of
+from processing.scoring.features.poles import POLES
 
 EXPECTED_LOW = WeightPrior(
     (

@@ -35,7 +35,7 @@ from processing.laboratory.road_training.training_streets import training_street
 from processing.laboratory.simulate.requests import StreetRequest
 from processing.methods.road.signs.road_signs import road_signs
 from processing.methods.road.signs.sign_confidence import SignFacts
-from processing.scoring.object_matches import positions_of
+from processing.scoring.features.object_matches import positions_of
 
 EXPECTED = WeightPrior(
     (

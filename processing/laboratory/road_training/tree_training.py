@@ -38,9 +38,9 @@ from processing.laboratory.road_training.training_streets import training_street
 from processing.methods.road.trees.stems import BREAST_M
 from processing.methods.road.trees.street_trees import StreetTree, TreeSettings, upright_things
 from processing.methods.road.trees.tree_confidence import TreeFacts, facts_of
-from processing.scoring.mapped_features import MappedFile
-from processing.scoring.object_matches import is_in_span, positions_of, shows_enough
-from processing.scoring.trees import LEAST_TRUNK_POINTS
+from processing.scoring.features.mapped_features import MappedFile
+from processing.scoring.features.object_matches import is_in_span, positions_of, shows_enough
+from processing.scoring.features.trees import LEAST_TRUNK_POINTS
 from processing.tools.trees import TreeParameters
 
 EXPECTED = WeightPrior(

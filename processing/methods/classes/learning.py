@@ -21,7 +21,7 @@ from processing.methods.classes.class_trees import class_shares
 from processing.methods.classes.painted_cells import PaintedCells
 from processing.methods.classes.tree_growing import GrowthLimits
 from processing.methods.noise.tree_files import Forest
-from processing.scoring.confusion_matrix import ConfusionMatrix
+from processing.scoring.points.confusion_matrix import ConfusionMatrix
 
 LIMITS = BoostingLimits(rounds=20, tree=GrowthLimits(leaves=6, ridge=3.0, least=20, rate=0.25))
 """Fewer and smaller trees than the shipped models have: some minutes of paint are some fifty

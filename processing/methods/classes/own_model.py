@@ -16,7 +16,7 @@ from processing.core.text import Text
 from processing.methods.classes.class_models import ClassModels, shipped_models, shipped_version
 from processing.methods.classes.learning import Gain
 from processing.methods.noise.tree_files import Forest, read_forest, write_forest
-from processing.scoring.confusion_matrix import ConfusionMatrix
+from processing.scoring.points.confusion_matrix import ConfusionMatrix
 
 _TREES, _FACTS = "again.onnx", "model.json"
 _FORMAT = 1

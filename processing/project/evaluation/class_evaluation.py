@@ -18,7 +18,7 @@ from processing.project.store.runs import Run
 from processing.recording.columns.columns import ColumnWriter
 from processing.recording.columns.error_map import ERROR_MAP, map_errors
 from processing.recording.drive import Drive
-from processing.scoring.confusion_matrix import BinaryConfusionMatrix, is_one_of
+from processing.scoring.points.confusion_matrix import BinaryConfusionMatrix, is_one_of
 from processing.tools.registry import asked_classes
 from processing.tools.tool import FinishedColumns
 

@@ -1,7 +1,8 @@
 """Evaluations of classes and parameter studies as tables for spreadsheets.
 
 Two studies call opposite classes positive, so the columns name theirs: ``found`` is what the tool
-looks for (noise points; ground), ``other`` all else, by :mod:`processing.scoring.asked_classes`.
+looks for (noise points; ground), ``other`` all else, by
+:mod:`processing.scoring.points.asked_classes`.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from processing.core.parameters import ParameterValue
 from processing.core.safe_write import write_safely
 from processing.project.evaluation.class_evaluation import ClassEvaluation
 from processing.project.evaluation.parameter_study import ParameterStudy
-from processing.scoring.confusion_matrix import BinaryConfusionMatrix
+from processing.scoring.points.confusion_matrix import BinaryConfusionMatrix
 from processing.tools.registry import asked_classes
 
 _DIGITS = 6

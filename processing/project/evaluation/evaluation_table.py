@@ -9,7 +9,7 @@ from pathlib import Path
 
 from processing.core.safe_write import write_safely
 from processing.project.evaluation.run_evaluation import RunEvaluation
-from processing.scoring.reliability import ShareInterval
+from processing.scoring.points.reliability import ShareInterval
 
 _DIGITS = 4
 

@@ -11,7 +11,7 @@ from processing.core.errors import MissingInput
 from processing.core.text import Text
 from processing.map.feature import Feature, Status
 from processing.project.project import Project
-from processing.scoring.mapped_features import MappedFeature, MappedFile
+from processing.scoring.features.mapped_features import MappedFeature, MappedFile
 
 
 def agreed_map(project: Project, path: Path) -> MappedFile:

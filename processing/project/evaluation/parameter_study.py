@@ -17,10 +17,10 @@ from processing.core.owned_files import remove_folder
 from processing.core.parameters import Parameter, ParameterValue, fill_parameters, parameters_of
 from processing.core.text import Text
 from processing.recording.drive import Drive
-from processing.scoring.confusion_matrix import BinaryConfusionMatrix, is_one_of
+from processing.scoring.points.confusion_matrix import BinaryConfusionMatrix, is_one_of
 from processing.tools.registry import asked_classes
-from processing.tools.run_shares import run_shares
-from processing.tools.runner import run_together, tool_of
+from processing.tools.running.run_shares import run_shares
+from processing.tools.running.runner import run_together, tool_of
 from processing.tools.tool import FinishedColumns
 
 MOST_PARAMETERS = 2

@@ -15,7 +15,12 @@ from processing.map.feature_middle import middle_of
 from processing.map.measures import length_m
 from processing.project.store.runs import Run
 from processing.recording.drive import Drive
-from processing.scoring.reliability import Reliability, ShareInterval, reliability_of, share_of
+from processing.scoring.points.reliability import (
+    Reliability,
+    ShareInterval,
+    reliability_of,
+    share_of,
+)
 
 _HAND = "hand"
 _SAME_M = 1e-6

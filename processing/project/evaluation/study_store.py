@@ -10,7 +10,7 @@ from processing.core.parameters import ParameterValue
 from processing.core.text import Text
 from processing.project.evaluation.parameter_study import ParameterStudy, StudyCell, VariedParameter
 from processing.project.store.project_settings import JsonValue, ProjectSettings
-from processing.scoring.confusion_matrix import BinaryConfusionMatrix
+from processing.scoring.points.confusion_matrix import BinaryConfusionMatrix
 
 MOST_KEPT = 50
 """The oldest ones go first; a study of twenty by twenty is some 20 kB."""

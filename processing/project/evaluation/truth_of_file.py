@@ -19,8 +19,8 @@ from processing.project.evaluation.truth_store import TRUTH
 from processing.recording.columns.columns import ColumnWriter, column_path
 from processing.recording.columns.source_order import damaged_sources
 from processing.recording.drive import Drive
-from processing.scoring.coded_points import CodedFile
-from processing.scoring.point_scores import PointScorer
+from processing.scoring.points.coded_points import CodedFile
+from processing.scoring.points.point_scores import PointScorer
 from processing.scoring.scorers import GROUND_SCORER
 from processing.tools.registry import scorers
 

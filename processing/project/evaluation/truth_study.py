@@ -22,7 +22,7 @@ from processing.project.evaluation.truth_store import TRUTH, has_truth, read_tru
 from processing.recording.columns.ordering import read_chunk
 from processing.recording.drive import Drive
 from processing.recording.drive_part import write_part
-from processing.tools.runner import RunRequest, drives_of
+from processing.tools.running.runner import RunRequest, drives_of
 
 MARGIN_M = 5.0
 """So far around the points with a known truth a tool sees the others."""

@@ -9,9 +9,9 @@ import numpy as np
 from processing.core.monitor import Monitor
 from processing.core.parameters import length
 from processing.core.text import Text
-from processing.scoring.asked_classes import AskedClass
-from processing.scoring.confusion_matrix import ConfusionMatrix
-from processing.scoring.point_scores import ClassScore, PointScore, PointScorer
+from processing.scoring.points.asked_classes import AskedClass
+from processing.scoring.points.confusion_matrix import ConfusionMatrix
+from processing.scoring.points.point_scores import ClassScore, PointScore, PointScorer
 from processing.tools.tool import Needs, OutputColumn, PerPoint, PointBlock, PointResult, Tool
 
 CROWN, OTHER = 5, 1

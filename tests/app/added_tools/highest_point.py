@@ -12,9 +12,9 @@ from processing.core.text import Text
 from processing.methods.road.diagnostics import Diagnostic
 from processing.methods.road.requested_position import RequestedPosition
 from processing.recording.drive import Drive
-from processing.scoring.confusion_matrix import BinaryConfusionMatrix
-from processing.scoring.file_scores import DetectionCounts, FeatureScorer, FileScore
-from processing.scoring.mapped_features import MappedFile
+from processing.scoring.features.file_scores import DetectionCounts, FeatureScorer, FileScore
+from processing.scoring.features.mapped_features import MappedFile
+from processing.scoring.points.confusion_matrix import BinaryConfusionMatrix
 from processing.tools.tool import Candidate, CandidateResult, Finder, Needs, Tool, ToolButton
 
 _NAME = Text("Highest point", "最高点")

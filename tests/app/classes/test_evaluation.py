@@ -24,9 +24,9 @@ from processing.map.change import Change, Replacement
 from processing.map.feature import Feature, Vertex, new_feature_id
 from processing.project.importing.importing import ImportRequest
 from processing.project.review.review_state import ReviewOrder
-from processing.scoring.confusion_matrix import BinaryConfusionMatrix
-from processing.scoring.file_scores import FileScore
-from processing.scoring.reliability import reliability_of
+from processing.scoring.features.file_scores import FileScore
+from processing.scoring.points.confusion_matrix import BinaryConfusionMatrix
+from processing.scoring.points.reliability import reliability_of
 from processing.tools.tool import Candidate, CandidateResult
 from tests.builders import simulated_drive, write_laz, write_trajectory_csv
 from tests.processing.project.candidates import found, found_lines

@@ -16,7 +16,7 @@ from processing.map.change import Change, Replacement
 from processing.map.feature import Feature, Provenance, Status, Vertex, new_feature_id
 from processing.project.project import Project
 from processing.project.store.runs import Run
-from processing.scoring.mapped_features import MappedFile
+from processing.scoring.features.mapped_features import MappedFile
 from tests.app.score_answers import refused, scored
 from tests.processing.project.drawn import sign
 from tests.processing.scoring.small_maps import curb_pair, gutter, map_of, moved, street_curbs

@@ -23,7 +23,7 @@ from processing.project.project import Project
 from processing.recording.drive import Drive
 from processing.tools.normals import NormalsParameters
 from processing.tools.registry import TOOLS
-from processing.tools.run_shares import run_shares
+from processing.tools.running.run_shares import run_shares
 from processing.tools.tool import Candidate, CandidateResult, Finder
 from tests.builders import simulated_drive, write_laz, write_trajectory_csv
 from tests.monitors import CancelledAfter

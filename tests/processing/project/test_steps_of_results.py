@@ -34,7 +34,7 @@ from processing.project.store.exchanged_files import ExchangedFiles
 from processing.project.volumes.volume import ChosenSide, SideKind, VolumeRequest, new_volume
 from processing.project.volumes.volume_store import VolumeStore, write_volume
 from processing.recording.camera_images.image_list import ImageList
-from processing.tools.runner import RunRequest, tool_of
+from processing.tools.running.runner import RunRequest, tool_of
 from processing.tools.tool import Candidate, CandidateResult
 from tests.builders import simulated_drive, write_laz
 from tests.processing.project.candidates import found

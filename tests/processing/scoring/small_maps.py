@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from processing.core.arrays import Floats
-from processing.scoring.mapped_features import GeometryType, MappedFeature, MappedFile
+from processing.scoring.features.mapped_features import GeometryType, MappedFeature, MappedFile
 
 EAST, NORTH = -11_000.0, -35_000.0
 ORIGIN = np.array([EAST, NORTH, 120.0])

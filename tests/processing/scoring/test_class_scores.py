@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from processing.scoring.class_scores import class_score
-from processing.scoring.confusion_matrix import BinaryConfusionMatrix, ConfusionMatrix
+from processing.scoring.points.class_scores import class_score
+from processing.scoring.points.confusion_matrix import BinaryConfusionMatrix, ConfusionMatrix
 
 TRUTH = np.array([2, 2, 11, 11, 11, 11, 65, 65, 18, 0, 0], np.uint8)
 RESULT = np.array([2, 11, 11, 11, 11, 2, 65, 1, 18, 65, 2], np.uint8)

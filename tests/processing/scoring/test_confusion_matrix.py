@@ -10,7 +10,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from processing.scoring.confusion_matrix import BinaryConfusionMatrix, ConfusionMatrix, is_one_of
+from processing.scoring.points.confusion_matrix import (
+    BinaryConfusionMatrix,
+    ConfusionMatrix,
+    is_one_of,
+)
 
 NOISE = (7, 18)
 

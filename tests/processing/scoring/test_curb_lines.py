@@ -10,9 +10,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from processing.core.errors import BadFile
-from processing.scoring.confusion_matrix import BinaryConfusionMatrix
-from processing.scoring.curb_lines import curb_score
-from processing.scoring.mapped_features import MappedFeature
+from processing.scoring.features.curb_lines import curb_score
+from processing.scoring.features.mapped_features import MappedFeature
+from processing.scoring.points.confusion_matrix import BinaryConfusionMatrix
 from tests.processing.scoring.small_maps import (
     changed,
     curb_pair,

@@ -10,8 +10,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from processing.core.errors import BadFile
-from processing.scoring.confusion_matrix import BinaryConfusionMatrix
-from processing.scoring.gutters import gutter_score
+from processing.scoring.features.gutters import gutter_score
+from processing.scoring.points.confusion_matrix import BinaryConfusionMatrix
 from tests.processing.scoring.small_maps import (
     changed,
     feature,

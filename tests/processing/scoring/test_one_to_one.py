@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from processing.scoring.one_to_one import best_pairs, pairs_within
+from processing.scoring.features.one_to_one import best_pairs, pairs_within
 
 
 def test_equal_places_are_paired_with_themselves() -> None:

@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from processing.core.errors import Unsuitable
 from processing.core.monitor import SilentMonitor
-from processing.scoring.coded_points import CodedFile, CodedPoints, pairs_by_order
-from processing.scoring.pairs_by_position import pairs_by_position
+from processing.scoring.points.coded_points import CodedFile, CodedPoints, pairs_by_order
+from processing.scoring.points.pairs_by_position import pairs_by_position
 
 STEP_M = 0.001
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from processing.scoring.confusion_matrix import BinaryConfusionMatrix
-from processing.scoring.poles import pole_score
+from processing.scoring.features.poles import pole_score
+from processing.scoring.points.confusion_matrix import BinaryConfusionMatrix
 from tests.processing.scoring.small_maps import (
     map_of,
     moved,

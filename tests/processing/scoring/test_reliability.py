@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from scipy.stats import binomtest
 
-from processing.scoring.reliability import reliability_of, share_of
+from processing.scoring.points.reliability import reliability_of, share_of
 
 
 @pytest.mark.parametrize(("hits", "of"), [(0, 10), (1, 10), (5, 10), (10, 10), (37, 214), (1, 1)])

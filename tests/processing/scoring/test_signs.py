@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from processing.core.errors import BadFile
-from processing.scoring.confusion_matrix import BinaryConfusionMatrix
-from processing.scoring.signs import SHAPES, sign_score
+from processing.scoring.features.signs import SHAPES, sign_score
+from processing.scoring.points.confusion_matrix import BinaryConfusionMatrix
 from tests.processing.scoring.small_maps import (
     changed,
     map_of,

@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from processing.scoring.volumes import volume_score
+from processing.scoring.features.volumes import volume_score
 
 TRUTH = {"cut_m3": 200.0, "fill_m3": 500.0, "net_m3": 300.0, "area_m2": 1000.0}
 

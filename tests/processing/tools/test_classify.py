@@ -15,10 +15,10 @@ from processing.laboratory.simulate.streets import simulate_street
 from processing.project.importing.import_request import ImportRequest
 from processing.project.importing.importing import import_drives
 from processing.recording.drive import Drive
-from processing.scoring.class_scores import class_score
-from processing.scoring.confusion_matrix import ConfusionMatrix
+from processing.scoring.points.class_scores import class_score
+from processing.scoring.points.confusion_matrix import ConfusionMatrix
 from processing.tools.classify import CLASSES, ClassifyParameters
-from processing.tools.runner import RunRequest, columns_of, run
+from processing.tools.running.runner import RunRequest, columns_of, run
 
 
 @pytest.fixture(scope="module")

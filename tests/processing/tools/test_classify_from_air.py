@@ -21,10 +21,10 @@ from processing.project.importing.import_request import ImportRequest
 from processing.project.importing.importing import import_drives
 from processing.recording.columns.source_order import sources_of
 from processing.recording.drive import Drive
-from processing.scoring.class_scores import class_score
-from processing.scoring.confusion_matrix import ConfusionMatrix
+from processing.scoring.points.class_scores import class_score
+from processing.scoring.points.confusion_matrix import ConfusionMatrix
 from processing.tools.classify import ClassifyParameters
-from processing.tools.runner import RunRequest, columns_of, run_together
+from processing.tools.running.runner import RunRequest, columns_of, run_together
 
 SPACING_M = 0.6
 

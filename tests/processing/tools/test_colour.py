@@ -21,7 +21,7 @@ from processing.recording.camera_images.image_store import write_images
 from processing.recording.columns.columns import ColumnWriter
 from processing.recording.drive import Drive
 from processing.tools.colour import ColourParameters
-from processing.tools.runner import RunRequest, columns_of, run
+from processing.tools.running.runner import RunRequest, columns_of, run
 from processing.tools.tool import FinishedColumns
 from tests.builders import SimulatedDrive, simulated_drive, write_laz, write_trajectory_csv
 from tests.camera_scene import SURFACE_COLOURS, looking, photograph

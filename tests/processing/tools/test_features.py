@@ -27,7 +27,7 @@ from processing.recording.columns.point_features import (
 from processing.recording.drive import Drive, write_trajectory
 from processing.recording.vehicle_path.trajectory import Trajectory
 from processing.tools.features import FeaturesParameters, chosen_features
-from processing.tools.runner import RunRequest, run
+from processing.tools.running.runner import RunRequest, run
 from processing.tools.tool import FinishedColumns
 from tests.processing.image.recordings import small_drive, without_revolutions
 

@@ -20,7 +20,7 @@ from processing.methods.road.requested_position import RequestedPosition
 from processing.project.results.found_features import found_features
 from processing.recording.drive import Drive
 from processing.tools.poles import POLES, PoleParameters, diagnose_poles
-from processing.tools.runner import RunRequest, run
+from processing.tools.running.runner import RunRequest, run
 from processing.tools.tool import Candidate, CandidateResult
 from resources import path_of
 from tests.processing.methods.road.bad_recordings import (

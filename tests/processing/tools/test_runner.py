@@ -21,7 +21,7 @@ from processing.recording.drive_info import read_drive_info, write_drive_info
 from processing.recording.kinds import ImageKind
 from processing.tools.normals import NORMALS, NormalsParameters
 from processing.tools.registry import TOOLS, point_tools
-from processing.tools.runner import RunRequest, check_needs, columns_of, run, tool_of
+from processing.tools.running.runner import RunRequest, check_needs, columns_of, run, tool_of
 from processing.tools.segments import SEGMENTS, SegmentsParameters
 from processing.tools.tool import Needs
 from tests.camera_scene import looking, photograph

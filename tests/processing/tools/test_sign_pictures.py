@@ -17,7 +17,7 @@ from processing.recording.camera_images.camera import Camera
 from processing.recording.camera_images.image_list import CameraImage, ImageList
 from processing.recording.camera_images.image_store import write_images
 from processing.recording.drive import Drive
-from processing.tools.runner import RunRequest, run
+from processing.tools.running.runner import RunRequest, run
 from processing.tools.signs import SignParameters
 from processing.tools.tool import Candidate, CandidateResult
 from tests.camera_scene import Triple, looking

@@ -31,7 +31,7 @@ from processing.map.catalogue_file import read_catalogue
 from processing.map.feature import Feature, Vertex
 from processing.methods.road.requested_position import RequestedPosition
 from processing.recording.drive import Drive
-from processing.tools.runner import RunRequest, run
+from processing.tools.running.runner import RunRequest, run
 from processing.tools.signs import SignParameters, diagnose_signs
 from processing.tools.tool import Candidate, CandidateResult
 from resources import path_of

@@ -12,7 +12,7 @@ from processing.core.monitor import SilentMonitor
 from processing.core.parameters import fill_parameters
 from processing.methods.templates.template_text import template_text
 from processing.recording.drive import Drive
-from processing.tools.runner import RunRequest, run
+from processing.tools.running.runner import RunRequest, run
 from processing.tools.template import TEMPLATE, TemplateParameters
 from processing.tools.tool import CandidateResult
 from tests.builders import simulated_drive

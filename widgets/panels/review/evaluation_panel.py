@@ -27,8 +27,8 @@ from typing_extensions import override
 from processing.core.text import Language
 from processing.project.evaluation.run_evaluation import RunEvaluation
 from processing.project.store.runs import Run
-from processing.scoring.file_scores import FileScore
-from processing.scoring.reliability import ShareInterval
+from processing.scoring.features.file_scores import FileScore
+from processing.scoring.points.reliability import ShareInterval
 from widgets.panels.feature_tally import RunOfTool
 from widgets.panels.reliability_plot import PlotWords, ReliabilityPlot, ReliabilityView
 from widgets.panels.run_words import name_of_run, name_of_tool

@@ -15,8 +15,8 @@ from processing.methods.ground.surface_line import SurfaceLine, remove_doubles, 
 from processing.project.results.run_findings import finding_of, newest_run
 from processing.recording.columns.counted_classes import class_columns
 from processing.recording.drive import Drive
-from processing.scoring.asked_classes import GROUND_ASKED
-from processing.scoring.confusion_matrix import is_one_of
+from processing.scoring.points.asked_classes import GROUND_ASKED
+from processing.scoring.points.confusion_matrix import is_one_of
 from processing.section.cut import Cut
 from processing.section.points_in_cut import SectionPoints
 

@@ -31,11 +31,11 @@ from processing.laboratory.accuracy.filters.peer_filters import (
 from processing.project.importing.importing import ImportRequest, import_drives
 from processing.project.results.point_results import write_point_results
 from processing.recording.drive import Drive
-from processing.scoring.confusion_matrix import ConfusionMatrix
+from processing.scoring.points.confusion_matrix import ConfusionMatrix
 from processing.tools.ground import GROUND_TOOL, LOWEST, PUBLISHED, GroundParameters
 from processing.tools.noise import NOISE, RADIUS, STATISTICAL, NoiseParameters
-from processing.tools.run_shares import run_shares
-from processing.tools.runner import run_together
+from processing.tools.running.run_shares import run_shares
+from processing.tools.running.runner import run_together
 from processing.tools.tool import FinishedColumns, Tool
 
 Codes = NDArray[np.uint8]

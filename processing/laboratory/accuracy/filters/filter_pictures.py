@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from processing.formats.pictures.png import write_png
 from processing.laboratory.accuracy.filters.filter_scenes import FilterScene
-from processing.scoring.confusion_matrix import is_one_of
+from processing.scoring.points.confusion_matrix import is_one_of
 
 Picture = NDArray[np.uint8]
 

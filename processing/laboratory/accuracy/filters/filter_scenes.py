@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from processing.core.errors import MissingInput
 from processing.core.text import Text
 from processing.formats.points.point_codes import read_result, read_truth
-from processing.scoring.coded_points import CodedFile
+from processing.scoring.points.coded_points import CodedFile
 from processing.scoring.scorers import GROUND_SCORER, NOISE_SCORER
 
 NOISE_KINDS = {

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from processing.laboratory.accuracy.filters.filter_scenes import NOISE_KINDS, SITE_KINDS, THIN_KINDS
-from processing.scoring.point_scores import PointScore
+from processing.scoring.points.point_scores import PointScore
 
 NOT_INSTALLED = "not installed"
 

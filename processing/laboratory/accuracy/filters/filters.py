@@ -41,8 +41,8 @@ from processing.laboratory.accuracy.filters.filter_tables import (
 )
 from processing.laboratory.accuracy.filters.held_out_scenes import unseen_rows
 from processing.laboratory.accuracy.filters.street_noise import street_rows
-from processing.scoring.coded_points import CodedPoints, CodePairs
-from processing.scoring.point_scores import PointScorer
+from processing.scoring.points.coded_points import CodedPoints, CodePairs
+from processing.scoring.points.point_scores import PointScorer
 from processing.scoring.scorers import GROUND_SCORER, NOISE_SCORER
 
 _NEXT_HEADING = re.compile(r"\n#{2,3} ")

@@ -23,7 +23,7 @@ from processing.laboratory.accuracy.filters.filter_tables import markdown_table
 from processing.laboratory.accuracy.filters.filters import write_sections
 from processing.laboratory.simulate.airborne.flight import fly_over
 from processing.laboratory.simulate.airborne.landscapes import landscape_of
-from processing.scoring.confusion_matrix import BinaryConfusionMatrix, ConfusionMatrix
+from processing.scoring.points.confusion_matrix import BinaryConfusionMatrix, ConfusionMatrix
 
 HEADING = "## Ground of simulated landscapes from the air"
 

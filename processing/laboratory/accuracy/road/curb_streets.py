@@ -29,8 +29,8 @@ from processing.laboratory.simulate.requests import StreetRequest
 from processing.laboratory.simulate.streets import simulate_street
 from processing.project.importing.importing import ImportRequest, import_drives
 from processing.recording.drive import Drive
-from processing.scoring.curb_lines import score_edges
-from processing.scoring.mapped_features import MappedFile
+from processing.scoring.features.curb_lines import score_edges
+from processing.scoring.features.mapped_features import MappedFile
 
 TOLERANCE_M, NEAR_M = 0.05, 12.0
 """In plan; and how far from the vehicle's path lies what it passes rather than side streets."""

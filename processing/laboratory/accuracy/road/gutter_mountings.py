@@ -37,8 +37,8 @@ from processing.laboratory.accuracy.road.road_tables import (
     reliability_table,
 )
 from processing.recording.passes import passes_of
-from processing.scoring.gutters import gutter_score, score_gutters
-from processing.scoring.reliability import Reliability, reliability_of_pairs
+from processing.scoring.features.gutters import gutter_score, score_gutters
+from processing.scoring.points.reliability import Reliability, reliability_of_pairs
 
 SEEDS = range(2210, 2220)
 LENGTH_M = 60.0

@@ -32,12 +32,12 @@ from processing.laboratory.accuracy.road.road_scenes import RoadScene, found_by,
 from processing.laboratory.accuracy.road.true_labels import labels_of_drive
 from processing.methods.classes.class_models import shipped_models
 from processing.methods.classes.drive_classes import classify_drive
-from processing.scoring.curb_lines import curb_score
-from processing.scoring.file_scores import FileScore
-from processing.scoring.mapped_features import MappedFeature, MappedFile
-from processing.scoring.poles import pole_score
-from processing.scoring.signs import sign_score
-from processing.scoring.trees import tree_score
+from processing.scoring.features.curb_lines import curb_score
+from processing.scoring.features.file_scores import FileScore
+from processing.scoring.features.mapped_features import MappedFeature, MappedFile
+from processing.scoring.features.poles import pole_score
+from processing.scoring.features.signs import sign_score
+from processing.scoring.features.trees import tree_score
 
 HEADING = "### Labels against tools"
 CORRECTIONS = "### Corrections a kilometre"

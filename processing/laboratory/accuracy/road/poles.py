@@ -25,9 +25,9 @@ from processing.laboratory.simulate.requests import StreetRequest
 from processing.laboratory.simulate.streets import simulate_street
 from processing.project.importing.importing import ImportRequest, import_drives
 from processing.recording.drive import Drive
-from processing.scoring.file_scores import FileScore
-from processing.scoring.poles import pole_score
-from processing.scoring.wires import wire_score
+from processing.scoring.features.file_scores import FileScore
+from processing.scoring.features.poles import pole_score
+from processing.scoring.features.wires import wire_score
 
 _CRS = "EPSG:6677"
 _HEADING = "## Poles and wires"

@@ -9,7 +9,7 @@ import math
 from collections.abc import Iterator, Mapping
 from html import escape
 
-from processing.scoring.reliability import Reliability
+from processing.scoring.points.reliability import Reliability
 
 _SIDE, _LEFT, _TOP, _BOTTOM = 300, 52, 16, 58
 _COLOURS = ("#0072b2", "#d55e00", "#009e73")

@@ -48,10 +48,10 @@ from processing.laboratory.accuracy.road.road_tables import (
     heads_table,
     reliability_table,
 )
-from processing.scoring.curb_lines import curb_score, score_edges
-from processing.scoring.gutters import gutter_score, score_gutters
-from processing.scoring.mapped_features import MappedFile
-from processing.scoring.reliability import Reliability, reliability_of_pairs
+from processing.scoring.features.curb_lines import curb_score, score_edges
+from processing.scoring.features.gutters import gutter_score, score_gutters
+from processing.scoring.features.mapped_features import MappedFile
+from processing.scoring.points.reliability import Reliability, reliability_of_pairs
 
 SEEDS = range(1007, 1019)
 TOOLS = ("curbs", "gutters")

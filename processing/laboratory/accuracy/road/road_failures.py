@@ -22,9 +22,9 @@ from processing.laboratory.accuracy.road.road_surroundings import (
     StreetSurroundings,
     first_type,
 )
-from processing.scoring.curb_lines import ScoredEdge
-from processing.scoring.curb_sections import TrueSection, kind_of
-from processing.scoring.line_positions import PolylineIndex, length_m, middle_positions
+from processing.scoring.features.curb_lines import ScoredEdge
+from processing.scoring.features.curb_sections import TrueSection, kind_of
+from processing.scoring.features.line_positions import PolylineIndex, length_m, middle_positions
 
 CURB_TYPES: Mapping[FailureKind, tuple[str, ...]] = {
     "missed": (

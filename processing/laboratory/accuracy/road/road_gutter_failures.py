@@ -22,9 +22,9 @@ from processing.laboratory.accuracy.road.road_surroundings import (
     StreetSurroundings,
     first_type,
 )
-from processing.scoring.gutters import ScoredGutters
-from processing.scoring.line_positions import PolylineIndex
-from processing.scoring.mapped_features import MappedFeature, MappedFile
+from processing.scoring.features.gutters import ScoredGutters
+from processing.scoring.features.line_positions import PolylineIndex
+from processing.scoring.features.mapped_features import MappedFeature, MappedFile
 
 GUTTER_TYPES: Mapping[FailureKind, tuple[str, ...]] = {
     "missed": (

@@ -20,7 +20,7 @@ from processing.formats.pictures.png import write_png
 from processing.image.scan_lines.scanlines import ScanlineSettings, scanline_through
 from processing.laboratory.accuracy.road.road_surroundings import Failure, StreetSurroundings
 from processing.recording.drive import Drive
-from processing.scoring.mapped_features import MappedFile
+from processing.scoring.features.mapped_features import MappedFile
 
 Picture = NDArray[np.uint8]
 

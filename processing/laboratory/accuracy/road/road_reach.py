@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from processing.core.arrays import Floats
 from processing.laboratory.accuracy.filters.filter_tables import markdown_table
 from processing.laboratory.accuracy.road.road_surroundings import StreetSurroundings
-from processing.scoring.curb_lines import ScoredEdge
-from processing.scoring.gutters import ScoredGutters
+from processing.scoring.features.curb_lines import ScoredEdge
+from processing.scoring.features.gutters import ScoredGutters
 
 BANDS_M = (0.0, 4.0, 6.5, 10.0, 15.0, np.inf)
 """The thesis looks for gutters up to 6.5 m from the vehicle's path (Takahashi 2022,

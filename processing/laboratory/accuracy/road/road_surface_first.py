@@ -28,9 +28,9 @@ from processing.laboratory.accuracy.road.road_scenes import (
 from processing.laboratory.accuracy.road.road_tables import percent
 from processing.methods.road.curbs.edges.curb_features import CurbFeature, features_of
 from processing.methods.road.curbs.steps.curb_confidence import CurbFacts, chance_of
-from processing.scoring.confusion_matrix import BinaryConfusionMatrix
-from processing.scoring.curb_lines import score_edges
-from processing.scoring.mapped_features import MappedFile
+from processing.scoring.features.curb_lines import score_edges
+from processing.scoring.features.mapped_features import MappedFile
+from processing.scoring.points.confusion_matrix import BinaryConfusionMatrix
 from processing.tools.curbs import (
     CurbParameters,
     MeasuredCurb,

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from processing.core.arrays import Floats
 from processing.laboratory.accuracy.road.road_scenes import RoadScene, StreetCloud
-from processing.scoring.line_positions import PolylineIndex, length_m, middle_positions
+from processing.scoring.features.line_positions import PolylineIndex, length_m, middle_positions
 
 FailureKind = Literal["missed", "false"]
 

@@ -11,9 +11,9 @@ from processing.laboratory.accuracy.filters.filter_tables import markdown_table
 from processing.laboratory.accuracy.road.road_failures import CURB_TYPES
 from processing.laboratory.accuracy.road.road_gutter_failures import GUTTER_TYPES
 from processing.laboratory.accuracy.road.road_surroundings import Failure
-from processing.scoring.confusion_matrix import BinaryConfusionMatrix
-from processing.scoring.file_scores import ErrorStatistics, FileScore
-from processing.scoring.reliability import Reliability
+from processing.scoring.features.file_scores import ErrorStatistics, FileScore
+from processing.scoring.points.confusion_matrix import BinaryConfusionMatrix
+from processing.scoring.points.reliability import Reliability
 
 ALL = "**all**"
 

@@ -41,17 +41,17 @@ from processing.laboratory.accuracy.road.road_tables import (
     sum_counts,
 )
 from processing.laboratory.simulate.requests import StreetRequest
-from processing.scoring.file_scores import FileScore
-from processing.scoring.mapped_features import MappedFeature, MappedFile
-from processing.scoring.object_matches import match_objects
-from processing.scoring.reliability import reliability_of_pairs
-from processing.scoring.signs import (
+from processing.scoring.features.file_scores import FileScore
+from processing.scoring.features.mapped_features import MappedFeature, MappedFile
+from processing.scoring.features.object_matches import match_objects
+from processing.scoring.features.signs import (
     LEAST_FRONT_POINTS,
     POSITION_M,
     SIZE_SHARE,
     WITHIN_M,
     sign_score,
 )
+from processing.scoring.points.reliability import reliability_of_pairs
 from processing.tools.signs import SignParameters, find_signs
 
 SEEDS = (*range(720, 726), *range(730, 736))

@@ -30,9 +30,9 @@ from processing.laboratory.accuracy.road.road_tables import percent
 from processing.laboratory.simulate.requests import StreetRequest
 from processing.laboratory.simulate.streets import simulate_street
 from processing.methods.road.curbs.edges.curb_fronts import PathSides
-from processing.scoring.confusion_matrix import BinaryConfusionMatrix
-from processing.scoring.curb_lines import score_edges
-from processing.scoring.gutters import score_gutters
+from processing.scoring.features.curb_lines import score_edges
+from processing.scoring.features.gutters import score_gutters
+from processing.scoring.points.confusion_matrix import BinaryConfusionMatrix
 
 SPEEDS_KM_H = (20.0, 50.0)
 SCANNERS = {"vq250": "pulses, 100 turns/s", "zf9012": "phase, 200 turns/s"}

@@ -24,8 +24,8 @@ from processing.methods.road.objects.column_points import points_about
 from processing.methods.road.objects.sparse_plan import plan_of
 from processing.project.importing.importing import ImportRequest, import_drives
 from processing.recording.drive import Drive
-from processing.scoring.mapped_features import MappedFeature, MappedFile
-from processing.scoring.object_matches import (
+from processing.scoring.features.mapped_features import MappedFeature, MappedFile
+from processing.scoring.features.object_matches import (
     ObjectMatch,
     ObjectMatches,
     is_in_span,
@@ -33,7 +33,7 @@ from processing.scoring.object_matches import (
     positions_of,
     shows_enough,
 )
-from processing.scoring.trees import LEAST_TRUNK_POINTS, WITHIN_M
+from processing.scoring.features.trees import LEAST_TRUNK_POINTS, WITHIN_M
 from processing.tools.trees import TreeParameters, find_trees
 
 _CRS = "EPSG:6677"

@@ -12,10 +12,10 @@ from processing.core.arrays import Floats
 from processing.laboratory.accuracy.filters.filter_tables import markdown_table
 from processing.laboratory.accuracy.road.road_tables import ALL, percent
 from processing.laboratory.accuracy.road.tree_scenes import ScoredTrees
-from processing.scoring.confusion_matrix import BinaryConfusionMatrix
-from processing.scoring.mapped_features import MappedFeature
-from processing.scoring.object_matches import ObjectMatch, shows_enough
-from processing.scoring.trees import LEAST_ARC_DEG
+from processing.scoring.features.mapped_features import MappedFeature
+from processing.scoring.features.object_matches import ObjectMatch, shows_enough
+from processing.scoring.features.trees import LEAST_ARC_DEG
+from processing.scoring.points.confusion_matrix import BinaryConfusionMatrix
 
 _MOST_CM = 4.0
 """Asked for: no diameter is farther off."""

@@ -36,9 +36,9 @@ from processing.laboratory.accuracy.road.tree_tables import (
     streets_table,
     ways_table,
 )
-from processing.scoring.object_matches import shows_enough
-from processing.scoring.reliability import reliability_of_pairs
-from processing.scoring.trees import LEAST_ARC_DEG
+from processing.scoring.features.object_matches import shows_enough
+from processing.scoring.features.trees import LEAST_ARC_DEG
+from processing.scoring.points.reliability import reliability_of_pairs
 
 _COMMAND = "`python -m processing.laboratory.accuracy.road.trees --markdown docs/accuracy.md`"
 _ABOUT = f"""{_COMMAND} (with `--samples FOLDER…`, deliveries of another simulator, and `--real \

@@ -17,8 +17,8 @@ from processing.project.importing.importing import ImportRequest, import_drives
 from processing.recording.drive import Drive
 from processing.tools.classify import ClassifyParameters
 from processing.tools.registry import TOOLS, extractors
-from processing.tools.run_shares import run_shares
-from processing.tools.runner import run, run_together
+from processing.tools.running.run_shares import run_shares
+from processing.tools.running.runner import run, run_together
 from processing.tools.tool import FinishedColumns
 
 _POINTS, _LENGTH_M = 3_000_000, 80.0

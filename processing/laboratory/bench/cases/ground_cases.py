@@ -20,7 +20,7 @@ from processing.laboratory.bench.timing import median_seconds, seconds_of
 from processing.project.importing.importing import ImportRequest, import_drives
 from processing.recording.drive import Drive
 from processing.tools.ground import GROUND_TOOL, GroundParameters
-from processing.tools.runner import RunRequest, run
+from processing.tools.running.runner import RunRequest, run
 
 _POINTS = 3_000_000
 _REPEATS = 3

@@ -19,7 +19,7 @@ from processing.project.importing.importing import ImportRequest, import_drives
 from processing.recording.drive import Drive
 from processing.recording.kinds import ImageKind
 from processing.tools.normals import NORMALS
-from processing.tools.runner import RunRequest, run
+from processing.tools.running.runner import RunRequest, run
 from processing.tools.segments import SEGMENTS
 from processing.tools.tool import FinishedColumns
 

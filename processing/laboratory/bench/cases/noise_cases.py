@@ -31,7 +31,7 @@ from processing.methods.noise.neighbours.statistical import statistical_outliers
 from processing.project.importing.importing import ImportRequest, import_drives
 from processing.recording.drive import Drive
 from processing.tools.noise import COMBINED, NOISE, RADIUS, STATISTICAL, NoiseParameters
-from processing.tools.runner import RunRequest, run
+from processing.tools.running.runner import RunRequest, run
 
 _POINTS = 3_000_000
 _POINTS_BESIDE_PCL = 200_000

@@ -27,7 +27,7 @@ from processing.laboratory.bench.timing import alternating, seconds_of
 from processing.project.importing.importing import ImportRequest, import_drives
 from processing.recording.drive import Drive
 from processing.tools.normals import NORMALS
-from processing.tools.runner import RunRequest, run
+from processing.tools.running.runner import RunRequest, run
 
 _POINTS = 3_000_000
 _REPEATS = 3

@@ -18,7 +18,7 @@ from processing.core.output_streams import write_every_character
 from processing.core.text import Text
 from processing.recording.drive import Drive
 from processing.tools.registry import TOOLS
-from processing.tools.runner import RunRequest, run
+from processing.tools.running.runner import RunRequest, run
 
 ROAD_TOOLS = ("curbs", "gutters")
 

@@ -60,7 +60,7 @@ from processing.laboratory.class_training.image_network.network_training import 
 from processing.laboratory.class_training.point_samples import ABSOLUTE, MMS, NAMES, PointSample
 from processing.laboratory.progress_lines import say
 from processing.laboratory.seed_ranges import seeds_of
-from processing.scoring.point_scores import PointScore
+from processing.scoring.points.point_scores import PointScore
 
 _M, _MA, _MAI, _CHOICE = "M", "M&A", "M&A&I", "chosen"
 _KINDS = (_M, _MA, _MAI)

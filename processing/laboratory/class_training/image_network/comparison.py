@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from processing.core.arrays import Floats
 from processing.laboratory.class_training.forests import fitted_forest, mean_f, whole_score
 from processing.laboratory.class_training.point_samples import PointSample
-from processing.scoring.point_scores import PointScore
+from processing.scoring.points.point_scores import PointScore
 
 _GROUND, _ROAD = 2, 11
 

@@ -23,7 +23,7 @@ from processing.laboratory.class_training.image_network.street_rasters import (
 )
 from processing.laboratory.class_training.point_samples import PointSample, sample_of
 from processing.laboratory.simulate.requests import StreetRequest
-from processing.scoring.class_scores import NOT_KNOWN
+from processing.scoring.points.class_scores import NOT_KNOWN
 
 LEARNT_OF_A_CLASS = 1_000
 SCORED_OF_A_CLASS = 8_000

@@ -15,7 +15,7 @@ from processing.formats.vectors.geopackage import write_geopackage
 from processing.formats.vectors.mapped_shapes import read_mapped
 from processing.map.catalogue import Catalogue, Geometry
 from processing.map.feature import Feature, Vertex
-from processing.scoring.mapped_features import IN_DEGREES
+from processing.scoring.features.mapped_features import IN_DEGREES
 
 POSITIONS = (
     (-11_000.25, -35_000.5, 120.125),

@@ -28,8 +28,8 @@ from processing.laboratory.accuracy.filters.filter_tables import (
     sites_table,
 )
 from processing.laboratory.accuracy.filters.filters import HEADINGS, main, replace_section
-from processing.scoring.confusion_matrix import ConfusionMatrix
-from processing.scoring.point_scores import ground_score, noise_score
+from processing.scoring.points.confusion_matrix import ConfusionMatrix
+from processing.scoring.points.point_scores import ground_score, noise_score
 
 WRITTEN_HERE = ("nothing removed", "PTD (Axelsson)", "roller")
 """Peers that need no other program."""

@@ -27,10 +27,10 @@ from processing.laboratory.accuracy.road.road_reach import BANDS_M, count_by_rea
 from processing.laboratory.accuracy.road.road_scenes import BOTH, RoadScene, StreetCloud, options_of
 from processing.laboratory.accuracy.road.road_surroundings import Failure, StreetSurroundings
 from processing.laboratory.accuracy.road.road_tables import ScoredStreet
-from processing.scoring.curb_lines import curb_score, score_edges
-from processing.scoring.gutters import gutter_score, score_gutters
-from processing.scoring.line_positions import PolylineIndex
-from processing.scoring.mapped_features import MappedFile
+from processing.scoring.features.curb_lines import curb_score, score_edges
+from processing.scoring.features.gutters import gutter_score, score_gutters
+from processing.scoring.features.line_positions import PolylineIndex
+from processing.scoring.features.mapped_features import MappedFile
 from tests.processing.scoring.small_maps import (
     ORIGIN,
     curb_pair,

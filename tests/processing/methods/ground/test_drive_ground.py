@@ -31,7 +31,7 @@ from processing.recording.recorded_together import (
     surveyed_together,
 )
 from processing.tools.ground import GroundParameters
-from processing.tools.runner import RunRequest, run_together
+from processing.tools.running.runner import RunRequest, run_together
 from processing.tools.tool import TogetherResult
 
 Floats = NDArray[np.float64]

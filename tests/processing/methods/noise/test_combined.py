@@ -18,7 +18,7 @@ from processing.methods.noise.drive_noise import NoiseSearch
 from processing.methods.noise.row_chunks import row_chunks_of
 from processing.recording.drive import Drive
 from processing.tools.noise import NOISE, NoiseParameters
-from processing.tools.runner import RunRequest, columns_of, run
+from processing.tools.running.runner import RunRequest, columns_of, run
 from processing.tools.tool import FinishedColumns
 from tests.noisy_street import POLE, NoisyStreet, noisy_street
 from tests.processing.image.recordings import drive_of, without_revolutions

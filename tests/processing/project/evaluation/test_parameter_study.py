@@ -32,9 +32,9 @@ from processing.project.evaluation.truth_store import Truth, TruthStore, read_tr
 from processing.project.evaluation.truth_study import study_by_truth
 from processing.project.importing.importing import ImportRequest, import_drives
 from processing.project.project import Project
-from processing.scoring.confusion_matrix import BinaryConfusionMatrix
+from processing.scoring.points.confusion_matrix import BinaryConfusionMatrix
 from processing.tools.noise import NoiseParameters
-from processing.tools.runner import RunRequest, run
+from processing.tools.running.runner import RunRequest, run
 from tests.builders import write_laz, write_trajectory_csv
 from tests.monitors import CancelledAfter
 from tests.noisy_street import NoisyStreet, noisy_street

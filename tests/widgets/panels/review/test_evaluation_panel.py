@@ -14,8 +14,8 @@ from pytestqt.qtbot import QtBot
 from processing.map.feature import Status
 from processing.project.evaluation.run_evaluation import RunEvaluation, evaluate_runs
 from processing.recording.drive import Drive
-from processing.scoring.curb_lines import curb_score
-from processing.scoring.reliability import reliability_of
+from processing.scoring.features.curb_lines import curb_score
+from processing.scoring.points.reliability import reliability_of
 from tests.processing.project.candidates import found_lines
 from tests.processing.scoring.small_maps import moved, street_curbs
 from tests.widgets.builders import OpenMap

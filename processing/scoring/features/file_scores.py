@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from processing.core.text import Text
-from processing.scoring.confusion_matrix import BinaryConfusionMatrix
-from processing.scoring.mapped_features import MappedFile
-from processing.scoring.point_scores import NamedFigure, NamedShare
-from processing.scoring.reliability import share_of
+from processing.scoring.features.mapped_features import MappedFile
+from processing.scoring.points.confusion_matrix import BinaryConfusionMatrix
+from processing.scoring.points.point_scores import NamedFigure, NamedShare
+from processing.scoring.points.reliability import share_of
 
 
 @dataclass(frozen=True)

@@ -18,8 +18,7 @@ from numpy.typing import NDArray
 
 from processing.core.arrays import Floats, Integers
 from processing.core.text import Text
-from processing.scoring.confusion_matrix import BinaryConfusionMatrix
-from processing.scoring.curb_sections import (
+from processing.scoring.features.curb_sections import (
     COVERED_SHARE,
     SECTION_M,
     TrueSection,
@@ -27,15 +26,16 @@ from processing.scoring.curb_sections import (
     pieces_of,
     sections_of,
 )
-from processing.scoring.file_scores import (
+from processing.scoring.features.file_scores import (
     DetectionCounts,
     ErrorStatistics,
     FileScore,
     errors_of,
     named_share,
 )
-from processing.scoring.line_positions import PolylineIndex, middle_positions
-from processing.scoring.mapped_features import MappedFeature, MappedFile
+from processing.scoring.features.line_positions import PolylineIndex, middle_positions
+from processing.scoring.features.mapped_features import MappedFeature, MappedFile
+from processing.scoring.points.confusion_matrix import BinaryConfusionMatrix
 
 CURBS: dict[str, dict[str, object]] = {
     "curb": {},

@@ -6,8 +6,8 @@ import numpy as np
 
 from processing.core.text import Text
 from processing.recording.columns.classes import point_classes
-from processing.scoring.confusion_matrix import ConfusionMatrix
-from processing.scoring.point_scores import (
+from processing.scoring.points.confusion_matrix import ConfusionMatrix
+from processing.scoring.points.point_scores import (
     GROUND_CODES,
     NOISE_CODES,
     ClassScore,
@@ -15,7 +15,7 @@ from processing.scoring.point_scores import (
     NamedShare,
     PointScore,
 )
-from processing.scoring.reliability import share_of
+from processing.scoring.points.reliability import share_of
 
 _OTHER = 1
 """What belongs to no class: the thesis leaves it out of its evaluation (section 4.2)."""

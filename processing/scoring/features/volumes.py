@@ -6,8 +6,8 @@ import math
 from collections.abc import Mapping
 
 from processing.core.text import Text
-from processing.scoring.file_scores import FileScore, named_share
-from processing.scoring.point_scores import NamedFigure
+from processing.scoring.features.file_scores import FileScore, named_share
+from processing.scoring.points.point_scores import NamedFigure
 
 MEASURES = {
     "cut_m3": ("cut", "切土量"),

@@ -5,9 +5,19 @@ from __future__ import annotations
 import numpy as np
 
 from processing.core.text import Text
-from processing.scoring.file_scores import DetectionCounts, FileScore, errors_of, named_share
-from processing.scoring.mapped_features import MappedFile
-from processing.scoring.object_matches import Differences, is_in_span, match_objects, shows_enough
+from processing.scoring.features.file_scores import (
+    DetectionCounts,
+    FileScore,
+    errors_of,
+    named_share,
+)
+from processing.scoring.features.mapped_features import MappedFile
+from processing.scoring.features.object_matches import (
+    Differences,
+    is_in_span,
+    match_objects,
+    shows_enough,
+)
 
 POLES: dict[str, dict[str, object]] = {
     "pole": {},

@@ -11,9 +11,14 @@ import math
 import numpy as np
 
 from processing.core.text import Text
-from processing.scoring.file_scores import DetectionCounts, ErrorStatistics, FileScore, errors_of
-from processing.scoring.mapped_features import MappedFeature, MappedFile
-from processing.scoring.object_matches import (
+from processing.scoring.features.file_scores import (
+    DetectionCounts,
+    ErrorStatistics,
+    FileScore,
+    errors_of,
+)
+from processing.scoring.features.mapped_features import MappedFeature, MappedFile
+from processing.scoring.features.object_matches import (
     Differences,
     ObjectMatch,
     is_in_span,

@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 from processing.core.arrays import Floats
 from processing.core.text import Text
-from processing.scoring.line_positions import between, length_m
-from processing.scoring.mapped_features import MappedFeature, MappedFile
+from processing.scoring.features.line_positions import between, length_m
+from processing.scoring.features.mapped_features import MappedFeature, MappedFile
 
 SECTION_M = 2.0
 """Mms.md 6.4: what is judged at a time."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from processing.core.text import Text
-from processing.scoring.point_scores import GROUND_CODES, NOISE_CODES
+from processing.scoring.points.point_scores import GROUND_CODES, NOISE_CODES
 
 
 @dataclass(frozen=True)

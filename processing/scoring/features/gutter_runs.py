@@ -10,9 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.core.arrays import Flags, Floats
-from processing.scoring.line_positions import middle_positions
-from processing.scoring.mapped_features import MappedFeature, MappedFile
-from processing.scoring.object_matches import is_in_span, shows_enough
+from processing.scoring.features.line_positions import middle_positions
+from processing.scoring.features.mapped_features import MappedFeature, MappedFile
+from processing.scoring.features.object_matches import is_in_span, shows_enough
 
 SLOT_M = 0.6
 """Mms.md 7.5: one slot is one usual lid."""

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from processing.core.errors import Unsuitable, report_as_user_error
 from processing.core.monitor import Monitor
 from processing.core.text import Text
-from processing.scoring.coded_points import (
+from processing.scoring.points.coded_points import (
     SAME_CLOUD,
     CodedFile,
     CodedPoints,

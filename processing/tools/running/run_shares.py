@@ -8,7 +8,7 @@ from pathlib import Path
 
 from processing.core.monitor import Monitor, PartMonitor
 from processing.recording.drive import Drive
-from processing.tools.runner import RunRequest, drives_of, run_together, tool_of
+from processing.tools.running.runner import RunRequest, drives_of, run_together, tool_of
 
 
 @dataclass(frozen=True)
@@ -20,7 +20,7 @@ class RunShare:
     request : RunRequest
         For the first of ``drives``, with all others beside it.
     drives : tuple of Drive
-        What the run is about, as :func:`processing.tools.runner.drives_of` says.
+        What the run is about, as :func:`processing.tools.running.runner.drives_of` says.
     monitor : Monitor
         Gets this run's share of the progress.
     """
@@ -78,7 +78,7 @@ def mark_all(tool: str, drives: Sequence[Drive], monitor: Monitor, *, into: Path
     Raises
     ------
     Unsuitable, OutOfRange, NoSpace, Cancelled
-        As :func:`processing.tools.runner.run`.
+        As :func:`processing.tools.running.runner.run`.
     """
     for share in run_shares(tool, drives, tool_of(tool).parameters(), monitor):
         folder = into / f"{tool}-{share.drives[0].id}"

@@ -8,9 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from processing.core.text import Text
-from processing.scoring.coded_points import CodePairs
-from processing.scoring.confusion_matrix import BinaryConfusionMatrix, ConfusionMatrix, is_one_of
-from processing.scoring.reliability import ShareInterval, share_of
+from processing.scoring.points.coded_points import CodePairs
+from processing.scoring.points.confusion_matrix import (
+    BinaryConfusionMatrix,
+    ConfusionMatrix,
+    is_one_of,
+)
+from processing.scoring.points.reliability import ShareInterval, share_of
 
 
 @dataclass(frozen=True)

@@ -14,9 +14,14 @@ from numpy.typing import NDArray
 
 from processing.core.arrays import Floats, Integers
 from processing.core.text import Text
-from processing.scoring.confusion_matrix import BinaryConfusionMatrix
-from processing.scoring.file_scores import DetectionCounts, ErrorStatistics, FileScore, errors_of
-from processing.scoring.mapped_features import MappedFeature, MappedFile
+from processing.scoring.features.file_scores import (
+    DetectionCounts,
+    ErrorStatistics,
+    FileScore,
+    errors_of,
+)
+from processing.scoring.features.mapped_features import MappedFeature, MappedFile
+from processing.scoring.points.confusion_matrix import BinaryConfusionMatrix
 
 WIRES: dict[str, dict[str, object]] = {"wire": {}}
 """Kinds of features that are wires."""

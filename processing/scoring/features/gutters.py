@@ -15,9 +15,13 @@ from numpy.typing import NDArray
 
 from processing.core.arrays import Floats
 from processing.core.text import Text
-from processing.scoring.confusion_matrix import BinaryConfusionMatrix
-from processing.scoring.file_scores import DetectionCounts, FileScore, errors_of, named_share
-from processing.scoring.gutter_runs import (
+from processing.scoring.features.file_scores import (
+    DetectionCounts,
+    FileScore,
+    errors_of,
+    named_share,
+)
+from processing.scoring.features.gutter_runs import (
     JOINT_M,
     LEAST_SCANNED,
     LEAST_UNCOVERED,
@@ -28,8 +32,9 @@ from processing.scoring.gutter_runs import (
     is_seen,
     runs_of,
 )
-from processing.scoring.mapped_features import MappedFeature, MappedFile
-from processing.scoring.one_to_one import best_pairs
+from processing.scoring.features.mapped_features import MappedFeature, MappedFile
+from processing.scoring.features.one_to_one import best_pairs
+from processing.scoring.points.confusion_matrix import BinaryConfusionMatrix
 
 GUTTERS: dict[str, dict[str, object]] = {
     "gutter": {},

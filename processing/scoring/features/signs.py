@@ -11,17 +11,22 @@ import numpy as np
 
 from processing.core.arrays import Floats
 from processing.core.text import Text
-from processing.scoring.confusion_matrix import BinaryConfusionMatrix
-from processing.scoring.file_scores import DetectionCounts, FileScore, errors_of, named_share
-from processing.scoring.mapped_features import MappedFeature, MappedFile
-from processing.scoring.object_matches import (
+from processing.scoring.features.file_scores import (
+    DetectionCounts,
+    FileScore,
+    errors_of,
+    named_share,
+)
+from processing.scoring.features.mapped_features import MappedFeature, MappedFile
+from processing.scoring.features.object_matches import (
     Differences,
     ObjectMatch,
     is_in_span,
     match_objects,
     shows_enough,
 )
-from processing.scoring.point_scores import NamedShare
+from processing.scoring.points.confusion_matrix import BinaryConfusionMatrix
+from processing.scoring.points.point_scores import NamedShare
 
 SIGNS: dict[str, dict[str, object]] = {
     "sign": {},

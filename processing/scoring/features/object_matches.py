@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.core.arrays import Floats
-from processing.scoring.confusion_matrix import BinaryConfusionMatrix
-from processing.scoring.file_scores import ErrorStatistics, errors_of
-from processing.scoring.mapped_features import MappedFeature, MappedFile
-from processing.scoring.one_to_one import pairs_within
+from processing.scoring.features.file_scores import ErrorStatistics, errors_of
+from processing.scoring.features.mapped_features import MappedFeature, MappedFile
+from processing.scoring.features.one_to_one import pairs_within
+from processing.scoring.points.confusion_matrix import BinaryConfusionMatrix
 
 
 @dataclass(frozen=True)

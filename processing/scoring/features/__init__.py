@@ -1,0 +1,1 @@
+"""Scores of mapped features, lines and volumes."""

@@ -1,0 +1,1 @@
+"""Scores of points' classes and noise."""

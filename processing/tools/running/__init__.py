@@ -1,0 +1,1 @@
+"""Running tools on drives."""
