@@ -26,7 +26,7 @@ FREE = Qt.KeyboardModifier.ControlModifier
 """Ctrl: the measured point itself, no snapping."""
 
 WAIT_MS = 30_000
-LAYER = "2213_縁石上端"
+LAYER = "2213_歩道"
 VIEWS = ("image", "scene", "section", "camera", "map")
 SAME_M = 0.0015
 """Files hold millimetres."""

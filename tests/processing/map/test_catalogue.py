@@ -44,17 +44,17 @@ _CODES = {
 # All road codes of the standard at level 500 with the shapes it draws them in: point, line, area.
 # A circle (E3) is drawn as an area, a direction (E6) and a note (E7) as a point.
 _SHAPES_OF_CODES = {
-    "2101 2103 2213 2227 2231 2232 2233 2234 2237 2219": "l",
+    "2101 2103 2213 2214 2227 2231 2232 2233 2234 2237 2219": "l",
     "2203 2226": "la",
-    "2211 2222 2235 2236": "a",
+    "2211 2212 2222 2235 2236": "a",
     "2221 2238 2239 2241 2242 2243 2244 2246 2247 2253 2255 2256 2262": "p",
     "2261 4101 4111 4121 4131 4141 4151 4161": "pa",
     "2505": "l",
     "3001 3002 3003 3004": "a",
     "4119 4132 4142 4211 4215 4216 4221 4222 4237 4238": "p",
     "6101 6110 6111 6112 6113 6131 6132 6133 6134 6136 6140 6141 6142 6201 6301 6522": "l",
-    "1104 1106 7101 7102": "l",
-    "7304 7305 7306 7311 7312 8115 8121 8173 8181": "p",
+    "1104 1106 1107 7101 7102": "l",
+    "7304 7305 7306 7311 7312 8114 8115 8116 8121 8122 8125 8126 8173 8181": "p",
 }
 # What the ledgers of trees, signs and fixtures ask of each.
 _LEDGERS = {
@@ -72,7 +72,7 @@ _LEDGERS = {
     "road_center": "number route name",
     "width_line": "width_m side",
 }
-_NO_CODE = {"curb_lower", "sign", "pole", "marking_line", "crosswalk", "building_corner"}
+_NO_CODE = {"curb_lower", "sign", "pole", "gutter_grating", "marking_line", "crosswalk", "building_corner"}
 
 _SMALL = """
 [attribute.height_m]
