@@ -8,12 +8,13 @@ be typed.
 from __future__ import annotations
 
 import csv
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Literal, cast
 
 from processing.core.text import Text
+from processing.map.catalogue import Catalogue, FeatureKind, Geometry
 from resources import path_of
 
 SignClass = Literal["guide", "warning", "regulation", "instruction", "supplement"]
@@ -23,6 +24,18 @@ FIELD = "sign_number"
 """Attribute that holds the number."""
 
 SUPPLEMENT: SignClass = "supplement"
+
+_CODES: Mapping[SignClass, str] = {
+    "guide": "2242",
+    "warning": "2243",
+    "regulation": "2244",
+    "instruction": "2244",
+}
+"""Codes of road signs (公共測量標準図式, 2242-2244). Instruction signs share the code of regulatory
+ones; supplementary plates go with the sign above them and have none."""
+
+_UNCONFIRMED = "sign"
+"""Kind of a sign whose number nobody has confirmed: shape alone doesn't tell its class."""
 
 
 @dataclass(frozen=True)
@@ -82,3 +95,15 @@ def numbers_for(shape: str, *, is_supplement: bool) -> Sequence[SignNumber]:
         for one in sign_numbers()
         if shape in one.shapes and (one.sign_class == SUPPLEMENT) == is_supplement
     )
+
+
+def kind_of_sign(sign_class: SignClass, catalogue: Catalogue) -> FeatureKind | None:
+    """The kind of signs of a class; None where the catalogue has none with its code."""
+    code = _CODES.get(sign_class)
+    signs = (one for one in catalogue if code is not None and one.dm_code == code)
+    return next((one for one in signs if one.geometry is Geometry.POINT), None)
+
+
+def is_kind_of_signs(kind: FeatureKind) -> bool:
+    """Whether features of a kind are signs whose number says their kind."""
+    return kind.id == _UNCONFIRMED or kind.dm_code in _CODES.values()

@@ -61,14 +61,16 @@ def attribute_change(
     value: AttributeValue,
     *,
     implied: Mapping[str, AttributeValue] | None = None,
+    implied_kind: FeatureKind | None = None,
 ) -> tuple[Text, Change]:
-    """An attribute set to one value, and others that it implies; None takes it away."""
+    """An attribute set to one value, and what it implies; None takes it away."""
 
     def changed(feature: Feature) -> Feature:
         attributes = {**feature.attributes, **(implied or {}), id_: value}
         if value is None:
             del attributes[id_]
-        return replace(feature, attributes=attributes)
+        said = replace(feature, attributes=attributes)
+        return said if implied_kind is None else with_kind(said, implied_kind)
 
     change = _change_of(features, changed)
     return _label(_ATTRIBUTE_LABELS, change, name=name), change

@@ -72,7 +72,15 @@ _LEDGERS = {
     "road_center": "number route name",
     "width_line": "width_m side",
 }
-_NO_CODE = {"curb_lower", "sign", "pole", "gutter_grating", "marking_line", "crosswalk", "building_corner"}
+_NO_CODE = {
+    "curb_lower",
+    "sign",
+    "pole",
+    "gutter_grating",
+    "marking_line",
+    "crosswalk",
+    "building_corner",
+}
 
 _SMALL = """
 [attribute.height_m]

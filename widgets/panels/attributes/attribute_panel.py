@@ -13,7 +13,7 @@ from processing.core.text import Language, Text
 from processing.map.change import Change
 from processing.map.feature import AttributeValue, Feature, Status
 from widgets.panels.attributes.attribute_form import AttributeForm
-from widgets.panels.attributes.sign_numbers import implied_values
+from widgets.panels.attributes.sign_numbers import implied_kind, implied_values
 from widgets.panels.feature_changes import attribute_change, kind_change, status_change
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
@@ -145,8 +145,15 @@ class AttributePanel(QWidget):
         catalogue, kind = self._source.catalogue(), features[0].kind
         field = catalogue[kind].attribute(id_) if kind in catalogue else None
         name = Text.same(id_) if field is None else field.name
-        implied = implied_values(features, catalogue, id_, value)
-        self._ask_for(*attribute_change(features, id_, name, value, implied=implied))
+        label, change = attribute_change(
+            features,
+            id_,
+            name,
+            value,
+            implied=implied_values(features, catalogue, id_, value),
+            implied_kind=implied_kind(features, catalogue, id_, value),
+        )
+        self._ask_for(label, change)
 
     def _on_form_status_chosen(self, status: Status) -> None:
         self._ask_for(*status_change(self._shown_now(), status))

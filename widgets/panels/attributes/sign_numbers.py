@@ -11,12 +11,14 @@ from PySide6.QtGui import QAction, QColor, QIcon, QPainter, QPen, QPixmap, QPoly
 from PySide6.QtWidgets import QMenu, QWidget
 
 from processing.core.text import Language, Text
-from processing.map.catalogue import Catalogue
+from processing.map.catalogue import Catalogue, FeatureKind
 from processing.map.feature import AttributeValue, Feature
 from processing.map.sign_numbers import (
     FIELD,
     SignClass,
     SignNumber,
+    is_kind_of_signs,
+    kind_of_sign,
     numbers_for,
     sign_numbers,
 )
@@ -96,13 +98,29 @@ def implied_values(
     features: Sequence[Feature], catalogue: Catalogue, id_: str, value: AttributeValue
 ) -> dict[str, AttributeValue]:
     """What a sign's number says besides: its class, where all kinds of the features ask for it."""
-    found = next((one for one in sign_numbers() if id_ == FIELD and one.number == value), None)
+    found = _sign_of(id_, value)
     if found is None:
         return {}
     kinds = [catalogue[one.kind] for one in features if one.kind in catalogue]
     fields = [kind.attribute(_CLASS_FIELD) for kind in kinds]
     is_asked = all(one is not None and found.sign_class in one.choices for one in fields)
     return {_CLASS_FIELD: found.sign_class} if is_asked else {}
+
+
+def implied_kind(
+    features: Sequence[Feature], catalogue: Catalogue, id_: str, value: AttributeValue
+) -> FeatureKind | None:
+    """The kind with the official code that a sign's number says; None where it says none."""
+    found = _sign_of(id_, value)
+    kinds = [catalogue[one.kind] for one in features if one.kind in catalogue]
+    if found is None or len(kinds) < len(features) or not all(map(is_kind_of_signs, kinds)):
+        return None
+    return kind_of_sign(found.sign_class, catalogue)
+
+
+def _sign_of(id_: str, value: AttributeValue) -> SignNumber | None:
+    """The sign that a number written into an attribute means."""
+    return next((one for one in sign_numbers() if id_ == FIELD and one.number == value), None)
 
 
 def plate_picture(shape: str, colour: str) -> QIcon:

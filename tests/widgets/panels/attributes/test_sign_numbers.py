@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -22,7 +23,7 @@ from resources import path_of
 from tests.widgets.builders import OpenMap
 from widgets.panels.attributes.attribute_panel import AttributePanel
 from widgets.panels.attributes.photo_row import PhotoRow
-from widgets.panels.attributes.sign_numbers import SignNumberMenu
+from widgets.panels.attributes.sign_numbers import SignNumberMenu, implied_kind
 
 
 class MapOfSigns(OpenMap):
@@ -111,8 +112,26 @@ def test_a_number_chosen_by_keys_is_written_with_its_class_in_one_step(qtbot: Qt
     (written,) = open_map.features()
     assert written.attributes["sign_number"] == "330"
     assert written.attributes["sign_class"] == "regulation"
-    assert field.text() == "330"
+    assert written.kind == "sign_regulation"  # 2244: a number was confirmed
+    shown = panel.field("sign_number")
+    assert isinstance(shown, QLineEdit)
+    assert shown.text() == "330"
     assert len(steps) == 1
+
+
+@pytest.mark.parametrize(
+    ("kind", "number", "becomes"),
+    [("sign", "208", "sign_warning"), ("sign", "407-A", "sign_regulation"),
+     ("sign_warning", "101", "sign_guide"), ("sign", "501", "sign"),
+     ("sign", "something else", "sign"), ("info_board", "101", "info_board")],
+)  # fmt: skip
+def test_a_sign_has_an_official_code_once_its_number_is_confirmed(
+    kind: str, number: str, becomes: str
+) -> None:
+    signs = (replace(sign("a"), kind=kind),)
+    found = implied_kind(signs, MapOfSigns.listed, "sign_number", number)
+    assert (found.id if found is not None else kind) == becomes
+    assert implied_kind(signs, MapOfSigns.listed, "number", number) is None
 
 
 def test_the_picture_of_a_sign_is_shown_and_goes_with_it(qtbot: QtBot, tmp_path: Path) -> None:
