@@ -38,7 +38,9 @@ def _encoding() -> Any:
             ParameterChoice("cp932", Text.same("Shift_JIS (cp932)")),
         ),
         name=Text("Text of DXF and CSV", "DXF・CSVの文字コード"),
-        explanation=Text("A DXF 2018 is always UTF-8.", "DXF 2018は常にUTF-8です。"),
+        explanation=Text(
+            "Of a DXF, its version decides.", "DXFの文字コードはバージョンによって決まります。"
+        ),
     )
 
 
@@ -50,7 +52,9 @@ class DxfOptions:
         "R2018",
         choices=(
             ParameterChoice("R2018", Text.same("DXF 2018 (UTF-8)")),
-            ParameterChoice("R2000", Text.same("DXF 2000")),
+            ParameterChoice("R2007", Text.same("DXF 2007 (UTF-8)")),
+            ParameterChoice("R2000", Text.same("DXF 2000 (Shift_JIS)")),
+            ParameterChoice("R12", Text.same("DXF R12 (Shift_JIS)")),
         ),
         name=Text("Version of DXF", "DXFのバージョン"),
     )

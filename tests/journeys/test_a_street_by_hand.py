@@ -112,8 +112,8 @@ def _exported(surveyor: Surveyor, folder: Path) -> dict[str, list[Floats]]:
     for line in space.query("POLYLINE"):
         positions = np.array([tuple(vertex.dxf.location) for vertex in line.vertices])
         found.setdefault(line.dxf.layer, []).append(positions)
-    for point in space.query("POINT"):
-        found.setdefault(point.dxf.layer, []).append(np.array([tuple(point.dxf.location)]))
+    for symbol in space.query("INSERT"):
+        found.setdefault(symbol.dxf.layer, []).append(np.array([tuple(symbol.dxf.insert)]))
     return found
 
 

@@ -6,15 +6,20 @@ import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
-from xml.etree import ElementTree as ET
+from typing import Any, cast
 
 import numpy as np
 
 from processing.core.errors import Unsuitable
 from processing.core.monitor import Monitor, SilentMonitor
 from processing.core.safe_write import write_safely
-from processing.core.text import Text
+from processing.core.text import Language, Text
+from processing.formats.drawings.dxf_blocks import (
+    add_attributes,
+    block_values,
+    define_attributes,
+    need_symbol_block,
+)
 from processing.formats.drawings.dxf_bodies import BODY_SUFFIX, add_body
 from processing.formats.drawings.dxf_document import (
     APP_ID,
@@ -29,9 +34,6 @@ from processing.formats.map_delivery import DxfOptions, MapDelivery
 from processing.map.catalogue import LINE_TYPES, Catalogue, FeatureKind, Geometry
 from processing.map.feature import AttributeValue, Feature, Position, Status
 from processing.map.solids import solid_of, thickness_of
-from resources import path_of
-
-_SVG = "{http://www.w3.org/2000/svg}"
 
 CANDIDATE_SUFFIX = "_候補"
 LABEL_SUFFIX = "_文字"
@@ -50,22 +52,26 @@ def write_dxf(
     version: DxfVersion = "R2018",
     encoding: str = "utf-8",
     crs: str = "",
+    language: Language | None = None,
     monitor: Monitor | None = None,
     never: Iterable[Path] = (),
 ) -> None:
-    r"""Draw features: 3D polylines, closed ones for areas, points with their symbol.
+    r"""Draw features: 3D polylines, closed ones for areas, points as their symbol's block.
 
-    Areas of a kind that has a thickness are bodies of 3D faces besides, on a layer of their own.
+    A block carries the attributes of its feature. Areas of a kind that has a thickness are bodies
+    of 3D faces besides, on a layer of their own.
 
     Parameters
     ----------
     features : iterable of Feature
         Rejected ones are left out; candidates are drawn on a layer of their own.
-    version : {"R2000", "R2018"}
-        AC1015 or AC1032.
+    version : {"R12", "R2000", "R2007", "R2018"}
+        AC1009, AC1015, AC1021 or AC1032.
     encoding : {"utf-8", "cp932"}
-        What was asked for; the version decides: R2018 is UTF-8, R2000 is cp932. What cp932 lacks
-        is written as ``\U+XXXX``, which CAD programs read.
+        What was asked for; the version decides: R2007 and R2018 are UTF-8, R12 and R2000 cp932.
+        What cp932 lacks is written as ``\U+XXXX``, which CAD programs read.
+    language : {"en", "ja"} or None
+        Of the choices in the attributes of blocks; None for the words that are stored.
     crs : str
         ``EPSG:n`` or empty; written, or that it is not known, to the drawing's properties (R2018)
         and to the extended data of layer 0.
@@ -83,7 +89,7 @@ def write_dxf(
     """
     check_one_of(encoding, ENCODINGS.values())
     monitor = monitor or SilentMonitor()
-    drawing = _Drawing(catalogue, version, crs)
+    drawing = _Drawing(catalogue, version, crs, language)
     for number, feature in enumerate(features):
         if number % _CHECK_EVERY == 0:
             monitor.check()
@@ -99,14 +105,14 @@ def write_dxf_features(
 ) -> None:
     """Draw a map that is handed in, as :func:`write_dxf`."""
     options = delivery.options_of(DxfOptions)
-    version: DxfVersion = "R2000" if options.dxf_version == "R2000" else "R2018"
     write_dxf(
         path,
         delivery.features,
         delivery.catalogue,
-        version=version,
+        version=cast("DxfVersion", options.dxf_version),
         encoding=options.encoding,
         crs=delivery.crs,
+        language=delivery.language,
         monitor=monitor,
         never=never,
     )
@@ -123,8 +129,11 @@ class _Looks:
 class _Drawing:
     """A drawing being filled."""
 
-    def __init__(self, catalogue: Catalogue, version: DxfVersion, crs: str) -> None:
+    def __init__(
+        self, catalogue: Catalogue, version: DxfVersion, crs: str, language: Language | None
+    ) -> None:
         self._catalogue = catalogue
+        self._language = language
         self.document = DxfDocument(version)
         self._doc, self._space = self.document.doc, self.document.space
         self._lowest = [math.inf] * 3
@@ -168,19 +177,25 @@ class _Drawing:
         attributes = {"layer": looks.layer, **looks.own}
         match feature.geometry:
             case Geometry.POINT:
-                entities: list[Any] = [self._space.add_point(positions[0], dxfattribs=attributes)]
                 if kind.symbol:
-                    block = add_symbol_block(self._doc, kind.symbol)
-                    turned = {**attributes, "rotation": _rotation_deg(feature)}
-                    entities.append(
-                        self._space.add_blockref(block, positions[0], dxfattribs=turned)
-                    )
-                return entities
+                    return [self._symbol(kind, feature, attributes)]
+                return [self._space.add_point(positions[0], dxfattribs=attributes)]
             case Geometry.LINE:
                 return [self._space.add_polyline3d(positions, dxfattribs=attributes)]
             case Geometry.AREA:
                 outline = self._space.add_polyline3d(positions, close=True, dxfattribs=attributes)
                 return [outline, *self._body(kind, feature, positions, looks)]
+
+    def _symbol(self, kind: FeatureKind, feature: Feature, attributes: Mapping[str, Any]) -> Any:
+        """The block of a symbol with what is known about the feature."""
+        block = need_symbol_block(self.document, kind.symbol)
+        alike = (one for one in self._catalogue if one.symbol == kind.symbol)
+        define_attributes(block, {one.id: one for each in alike for one in each.attributes})
+        turned = {**attributes, "rotation": _rotation_deg(feature)}
+        place = feature.vertices[0].xyz
+        insert = self._space.add_blockref(block.name, place, dxfattribs=turned)
+        add_attributes(insert, block_values(kind, feature, self._language), self.document.encoding)
+        return insert
 
     def _body(
         self, kind: FeatureKind, feature: Feature, positions: list[Position], looks: _Looks
@@ -204,7 +219,7 @@ class _Drawing:
         own: dict[str, Any] = {}
         if (kind.aci, kind.colour) != (first.aci, first.colour):
             own["color"] = kind.aci
-            if not self.document.is_r2000:
+            if self.document.has_true_colours:
                 own["true_color"] = int(kind.colour[1:], 16)
         if kind.line_type != first.line_type:
             own["linetype"] = kind.line_type.upper()
@@ -216,7 +231,7 @@ class _Drawing:
         self.document.require_encodable(layer)
         first = self._catalogue.of_layer(kind.layer)[0]
         looks: dict[str, Any] = {"color": first.aci, "linetype": first.line_type.upper()}
-        if not self.document.is_r2000:
+        if self.document.has_true_colours:
             looks["true_color"] = int(first.colour[1:], 16)
         self._doc.layers.add(layer, **looks)
 
@@ -287,31 +302,3 @@ def _tags(value: AttributeValue, encoding: str) -> list[tuple[int, Any]]:
 def _refusal(feature: Feature, what: Text, remedy: Text) -> Unsuitable:
     where = Text(f"{feature.kind}, feature {feature.id}", f"{feature.kind}、地物 {feature.id}")
     return Unsuitable(what, where, remedy)
-
-
-def add_symbol_block(doc: Any, symbol: str) -> str:  # an ezdxf drawing; ezdxf is not typed here
-    """Give the name of the block for a symbol; it is made if the drawing lacks it.
-
-    The SVG's unit is a metre on the ground at 1:500, its y axis looks south; what has a direction
-    looks north. Lines, polylines, polygons and circles are drawn, by the layer's colour.
-    """
-    name = f"ZUKA_{symbol.upper()}"
-    if name in doc.blocks:
-        return name
-    block = doc.blocks.new(name)
-    # The file comes with the program.
-    root = ET.parse(path_of(f"symbols/{symbol}.svg")).getroot()  # noqa: S314
-    looks = {"layer": "0", "color": 0, "linetype": "BYBLOCK"}
-    for shape in root.iter():
-        match shape.tag.removeprefix(_SVG):
-            case "circle":
-                x, y, radius = (float(shape.attrib[key]) for key in ("cx", "cy", "r"))
-                block.add_circle((x, -y), radius, dxfattribs=looks)
-            case "line":
-                x1, y1, x2, y2 = (float(shape.attrib[key]) for key in ("x1", "y1", "x2", "y2"))
-                block.add_line((x1, -y1), (x2, -y2), dxfattribs=looks)
-            case "polyline" | "polygon" as tag:
-                pairs = [pair.split(",") for pair in shape.attrib["points"].split()]
-                points = [(float(x), -float(y)) for x, y in pairs]
-                block.add_lwpolyline(points, close=tag == "polygon", dxfattribs=looks)
-    return name

@@ -1,7 +1,7 @@
 """How every drawing here begins and ends: version and code page, text style, extent, bytes.
 
-R2018 is UTF-8 by definition; R2000 has a code page, which is cp932 here, as the CAD programs of
-Japanese offices expect.
+R2007 and R2018 are UTF-8 by definition; R12 and R2000 have a code page, which is cp932 here, as the
+CAD programs of Japanese offices expect.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from io import TextIOWrapper
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any, Literal, get_args
 
 from typing_extensions import override
 
@@ -18,10 +18,20 @@ from processing.core.monitor import Monitor, SilentMonitor
 from processing.core.text import Text
 from processing.formats.drawings.dxf_text import dxf_text, label_text
 
-DxfVersion = Literal["R2000", "R2018"]
+DxfVersion = Literal["R12", "R2000", "R2007", "R2018"]
 
-ENCODINGS: Mapping[str, str] = {"R2000": "cp932", "R2018": "utf-8"}
+ENCODINGS: Mapping[DxfVersion, str] = {
+    "R12": "cp932",
+    "R2000": "cp932",
+    "R2007": "utf-8",
+    "R2018": "utf-8",
+}
 """By version."""
+
+PlanVersion = Literal["R2000", "R2007", "R2018"]
+"""Those that have fills and light polylines."""
+
+_TRUE_COLOURS: frozenset[DxfVersion] = frozenset({"R2007", "R2018"})
 
 APP_ID = "ZUKA"
 """Application id of the extended data."""
@@ -37,8 +47,8 @@ class DxfDocument:
 
     Parameters
     ----------
-    version : {"R2000", "R2018"}
-        AC1015 or AC1032.
+    version : {"R12", "R2000", "R2007", "R2018"}
+        AC1009, AC1015, AC1021 or AC1032.
 
     Attributes
     ----------
@@ -46,8 +56,10 @@ class DxfDocument:
     space : its model space
     encoding : str
         Of the bytes.
-    is_r2000 : bool
-        Without true colours.
+    has_true_colours : bool
+        Older versions take the index of a colour alone.
+    has_light_polylines : bool
+        R12 takes polylines with vertices of their own alone.
 
     Raises
     ------
@@ -60,29 +72,43 @@ class DxfDocument:
         from ezdxf.filemanagement import new
 
         check_one_of(version, ENCODINGS)
-        self.is_r2000 = version == "R2000"
+        self.has_true_colours = version in _TRUE_COLOURS
+        self.has_light_polylines = version != "R12"
         self.encoding = ENCODINGS[version]
         # Any: ezdxf is not typed here.
         self.doc: Any = new(version)
         self.doc.encoding = "cp932"  # the code page that even UTF-8 files name
-        self.doc.units = units.M
+        if version != "R12":  # carries no units
+            self.doc.units = units.M
         self.doc.header["$MEASUREMENT"] = 1
         style = self.doc.styles.add(_STYLE, font=_FONT)
         style.set_extended_font_data(_FONT_FAMILY)
         self.space: Any = self.doc.modelspace()
+
+    @classmethod
+    def of_plan(cls, version: PlanVersion) -> DxfDocument:
+        """A drawing with fills and light polylines.
+
+        Raises
+        ------
+        OutOfRange
+            The version has none.
+        """
+        check_one_of(version, get_args(PlanVersion))
+        return cls(version)
 
     def tell_system(self, crs: str) -> None:
         """Write ``EPSG:n``, or that it is not known, where drawings of this program are asked."""
         reported = crs or "unknown"
         self.doc.appids.add(APP_ID)
         self.doc.header.custom_vars.append("CRS", reported)
-        # R2000 has no properties of its own.
+        # R12 and R2000 have no properties of their own.
         self.doc.layers.get("0").set_xdata(APP_ID, [(1000, "CRS"), (1000, reported)])
 
     def add_layer(self, name: str, aci: int, rgb: tuple[int, int, int] | None = None) -> None:
-        """Add a layer of a colour; R2000 takes the index alone."""
+        """Add a layer of a colour; older versions take the index alone."""
         layer = self.doc.layers.add(name, color=aci)
-        if rgb is not None and not self.is_r2000:
+        if rgb is not None and self.has_true_colours:
             layer.rgb = rgb
 
     def require_encodable(self, layer: str) -> None:
@@ -101,8 +127,8 @@ class DxfDocument:
                 ),
                 Text.same(layer),
                 Text(
-                    "Export as DXF 2018, or change the layer in the catalogue.",
-                    "DXF 2018で書き出すか、カタログの画層名を変更してください。",
+                    "Export as DXF 2007 or 2018, or change the layer in the catalogue.",
+                    "DXF 2007か2018で書き出すか、カタログの画層名を変更してください。",
                 ),
             )
 

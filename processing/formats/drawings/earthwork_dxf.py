@@ -20,7 +20,7 @@ from processing.core.monitor import Monitor, SilentMonitor
 from processing.core.safe_write import write_safely
 from processing.core.text import Language, Text
 from processing.formats.drawings.drawing_scale import fitting_scale, grid_step
-from processing.formats.drawings.dxf_document import DxfDocument, DxfVersion
+from processing.formats.drawings.dxf_document import DxfDocument, PlanVersion
 from processing.formats.drawings.dxf_fills import Ink, add_areas, add_box, inks_of
 from processing.methods.earthwork.maps.change_grid import ChangeGrid
 from processing.methods.earthwork.maps.class_areas import class_areas
@@ -66,7 +66,7 @@ class PlanStyle:
     """
 
     scale: int = 0
-    version: DxfVersion = "R2018"
+    version: PlanVersion = "R2018"
     language: Language = "ja"
 
 
@@ -135,7 +135,7 @@ class _Sheet:
     def __init__(self, plan: EarthworkPlan, look: PlanStyle, path: Path) -> None:
         self._plan = plan
         self._look = look
-        self.document = DxfDocument(look.version)
+        self.document = DxfDocument.of_plan(look.version)
         self.document.tell_system(plan.crs)
         self._space = self.document.space
         self._low, self._high = _extent(plan, path)

@@ -18,7 +18,7 @@ from processing.core.monitor import SilentMonitor
 from processing.core.safe_write import write_safely
 from processing.core.text import Language, Text
 from processing.formats.drawings.drawing_scale import decimals_of, grid_step, round_down_to
-from processing.formats.drawings.dxf_document import DxfDocument, DxfVersion
+from processing.formats.drawings.dxf_document import DxfDocument, PlanVersion
 from processing.section.profile import Crossing, SectionProfile
 
 GROUND_LAYER, POINT_LAYER = "断面_地盤線", "断面_点群"
@@ -62,7 +62,7 @@ class ProfileStyle:
     scale: int = 100
     exaggeration: float = 1.0
     has_points: bool = True
-    version: DxfVersion = "R2018"
+    version: PlanVersion = "R2018"
     language: Language = "ja"
 
 
@@ -117,7 +117,7 @@ class _Sheet:
     def __init__(self, profile: SectionProfile, look: ProfileStyle) -> None:
         self._profile = profile
         self._look = look
-        self.document = DxfDocument(look.version)
+        self.document = DxfDocument.of_plan(look.version)
         self._layers, self._space = self.document.doc.layers, self.document.space
         for layer, colour in _LAYERS.items():
             self._layers.add(layer, color=colour)

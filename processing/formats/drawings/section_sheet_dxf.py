@@ -27,7 +27,7 @@ from processing.formats.drawings.drawing_scale import (
     grid_step,
     round_down_to,
 )
-from processing.formats.drawings.dxf_document import DxfDocument, DxfVersion
+from processing.formats.drawings.dxf_document import DxfDocument, PlanVersion
 from processing.formats.drawings.dxf_fills import Ink, add_areas
 from processing.methods.earthwork.sections.drawing_parts import (
     DrawnSection,
@@ -84,7 +84,7 @@ class SectionStyle:
     scale: int = 0
     exaggeration: float = 1.0
     names: tuple[Text, Text] = (Text("Before", "着手前"), Text("After", "施工後"))
-    version: DxfVersion = "R2018"
+    version: PlanVersion = "R2018"
     language: Language = "ja"
 
 
@@ -208,7 +208,7 @@ class _Sheet:
     def __init__(self, sections: list[DrawnSection], look: SectionStyle) -> None:
         self._look = look
         self._layout = _layout(sections, look)
-        self.document = DxfDocument(look.version)
+        self.document = DxfDocument.of_plan(look.version)
         self._space = self.document.space
         for layer, ink in _LAYERS.items():
             self.document.add_layer(layer, ink.aci, ink.rgb)

@@ -156,7 +156,7 @@ def test_an_unknown_reference_system_is_said_while_working_and_in_the_files(
         ({"formats": ("pdf",)}, "pdf"),
         ({"formats": ()}, "–"),
         ({"options": {"encoding": "latin-1"}}, "encoding=latin-1"),
-        ({"options": {"dxf_version": "R12"}}, "dxf_version=R12"),
+        ({"options": {"dxf_version": "R14"}}, "dxf_version=R14"),
         ({"options": {"digits": 12}}, "digits=12"),
         ({"options": {"scale": 500}}, "scale"),
     ],

@@ -24,7 +24,7 @@ from resources import path_of
 from tests.monitors import CancelledAfter
 from tests.processing.formats.audited_dxf import audited_dxf
 
-_VERSIONS: tuple[DxfVersion, ...] = ("R2000", "R2018")
+_VERSIONS: tuple[DxfVersion, ...] = ("R12", "R2000", "R2007", "R2018")
 _FOOT = (-11394.608, -35139.915, 25.682)
 _LINE = ((-11394.608, -35139.915, 25.682), (-11390.001, -35138.5, 25.7), (-11385.25, -35139.0, 26))
 
@@ -106,14 +106,32 @@ def test_a_symbol_stands_on_its_point_and_looks_where_its_sign_looks(
 ) -> None:
     sign = _feature("sign_regulation", Geometry.POINT, _FOOT, facing_deg=90.0)
     doc = audited_dxf(tmp_path / "a.dxf", catalogue, sign)
-    point, insert = _only(doc, "POINT"), _only(doc, "INSERT")
-    assert tuple(point.dxf.location) == tuple(insert.dxf.insert) == _FOOT
+    # One thing is one entity: whoever counts symbols counts signs.
+    (insert,) = doc.modelspace()
+    assert tuple(insert.dxf.insert) == _FOOT
     # The plate is ahead of the foot: east of it when the sign faces east.
     circles = [one for one in insert.virtual_entities() if one.dxftype() == "CIRCLE"]
     plate = max(circles, key=lambda circle: circle.dxf.radius)
     ahead = plate.dxf.center - Vec3(_FOOT)
     assert ahead.x > 0.5
     assert abs(ahead.y) < 1e-9
+
+
+@pytest.mark.parametrize("version", _VERSIONS)
+def test_a_symbol_carries_what_is_known_about_its_feature(
+    tmp_path: Path, catalogue: Catalogue, version: DxfVersion
+) -> None:
+    sign = _feature("sign", Geometry.POINT, _FOOT, number="12", shape="circle", size_m=0.6)
+    path = tmp_path / "a.dxf"
+    write_dxf(path, [sign], catalogue, version=version, language="ja")
+    doc = ezdxf.filemanagement.readfile(path)
+    insert = _only(doc, "INSERT")
+    carried = {one.dxf.tag: one.dxf.text for one in insert.attribs}
+    assert carried == {"NUMBER": "12", "SHAPE": "円形", "SIZE_M": "0.600"}
+    assert all(one.is_invisible for one in insert.attribs)
+    defined = {one.dxf.tag for one in doc.blocks.get(insert.dxf.name).query("ATTDEF")}
+    assert set(carried) < defined
+    assert doc.audit().errors == []
 
 
 def test_a_direction_goes_before_a_facing_and_nonsense_turns_nothing(
@@ -136,9 +154,10 @@ def test_every_kind_of_the_catalogue_is_drawn_without_an_error(
         _feature(kind.id, kind.geometry, *shapes[kind.geometry], number="1") for kind in catalogue
     ]
     doc = audited_dxf(tmp_path / "a.dxf", catalogue, *features, version=version)
-    assert doc.dxfversion == {"R2000": "AC1015", "R2018": "AC1032"}[version]
+    versions = {"R12": "AC1009", "R2000": "AC1015", "R2007": "AC1021", "R2018": "AC1032"}
+    assert doc.dxfversion == versions[version]
     assert doc.header["$DWGCODEPAGE"] == "ANSI_932"
-    assert doc.header["$INSUNITS"] == 6
+    assert version == "R12" or doc.header["$INSUNITS"] == 6  # R12 carries no units
     for kind in catalogue:
         layer = doc.layers.get(kind.layer)
         first = catalogue.of_layer(kind.layer)[0]
@@ -253,7 +272,7 @@ def test_signs_whose_twin_shift_jis_has_are_drawn_as_the_twin(
     for version, drawn in (("R2000", "3～5－￠"), ("R2018", "3〜5−¢")):
         doc = audited_dxf(tmp_path / "a.dxf", catalogue, _tree(name="3〜5−¢"), version=version)
         assert _only(doc, "TEXT").plain_text() == drawn
-        assert _attributes(_only(doc, "POINT"))["name"] == "3〜5−¢"
+        assert _attributes(_only(doc, "INSERT"))["name"] == "3〜5−¢"
 
 
 def test_r2000_is_bytes_of_shift_jis_and_what_it_lacks_is_escaped(
@@ -271,8 +290,8 @@ def test_the_same_map_has_the_same_extended_data_in_both_versions(
 ) -> None:
     tree = _tree(species="欅", girth_m=0.1 + 0.2, stems=3, alive=True, big=1 << 40, nothing=None)
     for version in _VERSIONS:
-        point = _only(audited_dxf(tmp_path / "a.dxf", catalogue, tree, version=version), "POINT")
-        assert _attributes(point) == {
+        insert = _only(audited_dxf(tmp_path / "a.dxf", catalogue, tree, version=version), "INSERT")
+        assert _attributes(insert) == {
             "species": "欅",
             "girth_m": 0.1 + 0.2,
             "stems": 3,
@@ -367,7 +386,7 @@ def test_any_text_comes_back(
     path = tmp_path_factory.getbasetemp() / "any.dxf"
     tree = _tree(note=text, name=text)
     doc = audited_dxf(path, catalogue, tree, version=version)
-    assert _attributes(_only(doc, "POINT"))["note"] == text
+    assert _attributes(_only(doc, "INSERT"))["note"] == text
 
 
 def test_a_long_text_is_cut_between_characters_and_comes_back(
@@ -376,7 +395,7 @@ def test_a_long_text_is_cut_between_characters_and_comes_back(
     text = "長い説明𠮷" * 200
     for version in _VERSIONS:
         point = _only(
-            audited_dxf(tmp_path / "a.dxf", catalogue, _tree(note=text), version=version), "POINT"
+            audited_dxf(tmp_path / "a.dxf", catalogue, _tree(note=text), version=version), "INSERT"
         )
         assert _attributes(point)["note"] == text
         for tag in point.get_xdata(APP_ID):

@@ -14,7 +14,7 @@ from ezdxf.path import from_hatch
 
 from processing.core.errors import Cancelled, InUse, OutOfRange, Unsuitable
 from processing.core.text import Text
-from processing.formats.drawings.dxf_document import DxfVersion
+from processing.formats.drawings.dxf_document import PlanVersion
 from processing.formats.drawings.earthwork_dxf import (
     BOUNDARY_LAYER,
     CHANGE_LAYER,
@@ -36,7 +36,7 @@ from processing.methods.ground.filters.cells import CellGrid
 from tests.monitors import CancelledAfter
 
 EAST, NORTH, CELL, SIDE = -12_000.0, -35_000.0, 0.5, 80
-VERSIONS: tuple[DxfVersion, ...] = ("R2000", "R2018")
+VERSIONS: tuple[PlanVersion, ...] = ("R2000", "R2018")
 
 
 def change_grid() -> ChangeGrid:
@@ -107,7 +107,7 @@ def filled_areas(doc: Any) -> dict[str, float]:
 
 @pytest.mark.parametrize("version", VERSIONS)
 def test_each_class_is_filled_on_a_layer_that_says_its_limits(
-    tmp_path: Path, version: DxfVersion
+    tmp_path: Path, version: PlanVersion
 ) -> None:
     doc = drawn(tmp_path / "a.dxf", look=PlanStyle(version=version))
     assert filled_areas(doc) == pytest.approx(
@@ -156,7 +156,7 @@ def test_index_contours_are_labelled_along_them_and_upright(tmp_path: Path) -> N
 
 
 @pytest.mark.parametrize("version", VERSIONS)
-def test_the_boundary_is_read_back_as_one(tmp_path: Path, version: DxfVersion) -> None:
+def test_the_boundary_is_read_back_as_one(tmp_path: Path, version: PlanVersion) -> None:
     drawn(tmp_path / "a.dxf", look=PlanStyle(version=version))
     read = read_boundary(tmp_path / "a.dxf", crs="EPSG:6677", layer=BOUNDARY_LAYER)
     assert read.crs == "EPSG:6677"
@@ -166,7 +166,7 @@ def test_the_boundary_is_read_back_as_one(tmp_path: Path, version: DxfVersion) -
 @pytest.mark.parametrize("version", VERSIONS)
 @pytest.mark.parametrize("language", ["en", "ja"])
 def test_texts_say_what_the_colours_mean_and_where_it_is(
-    tmp_path: Path, version: DxfVersion, language: Any
+    tmp_path: Path, version: PlanVersion, language: Any
 ) -> None:
     doc = drawn(tmp_path / "a.dxf", look=PlanStyle(version=version, language=language))
     texts = {

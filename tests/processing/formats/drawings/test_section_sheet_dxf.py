@@ -12,7 +12,7 @@ import shapely
 
 from processing.core.errors import Cancelled, InUse, OutOfRange, Unsuitable
 from processing.core.text import Text
-from processing.formats.drawings.dxf_document import DxfVersion
+from processing.formats.drawings.dxf_document import PlanVersion
 from processing.formats.drawings.section_sheet_dxf import (
     AFTER_LAYER,
     BEFORE_LAYER,
@@ -100,7 +100,7 @@ def test_each_section_is_named_with_its_areas(tmp_path: Path) -> None:
 @pytest.mark.parametrize("version", ["R2000", "R2018"])
 @pytest.mark.parametrize("language", ["en", "ja"])
 def test_the_sheet_says_title_scales_and_lines(
-    tmp_path: Path, version: DxfVersion, language: Any
+    tmp_path: Path, version: PlanVersion, language: Any
 ) -> None:
     look = SectionStyle(scale=200, exaggeration=2.0, version=version, language=language)
     doc = drawn(tmp_path / "a.dxf", SECTIONS, look)

@@ -15,7 +15,7 @@ import shapely
 
 from processing.core.errors import BadFile, MissingInput, OutOfRange, Unsuitable
 from processing.formats.drawings.dxf import write_dxf
-from processing.formats.drawings.dxf_document import DxfVersion
+from processing.formats.drawings.dxf_document import PlanVersion
 from processing.formats.vectors.boundary_files import (
     Boundary,
     boundary_layers,
@@ -282,7 +282,7 @@ def test_a_file_without_layers_has_none_and_a_bad_one_is_told(tmp_path: Path) ->
 
 @pytest.mark.parametrize("version", ["R2000", "R2018"])
 def test_an_area_that_the_program_drew_is_a_boundary_with_its_reference_system(
-    tmp_path: Path, version: DxfVersion
+    tmp_path: Path, version: PlanVersion
 ) -> None:
     catalogue = read_catalogue(path_of("catalogue/level500.toml"))
     kind = next(one for one in catalogue if one.geometry is Geometry.AREA)
