@@ -95,6 +95,8 @@ class MapDelivery:
         What was chosen, by the ids of :meth:`FormatList.map_options`; defaults for the rest.
     write_points : callable
         Writes the points of the drives with their labels.
+    every_feature : tuple of Feature
+        Those handed in and those that aren't, for reports on the work.
     """
 
     features: tuple[Feature, ...]
@@ -103,6 +105,7 @@ class MapDelivery:
     language: Language | None = None
     options: Mapping[str, ParameterValue] = field(default_factory=dict)
     write_points: Callable[[Position, Monitor], None] = _no_points
+    every_feature: tuple[Feature, ...] = ()
 
     def options_of(self, options: type[OptionsT]) -> OptionsT:
         """What was chosen for a format.

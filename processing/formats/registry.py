@@ -211,6 +211,14 @@ _OTHER_FORMATS = (
         writes={Content.REPORT: BY_MAKER},
     ),
     Format(
+        "qa",
+        Text("Quality report", "品質評価表"),
+        (),
+        map_title=Text("Quality report (PDF, HTML, JSON)", "品質評価表（PDF・HTML・JSON）"),
+        writes_map="processing.formats.reports.quality.quality_report:write_quality_map",
+        has_attributes=False,
+    ),
+    Format(
         "png",
         Text.same("PNG"),
         (".png",),

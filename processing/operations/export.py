@@ -117,12 +117,13 @@ def export(
     chosen = check_formats(request.formats, formats)
     _check_options(request.options, formats)
     _check_needs(chosen, crs)
-    wanted = tuple(feature for feature in features if _is_wanted(feature, request))
+    every = tuple(features)
+    wanted = tuple(feature for feature in every if _is_wanted(feature, request))
     for feature in wanted:
         _check_feature(feature, catalogue)
     wanted, pictures = _with_pictures(wanted, chosen, project)
     points = partial(write_labelled_points, drives)
-    delivery = MapDelivery(wanted, catalogue, crs, request.language, request.options, points)
+    delivery = MapDelivery(wanted, catalogue, crs, request.language, request.options, points, every)
     return _write(delivery, chosen, request, monitor, pictures)
 
 

@@ -1,0 +1,137 @@
+"""What a quality report says, as words and rows, whatever file it goes into."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from processing.core.text import Language, Text
+from processing.map.catalogue import Catalogue
+from processing.map.quality.findings import RULES, Finding
+from processing.map.quality.map_check import MapCheck
+
+TITLE = Text("Quality of the map", "図化成果 品質評価表")
+RULE_COLUMNS = (
+    Text("Rule", "点検項目"),
+    Text("Found", "件数"),
+    Text("Verdict", "判定"),
+    Text("What to do", "対処"),
+)
+KIND_COLUMNS = (
+    Text("Kind", "種別"),
+    Text("Code", "分類コード"),
+    Text("Handed in", "納品"),
+    Text("Found by tools", "うち自動抽出"),
+    Text("Undecided", "未確認"),
+    Text("Rejected", "却下"),
+)
+FINDING_COLUMNS = (
+    Text("No.", "番号"),
+    Text("Rule", "点検項目"),
+    Text("Kind", "種別"),
+    Text("Feature", "地物"),
+    Text("Easting (m)", "東距 Y (m)"),
+    Text("Northing (m)", "北距 X (m)"),
+    Text("Height (m)", "標高 (m)"),
+)
+RULES_TITLE = Text("Rules", "点検項目")
+KINDS_TITLE = Text("Kinds", "種別ごとの数量")
+FINDINGS_TITLE = Text("Findings", "指摘箇所")
+NO_FINDINGS = Text("Nothing was found.", "指摘はありません。")
+NO_CODE = Text("none", "なし")
+PASSED = Text("passed", "適合")
+LOOK = Text("look at it", "要確認")
+FAILED = Text("failed", "不適合")
+_SYSTEM = Text("Reference system", "座標参照系")
+_UNKNOWN = Text("not known", "不明")
+_FEATURES = Text("Features handed in", "納品する地物")
+_DECIDED = Text("Decided on, of what tools found", "自動抽出のうち採否を決めた割合")
+_ERRORS = Text("Errors", "不適合の件数")
+_LOOKS = Text("To be looked at", "要確認の件数")
+
+
+_NUMBER = re.compile(r"-?[\d,]+(\.\d+)?")
+
+
+@dataclass(frozen=True)
+class QualityFacts:
+    """What a report is about.
+
+    Attributes
+    ----------
+    crs : str
+        ``EPSG:n``; empty where it is not known.
+    software : str
+        Name and version of the program.
+    """
+
+    check: MapCheck
+    catalogue: Catalogue
+    crs: str
+    software: str
+
+    def kind_name(self, kind: str) -> Text:
+        """What a kind is called."""
+        return self.catalogue[kind].name if kind in self.catalogue else Text.same(kind)
+
+
+def summary_rows(facts: QualityFacts) -> Iterator[tuple[Text, Text]]:
+    """What is known of the whole map: names and values."""
+    check = facts.check
+    yield _SYSTEM, Text.same(facts.crs) if facts.crs else _UNKNOWN
+    yield _FEATURES, Text.same(f"{sum(one.accepted for one in check.kinds):,}")
+    yield _DECIDED, Text.same(f"{check.decided_share:.1%}")
+    yield _ERRORS, Text.same(f"{check.errors:,}")
+    yield _LOOKS, Text.same(f"{len(check.findings) - check.errors:,}")
+
+
+def rule_rows(facts: QualityFacts) -> Iterator[tuple[Text, Text, Text, Text]]:
+    """Every rule: name, how often it is broken, verdict, remedy where it is broken."""
+    for id_, rule in RULES.items():
+        count = facts.check.count(id_)
+        broken = FAILED if rule.is_error else LOOK
+        remedy = rule.remedy if count else Text.same("")
+        yield rule.name, Text.same(f"{count:,}"), broken if count else PASSED, remedy
+
+
+def kind_rows(facts: QualityFacts) -> Iterator[tuple[Text, ...]]:
+    """Every kind on the map: name, official code or that there is none, counts."""
+    for one in facts.check.kinds:
+        code = facts.catalogue[one.kind].dm_code
+        counts = (one.accepted, one.by_tools, one.candidates, one.rejected)
+        yield (
+            facts.kind_name(one.kind),
+            Text.same(code) if code else NO_CODE,
+            *(Text.same(f"{count:,}") for count in counts),
+        )
+
+
+def finding_rows(facts: QualityFacts) -> Iterator[tuple[Text, ...]]:
+    """Every finding: number, rule, kind, features, place."""
+    for number, one in enumerate(facts.check.findings, start=1):
+        yield (
+            Text.same(f"{number}"),
+            _with_extent(one),
+            facts.kind_name(one.kind),
+            Text.same(", ".join(f"#{id_[:8]}" for id_ in one.features)),
+            *(Text.same(f"{value:.3f}") for value in one.position),
+        )
+
+
+def _with_extent(finding: Finding) -> Text:
+    name = RULES[finding.rule].name
+    if finding.extent_m is None:
+        return name
+    extent = f"{finding.extent_m:.3f} m" if finding.rule == "gap" else f"{finding.extent_m:.2f} m²"
+    return Text(f"{name.en} ({extent})", f"{name.ja}（{extent}）")
+
+
+def in_language(rows: Iterator[tuple[Text, ...]], language: Language) -> list[list[str]]:
+    """Rows as plain words."""
+    return [[cell.in_language(language) for cell in row] for row in rows]
+
+
+def is_number(words: str) -> bool:
+    """Whether a cell holds a number, which stands to the right."""
+    return _NUMBER.fullmatch(words) is not None

@@ -1,0 +1,1 @@
+"""What stands against handing in a map: rules, and what breaks them."""

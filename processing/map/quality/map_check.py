@@ -1,0 +1,148 @@
+"""A map looked through before it is handed in: findings, and what was drawn and reviewed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import chain, groupby
+
+from processing.core.monitor import Monitor, SilentMonitor
+from processing.core.text import Text
+from processing.map.catalogue import Catalogue
+from processing.map.feature import Feature, Status
+from processing.map.quality.findings import RULES, Finding, RuleId
+from processing.map.quality.topology import topology_findings
+from processing.map.sign_numbers import FIELD, is_kind_of_signs
+
+_UNMEASURED = 0.5
+"""More than this share of its vertices rests on no measured point."""
+
+_CHECKING = Text("Checking {kind}", "{kind}を点検中")
+
+
+@dataclass(frozen=True)
+class KindCount:
+    """What was drawn of a kind.
+
+    Attributes
+    ----------
+    accepted, candidates, rejected : int
+        By status.
+    by_tools : int
+        Accepted ones that a tool found.
+    """
+
+    kind: str
+    accepted: int
+    candidates: int
+    rejected: int
+    by_tools: int
+
+
+@dataclass(frozen=True)
+class MapCheck:
+    """What was found.
+
+    Attributes
+    ----------
+    findings : tuple of Finding
+        By rule, then from west to east.
+    kinds : tuple of KindCount
+        In the order of the catalogue, those that the map has.
+    """
+
+    findings: tuple[Finding, ...]
+    kinds: tuple[KindCount, ...]
+
+    @property
+    def decided_share(self) -> float:
+        """Of what tools found, the share accepted or rejected; 1 without any."""
+        decided = sum(one.by_tools + one.rejected for one in self.kinds)
+        every = decided + sum(one.candidates for one in self.kinds)
+        return decided / every if every else 1.0
+
+    def count(self, rule: RuleId) -> int:
+        """How often a rule is broken."""
+        return sum(one.rule == rule for one in self.findings)
+
+    @property
+    def errors(self) -> int:
+        """Findings that make a delivery wrong."""
+        return sum(RULES[one.rule].is_error for one in self.findings)
+
+
+def check_map(
+    features: Iterable[Feature], catalogue: Catalogue, monitor: Monitor | None = None
+) -> MapCheck:
+    """Look a map through.
+
+    Parameters
+    ----------
+    features : iterable of Feature
+        All of them: accepted ones are checked, candidates and rejected ones are counted.
+
+    Raises
+    ------
+    Cancelled
+    """
+    monitor = monitor or SilentMonitor()
+    by_kind = {
+        kind: list(members)
+        for kind, members in groupby(sorted(features, key=_kind_of), key=_kind_of)
+    }
+    kinds = [kind for kind in catalogue if kind.id in by_kind]
+    findings: list[Finding] = []
+    for number, kind in enumerate(kinds):
+        monitor.check()
+        monitor.report(number / len(kinds), _CHECKING.filled(kind=kind.name))
+        members = by_kind[kind.id]
+        accepted = [one for one in members if one.status is Status.ACCEPTED]
+        found = chain(
+            topology_findings(accepted),
+            _unmeasured(accepted),
+            _unnumbered(accepted) if is_kind_of_signs(kind) else (),
+            _undecided(members),
+        )
+        findings.extend(found)
+    order = list(RULES)
+    findings.sort(key=lambda one: (order.index(one.rule), one.position))
+    return MapCheck(tuple(findings), tuple(_counted(kind.id, by_kind[kind.id]) for kind in kinds))
+
+
+def _kind_of(feature: Feature) -> str:
+    return feature.kind
+
+
+def _unmeasured(features: Sequence[Feature]) -> Iterator[Finding]:
+    for one in features:
+        hidden = [vertex for vertex in one.vertices if vertex.is_occluded]
+        if len(hidden) > _UNMEASURED * len(one.vertices):
+            yield Finding("unmeasured", (one.id,), one.kind, hidden[0].xyz)
+
+
+def _unnumbered(features: Sequence[Feature]) -> Iterator[Finding]:
+    for one in features:
+        if one.attributes.get(FIELD) in (None, ""):
+            yield Finding("number_missing", (one.id,), one.kind, one.vertices[0].xyz)
+
+
+def _undecided(features: Sequence[Feature]) -> Iterator[Finding]:
+    for one in features:
+        if one.status is Status.CANDIDATE:
+            yield Finding("undecided", (one.id,), one.kind, one.vertices[0].xyz)
+
+
+def _counted(kind: str, features: Sequence[Feature]) -> KindCount:
+    def count(status: Status) -> int:
+        return sum(one.status is status for one in features)
+
+    by_tools = sum(
+        one.status is Status.ACCEPTED and one.provenance.tool != "hand" for one in features
+    )
+    return KindCount(
+        kind,
+        count(Status.ACCEPTED),
+        count(Status.CANDIDATE),
+        count(Status.REJECTED),
+        by_tools,
+    )
