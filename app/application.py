@@ -57,6 +57,7 @@ from widgets.panels.processing.processing_panel import ProcessingPanel
 from widgets.panels.project.label_panel import LabelPanel
 from widgets.panels.project.layers_panel import LayersPanel
 from widgets.panels.project.project_tree import ProjectTree
+from widgets.panels.quality.quality_panel import QualityPanel
 from widgets.panels.review.evaluation_panel import EvaluationPanel
 from widgets.panels.review.review_panel import ReviewPanel
 from widgets.panels.table.feature_table import FeatureTable
@@ -218,6 +219,7 @@ def _make_parts(lasting: LastingParts, language: Language) -> WindowParts:
         review_panel=ReviewPanel(document, shared, language),
         evaluation_panel=EvaluationPanel(document, shared, language),
         class_panel=ClassPanel(shared, language),
+        quality_panel=QualityPanel(document, shared, document.run_in_background, language),
         study_panel=StudyPanel(language),
         label_panel=LabelPanel(document, shared, language),
         template_panel=TemplatePanel(

@@ -69,13 +69,14 @@ def _right(
 
 
 def _evaluation_pages(parts: WindowParts) -> QTabWidget:
-    """One place for everything that says how good tools are."""
+    """One place for everything that says how good results are."""
     pages = QTabWidget()
     pages.setDocumentMode(True)
     for title, page in (
         (Text("Candidates", "候補"), parts.evaluation_panel),
         (Text("Point classes", "点のクラス"), make_scrollable(parts.class_panel)),
         (Text("Parameter study", "パラメータ検討"), make_scrollable(parts.study_panel)),
+        (Text("Map", "図面の点検"), parts.quality_panel),
     ):
         pages.addTab(page, title.in_language(parts.language))
     return pages

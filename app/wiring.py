@@ -90,6 +90,7 @@ def _connect_intentions(parts: WindowParts, wiring: _Wiring) -> None:
     parts.layers_panel.kind_chosen.connect(wiring.on_layers_kind_chosen)
     parts.attribute_panel.change_requested.connect(document.apply)
     parts.feature_table.change_requested.connect(document.apply)
+    parts.quality_panel.change_requested.connect(document.apply)
     parts.project_tree.change_requested.connect(document.apply)
     parts.project_tree.drive_chosen.connect(wiring.on_tree_drive_chosen)
     parts.processing_panel.run_requested.connect(wiring.on_processing_run_requested)

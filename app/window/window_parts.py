@@ -27,6 +27,7 @@ from widgets.panels.processing.processing_panel import ProcessingPanel
 from widgets.panels.project.label_panel import LabelPanel
 from widgets.panels.project.layers_panel import LayersPanel
 from widgets.panels.project.project_tree import ProjectTree
+from widgets.panels.quality.quality_panel import QualityPanel
 from widgets.panels.review.evaluation_panel import EvaluationPanel
 from widgets.panels.review.review_panel import ReviewPanel
 from widgets.panels.table.feature_table import FeatureTable
@@ -94,6 +95,7 @@ class WindowParts:
     review_panel: ReviewPanel
     evaluation_panel: EvaluationPanel
     class_panel: ClassPanel
+    quality_panel: QualityPanel
     study_panel: StudyPanel
     label_panel: LabelPanel
     template_panel: TemplatePanel

@@ -737,13 +737,6 @@ kept</source>
     </message>
 </context>
 <context>
-    <name>PaneHeader</name>
-    <message>
-        <source>Close this image</source>
-        <translation>この画像を閉じる</translation>
-    </message>
-</context>
-<context>
     <name>ImageBar</name>
     <message>
         <source>Darker end of the contrast, percentile</source>
@@ -772,13 +765,6 @@ kept</source>
     <message>
         <source>Contrast</source>
         <translation>コントラスト</translation>
-    </message>
-</context>
-<context>
-    <name>ImageViewSettings</name>
-    <message>
-        <source>Direction of travel in the image; exchange its sides</source>
-        <translation>画像内の進行方向・左右反転</translation>
     </message>
 </context>
 <context>
@@ -836,6 +822,13 @@ kept</source>
     <message>
         <source>Direction of the street</source>
         <translation>道路の向き</translation>
+    </message>
+</context>
+<context>
+    <name>ImageViewSettings</name>
+    <message>
+        <source>Direction of travel in the image; exchange its sides</source>
+        <translation>画像内の進行方向・左右反転</translation>
     </message>
 </context>
 <context>
@@ -1032,57 +1025,6 @@ kept</source>
     </message>
 </context>
 <context>
-    <name>VolumeStyleForm</name>
-    <message>
-        <source>Show the heat map</source>
-        <translation>ヒートマップを表示</translation>
-    </message>
-    <message>
-        <source>Where the outermost colours begin</source>
-        <translation>両端の色になる標高差です</translation>
-    </message>
-    <message>
-        <source>How much of the points shines through</source>
-        <translation>点群の透け具合です</translation>
-    </message>
-    <message>
-        <source>None</source>
-        <translation>なし</translation>
-    </message>
-    <message>
-        <source>Of the difference</source>
-        <translation>標高差</translation>
-    </message>
-    <message>
-        <source>Of the ground before</source>
-        <translation>前の地盤</translation>
-    </message>
-    <message>
-        <source>Of the ground after</source>
-        <translation>後の地盤</translation>
-    </message>
-    <message>
-        <source>Between contours; every fifth one is thicker</source>
-        <translation>等高線の間隔です。5本ごとに太く描きます</translation>
-    </message>
-    <message>
-        <source>Range</source>
-        <translation>範囲</translation>
-    </message>
-    <message>
-        <source>Opacity</source>
-        <translation>不透明度</translation>
-    </message>
-    <message>
-        <source>Contours</source>
-        <translation>等高線</translation>
-    </message>
-    <message>
-        <source>Interval</source>
-        <translation>間隔</translation>
-    </message>
-</context>
-<context>
     <name>MainWindow</name>
     <message>
         <source>Tools</source>
@@ -1239,6 +1181,13 @@ kept</source>
         <translation>
             <numerusform>対応点 %n 組、残差 {each} px</numerusform>
         </translation>
+    </message>
+</context>
+<context>
+    <name>PaneHeader</name>
+    <message>
+        <source>Close this image</source>
+        <translation>この画像を閉じる</translation>
     </message>
 </context>
 <context>
@@ -1409,6 +1358,57 @@ kept</source>
     <message>
         <source>Runs</source>
         <translation>処理履歴</translation>
+    </message>
+</context>
+<context>
+    <name>QualityPanel</name>
+    <message>
+        <source>Check the map</source>
+        <translation>図面を点検</translation>
+    </message>
+    <message>
+        <source>Mend</source>
+        <translation>修正</translation>
+    </message>
+    <message>
+        <source>Deletes copies and slips, joins ends: the rows marked, or all where none is</source>
+        <translation>重複と描き損じを削除し、端点を接合します（選択した行。選択がなければすべて）</translation>
+    </message>
+    <message>
+        <source>Rule</source>
+        <translation>点検項目</translation>
+    </message>
+    <message>
+        <source>Kind</source>
+        <translation>種別</translation>
+    </message>
+    <message>
+        <source>Size</source>
+        <translation>大きさ</translation>
+    </message>
+    <message>
+        <source>What to do</source>
+        <translation>対処</translation>
+    </message>
+    <message>
+        <source>Nothing is drawn yet.</source>
+        <translation>まだ何も描かれていません。</translation>
+    </message>
+    <message>
+        <source>Checking…</source>
+        <translation>点検中…</translation>
+    </message>
+    <message>
+        <source>Finds crossings, open ends, copies, overlaps and what is missing.</source>
+        <translation>線の交差、端点の不接合、重複、面の重なり、不足を調べます。</translation>
+    </message>
+    <message>
+        <source>Nothing was found.</source>
+        <translation>指摘はありません。</translation>
+    </message>
+    <message>
+        <source>{errors} errors, {others} to look at</source>
+        <translation>不適合 {errors}件、要確認 {others}件</translation>
     </message>
 </context>
 <context>
@@ -2396,6 +2396,57 @@ kept</source>
     <message>
         <source>{before} → {after}, computed {moment}</source>
         <translation>{before} → {after}（{moment} 計算）</translation>
+    </message>
+</context>
+<context>
+    <name>VolumeStyleForm</name>
+    <message>
+        <source>Show the heat map</source>
+        <translation>ヒートマップを表示</translation>
+    </message>
+    <message>
+        <source>Where the outermost colours begin</source>
+        <translation>両端の色になる標高差です</translation>
+    </message>
+    <message>
+        <source>How much of the points shines through</source>
+        <translation>点群の透け具合です</translation>
+    </message>
+    <message>
+        <source>None</source>
+        <translation>なし</translation>
+    </message>
+    <message>
+        <source>Of the difference</source>
+        <translation>標高差</translation>
+    </message>
+    <message>
+        <source>Of the ground before</source>
+        <translation>前の地盤</translation>
+    </message>
+    <message>
+        <source>Of the ground after</source>
+        <translation>後の地盤</translation>
+    </message>
+    <message>
+        <source>Between contours; every fifth one is thicker</source>
+        <translation>等高線の間隔です。5本ごとに太く描きます</translation>
+    </message>
+    <message>
+        <source>Range</source>
+        <translation>範囲</translation>
+    </message>
+    <message>
+        <source>Opacity</source>
+        <translation>不透明度</translation>
+    </message>
+    <message>
+        <source>Contours</source>
+        <translation>等高線</translation>
+    </message>
+    <message>
+        <source>Interval</source>
+        <translation>間隔</translation>
     </message>
 </context>
 <context>

@@ -33,6 +33,9 @@ LEAST_AREA_M2 = 1e-3
 OVERLAP_SHARE = 0.1
 """Of the smaller area; lids that were measured side by side overlap by their joints."""
 
+_SAME_WAY = math.cos(math.radians(30.0))
+"""Edges side by side, as of a gutter, end together and look the same way: that is no gap."""
+
 _MAY_CROSS = frozenset({"wire", "width_line", "measurement", "marking_line", "road_marking"})
 """Wires hang above each other, widths are taken across, markings are painted so."""
 
@@ -175,8 +178,8 @@ def _gaps_to_ends(
         apart = math.dist(ends[one, :2], ends[other, :2])
         if apart <= SAME_POSITION_M or abs(ends[one, 2] - ends[other, 2]) > SAME_LEVEL_M:
             continue
-        # Edges side by side end together and look the same way.
-        if float(outward[one] @ outward[other]) >= 0.0:
+        is_alongside = float(outward[one] @ outward[other]) > _SAME_WAY
+        if is_alongside and owners[one] != owners[other]:
             continue
         both = [shapes.features[number] for number in dict.fromkeys((owners[one], owners[other]))]
         middle = (ends[one] + ends[other]) / 2

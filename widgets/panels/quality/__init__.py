@@ -1,0 +1,1 @@
+"""The map looked through, and its findings gone through."""
