@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 
 from app.cli.opened import terminal_monitor
-from app.cli.output import print_lines
+from app.cli.output import print_lines, print_notes
 from app.settings.language import system_language
 from processing.formats.registry import FORMATS
 from processing.operations.export import ExportRequest
@@ -26,5 +26,6 @@ def command(arguments: argparse.Namespace) -> int:
         candidates=arguments.candidates,
     )
     written = export_project(ExportOperation(arguments.project, request), terminal_monitor())
+    print_notes(*(note.in_language(system_language()) for note in written.notes))
     print_lines(*(str(path) for path in written.paths))
     return 0

@@ -12,6 +12,11 @@ def print_lines(*lines: str) -> None:
     sys.stdout.write("".join(f"{line}\n" for line in lines))
 
 
+def print_notes(*lines: str) -> None:
+    """Write lines about a result to standard error, where they are in no script's way."""
+    sys.stderr.write("".join(f"{line}\n" for line in lines))
+
+
 def print_json(value: Mapping[str, object] | Sequence[Mapping[str, object]]) -> None:
     """Write one JSON document to standard output; in ASCII where its encoding lacks a character."""
     text = json.dumps(value, ensure_ascii=False, indent=1)

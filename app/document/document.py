@@ -27,7 +27,7 @@ from processing.map.change import Change
 from processing.map.feature import Feature
 from processing.operations.export import ExportRequest
 from processing.operations.finished_runs import FinishedRun
-from processing.operations.project_export import export_of
+from processing.operations.project_export import WrittenFiles, export_of
 from processing.operations.run import operation_on_drive
 from processing.operations.store import StoredRun, store_prepared, store_run
 from processing.project.importing.importing import ImportRequest
@@ -323,8 +323,8 @@ class Document(QObject):
         project = self._need_project()
         title, work = Text("Export", "書き出し"), export_of(project, request)
 
-        def take(paths: tuple[Path, ...]) -> None:
-            self.reported.emit(exported_words(paths, request.folder))
+        def take(written: WrittenFiles) -> None:
+            self.reported.emit(exported_words(written, request.folder))
 
         return self._job_results.start(project, title, work, take)
 

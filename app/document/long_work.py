@@ -15,6 +15,7 @@ from processing.image.images_of_drives import image_of
 from processing.operations.finished_runs import FinishedRun
 from processing.operations.import_files import bring_prepared
 from processing.operations.inputs import OpenedInputs
+from processing.operations.project_export import WrittenFiles
 from processing.operations.run import RunFolders, RunOperation, finish_runs
 from processing.project.additions import Additions, home_of
 from processing.project.importing.import_request import ImportRequest
@@ -63,12 +64,15 @@ def run_work(
     return title, lambda monitor: finish_runs(operation, opened, folders, monitor, begin=begin)
 
 
-def exported_words(paths: Sequence[Path], folder: Path) -> Text:
-    """What is said after an export."""
+def exported_words(written: WrittenFiles, folder: Path) -> Text:
+    """What is said after an export: how many files, and what they hold otherwise than the map."""
     reported = Text(
         "Exported {count} files to {folder}", "{folder} に{count}個のファイルを書き出しました"
     )
-    return reported.filled(count=len(paths), folder=folder)
+    reported = reported.filled(count=len(written.paths), folder=folder)
+    for note in written.notes:
+        reported = Text("{told}. {note}", "{told}。{note}").filled(told=reported, note=note)
+    return reported
 
 
 def _prepare_tiles(drive: Drive, monitor: Monitor) -> None:

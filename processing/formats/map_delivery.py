@@ -15,8 +15,10 @@ from processing.core.parameters import (
     count,
     fill_parameters,
     parameters_of,
+    text,
 )
 from processing.core.text import Language, Text
+from processing.formats.format import MAP
 
 if TYPE_CHECKING:  # the command line asks for the options alone
     from processing.map.catalogue import Catalogue
@@ -75,6 +77,30 @@ class TableOptions:
     )
 
 
+@dataclass(frozen=True)
+class DmOptions:
+    """What can be chosen for the extended DM."""
+
+    dm_accuracy: int = count(
+        34,
+        low=11,
+        high=99,
+        name=Text("Accuracy class of the DM", "DMの精度区分"),
+        explanation=Text(
+            "Tens: the method (2 total station, 3 plotting, 6 airborne lidar); units: the level"
+            " (4: 500).",
+            "十の位は作成方法（2 TS等、3 数値図化、6 航空レーザ）、"
+            "一の位は地図情報レベル（4: 500）です。",
+        ),
+    )
+    dm_company: str = text(name=Text("Survey company (DM)", "測量会社名（DM）"))
+    dm_approval: str = text(name=Text("Approval number (DM)", "公共測量の承認番号（DM）"))
+
+
+def tell_nobody(_note: Text) -> None:
+    """Leave it unsaid."""
+
+
 def _no_points(_position: Position, _monitor: Monitor) -> None:
     """Write nothing: the map was given without drives."""
 
@@ -97,6 +123,11 @@ class MapDelivery:
         Writes the points of the drives with their labels.
     every_feature : tuple of Feature
         Those handed in and those that aren't, for reports on the work.
+    name : str
+        What files are named after that hold the whole map: the project's name.
+    tell : callable
+        Takes sentences about what a file holds otherwise than the map has it: features that the
+        format has no place for, characters that were replaced.
     """
 
     features: tuple[Feature, ...]
@@ -106,6 +137,8 @@ class MapDelivery:
     options: Mapping[str, ParameterValue] = field(default_factory=dict)
     write_points: Callable[[Position, Monitor], None] = _no_points
     every_feature: tuple[Feature, ...] = ()
+    name: str = MAP
+    tell: Callable[[Text], None] = tell_nobody
 
     def options_of(self, options: type[OptionsT]) -> OptionsT:
         """What was chosen for a format.

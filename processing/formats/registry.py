@@ -9,12 +9,13 @@ from __future__ import annotations
 from processing.core.text import Text
 from processing.formats.format import BY_MAKER, Content, Format
 from processing.formats.format_list import FormatList
-from processing.formats.map_delivery import DxfOptions, TableOptions
+from processing.formats.map_delivery import DmOptions, DxfOptions, TableOptions
 
 _POINTS = "processing.formats.points"
 _PATHS = "processing.formats.trajectories"
 _VECTORS = "processing.formats.vectors"
 _SURFACES = "processing.formats.surfaces"
+_SURVEY = "processing.formats.survey"
 _DRAWINGS = "processing.formats.drawings"
 _LEDGERS = "processing.formats.ledgers.ledger_csv"
 _LAS = f"{_POINTS}.las.las:read_chunks"
@@ -250,5 +251,29 @@ _OTHER_FORMATS = (
     ),
 )
 
-FORMATS = FormatList((*_VECTOR_FORMATS, *_POINT_FORMATS, *_PATH_FORMATS, *_OTHER_FORMATS))
+_SURVEY_FORMATS = (
+    Format(
+        "dm",
+        Text("Extended DM", "拡張DM"),
+        (".dm",),
+        writes={Content.FEATURES: BY_MAKER},
+        map_title=Text("Map sheets (extended DM)", "図郭（拡張DM）"),
+        writes_map=f"{_SURVEY}.dm:write_dm_map",
+        options=DmOptions,
+        needs_crs=True,
+        has_attributes=False,
+    ),
+    Format(
+        "sima",
+        Text.same("SIMA"),
+        (".sim",),
+        writes={Content.FEATURES: f"{_SURVEY}.sima:write_sima_features"},
+        map_title=Text("Points and parcels (SIMA)", "座標・区画（SIMA）"),
+        has_attributes=False,
+    ),
+)
+
+FORMATS = FormatList(
+    (*_VECTOR_FORMATS, *_SURVEY_FORMATS, *_POINT_FORMATS, *_PATH_FORMATS, *_OTHER_FORMATS)
+)
 """The formats of the program."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import shutil
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from functools import partial
@@ -23,7 +23,7 @@ from processing.core.safe_write import write_safely
 from processing.core.text import Language, Text
 from processing.formats.format import MAP, Content, Format, function_of
 from processing.formats.format_list import FormatList
-from processing.formats.map_delivery import MapDelivery
+from processing.formats.map_delivery import MapDelivery, tell_nobody
 from processing.formats.registry import FORMATS
 from processing.map.catalogue import Catalogue, Geometry
 from processing.map.feature import Feature, Status
@@ -76,10 +76,11 @@ def export(
     drives: tuple[Drive, ...] = (),
     project: Path | None = None,
     formats: FormatList = FORMATS,
+    tell: Callable[[Text], None] = tell_nobody,
 ) -> tuple[Path, ...]:
     """Write the map's accepted features in each format that is asked for.
 
-    A map without features gives files without features: a script's next step finds them.
+    A map without features gives files without features, where their format has such.
     Files take their own names when the last one is whole, so that an error, a cancel or a full disk
     leaves the folder as it was.
 
@@ -92,9 +93,9 @@ def export(
     drives : tuple of Drive
         Whose points are written with their labels.
     project : Path, optional
-        Folder of the project whose pictures are handed in beside files that name them.
-    formats : FormatList
-        Those that can be asked for.
+        Its folder: files are named after it; pictures in it go beside files that name them.
+    tell : callable
+        Takes sentences about what files hold otherwise than the map has it.
 
     Returns
     -------
@@ -104,14 +105,11 @@ def export(
     Raises
     ------
     OutOfRange
-        A format, option or reference system that there is not; an option outside its limits; a
-        coordinate that is no number; a character that the encoding lacks.
+        No such format, option or reference system; a number or character that can't be written.
     Unsuitable
-        A feature with too few vertices or of a kind the catalogue lacks.
-    MissingInput
-        A format needs a reference system.
-    InUse, NoSpace, MissingInput, BadFile, Cancelled
-        What stands against writing; nothing was written.
+        A feature with too few vertices, of a kind the catalogue lacks, or that a format can't hold.
+    MissingInput, InUse, NoSpace, BadFile, Cancelled
+        A format needs a reference system; what stands against writing. Nothing was written.
     """
     monitor = monitor or SilentMonitor()
     chosen = check_formats(request.formats, formats)
@@ -122,8 +120,13 @@ def export(
     for feature in wanted:
         _check_feature(feature, catalogue)
     wanted, pictures = _with_pictures(wanted, chosen, project)
-    points = partial(write_labelled_points, drives)
-    delivery = MapDelivery(wanted, catalogue, crs, request.language, request.options, points, every)
+    delivery = MapDelivery(
+        wanted, catalogue, crs, request.language, request.options,
+        write_points=partial(write_labelled_points, drives),
+        name=MAP if project is None else project.stem,
+        tell=tell,
+        every_feature=every,
+    )  # fmt: skip
     return _write(delivery, chosen, request, monitor, pictures)
 
 
@@ -179,7 +182,7 @@ def _write(
             if one.writes_map:
                 function_of(one.writes_map)(delivery, position, part)
             else:
-                path = position(f"{MAP}{one.ending}")
+                path = position(f"{delivery.name}{one.ending}")
                 one.writer(Content.FEATURES)(path, delivery, part)
         for name, picture in pictures.items():
             monitor.check()

@@ -44,9 +44,12 @@ class WrittenFiles:
     Attributes
     ----------
     paths : tuple of Path
+    notes : tuple of Text
+        Sentences about what they hold otherwise than the project has it.
     """
 
     paths: tuple[Path, ...]
+    notes: tuple[Text, ...] = ()
 
     @property
     def words(self) -> tuple[Text, ...]:
@@ -64,10 +67,10 @@ def export_project(operation: ExportOperation, monitor: Monitor) -> WrittenFiles
     """
     operation.check()
     with opened_project(operation.project, writing=False) as project:
-        return WrittenFiles(export_of(project, operation.request)(monitor))
+        return export_of(project, operation.request)(monitor)
 
 
-def export_of(project: Project, request: ExportRequest) -> Callable[[Monitor], tuple[Path, ...]]:
+def export_of(project: Project, request: ExportRequest) -> Callable[[Monitor], WrittenFiles]:
     """What writes the map as it is now, in any thread.
 
     Parameters
@@ -81,7 +84,18 @@ def export_of(project: Project, request: ExportRequest) -> Callable[[Monitor], t
     delivered = (path for drive in drives for path in drive.delivered_files)
     request = replace(request, never=(*request.never, *delivered))
 
-    def work(monitor: Monitor) -> tuple[Path, ...]:
-        return export(features, catalogue, crs, request, monitor, drives=drives, project=folder)
+    def work(monitor: Monitor) -> WrittenFiles:
+        notes: list[Text] = []
+        paths = export(
+            features,
+            catalogue,
+            crs,
+            request,
+            monitor,
+            drives=drives,
+            project=folder,
+            tell=notes.append,
+        )
+        return WrittenFiles(paths, tuple(notes))
 
     return work

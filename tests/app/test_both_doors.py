@@ -168,7 +168,7 @@ def test_candidates_accepted_at_once_are_on_the_exported_map(
     project, _ = copies
     _, accepted = zuka("run", "curbs", project, "--accept-above", "0.5")
     zuka("export", project, "--format", "geojson", "--out", tmp_path / "out")
-    text = (tmp_path / "out" / "features.geojson").read_text("utf-8")
+    text = (tmp_path / "out" / f"{project.stem}.geojson").read_text("utf-8")
     count = int(accepted.split()[0])
     assert count > 0
     assert text.count('"accepted"') == count

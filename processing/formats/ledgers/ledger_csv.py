@@ -30,13 +30,11 @@ from processing.formats.ledgers.ledger_columns import (
     status_columns,
 )
 from processing.formats.map_delivery import MapDelivery, Position, TableOptions
+from processing.formats.survey.shift_jis import TWINS
 from processing.map.catalogue import Catalogue, FeatureKind
 from processing.map.feature import Feature
 
 _CHECK_EVERY = 256
-
-# Unicode has two of each, and Shift_JIS has the other one: every Japanese editor swaps them.
-_CP932_TWINS = str.maketrans("〜−—‖", "～－―∥")
 
 _VERTEX_TITLES = (
     ("feature_id", FEATURE_ID, ""),
@@ -200,7 +198,7 @@ class _Table:
     def write(self, cells: Sequence[str], feature: str) -> None:
         """Write a row, the headers first; ``feature`` is named with what can't be written."""
         if self._style.encoding == "cp932":
-            cells = [cell.translate(_CP932_TWINS) for cell in cells]
+            cells = [cell.translate(TWINS) for cell in cells]
         self._headers = self._headers or cells
         for column, cell in zip(self._headers, cells, strict=True):
             try:

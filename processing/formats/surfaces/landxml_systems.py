@@ -83,3 +83,9 @@ def names_of_system(crs: str) -> dict[str, str]:
             zone = f"{number - first}(X,Y)"
             return {"horizontalDatum": name, "horizontalCoordinateSystemName": zone}
     return {}
+
+
+def zone_of_system(crs: str) -> int:
+    """The zone of a plane system of Japan, 1 to 19; 0 for any other."""
+    zone = names_of_system(crs).get("horizontalCoordinateSystemName", "0(")
+    return int(zone.partition("(")[0])

@@ -75,7 +75,7 @@ def test_the_ledger_names_the_picture_that_lies_beside_it(
     assert copied.read_bytes() == own.read_bytes()
     assert [one for one in files_in(out) if one.endswith(".png")] == ["photos/seen.png"]
     assert copied in paths
-    told = json.loads((out / "features.geojson").read_text("utf-8"))["features"]
+    told = json.loads((out / f"{folder.stem}.geojson").read_text("utf-8"))["features"]
     assert {one["id"]: one["properties"].get("photo") for one in told} == {
         "seen": "photos/seen.png",
         "unseen": None,
