@@ -34,6 +34,18 @@ def edit_actions(parts: WindowParts) -> tuple[Action, ...]:
         *_selections(parts, edits),
         *_line_edits(edits),
         *_statuses(edits),
+        _edit(
+            "number-along-routes",
+            Text("Number along the route", "路線に沿って番号・測点を記入"),
+            edits.number_along_routes,
+            "",
+            Text(
+                "Fills in number, route, station and side of what ledgers list; from the road's"
+                " centre line. What is written stays.",
+                "道路中心線をもとに、台帳の地物の整理番号・路線名・測点・左右を記入します。"
+                "記入済みの値は変わりません。",
+            ),
+        ),
     )
 
 

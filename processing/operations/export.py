@@ -116,16 +116,13 @@ def export(
     _check_options(request.options, formats)
     _check_needs(chosen, crs)
     every = tuple(features)
-    wanted = tuple(feature for feature in every if _is_wanted(feature, request))
-    for feature in wanted:
-        _check_feature(feature, catalogue)
+    wanted = tuple(one for one in every if _is_wanted(one, request))
+    _check_features(wanted, catalogue)
     wanted, pictures = _with_pictures(wanted, chosen, project)
     delivery = MapDelivery(
         wanted, catalogue, crs, request.language, request.options,
-        write_points=partial(write_labelled_points, drives),
-        name=MAP if project is None else project.stem,
-        tell=tell,
-        every_feature=every,
+        write_points=partial(write_labelled_points, drives), every_feature=every,
+        name=MAP if project is None else project.stem, tell=tell,
     )  # fmt: skip
     return _write(delivery, chosen, request, monitor, pictures)
 
@@ -251,6 +248,11 @@ def _check_crs(crs: str) -> None:
             Text.same(crs),
             _SET_SYSTEM,
         ) from error
+
+
+def _check_features(features: Iterable[Feature], catalogue: Catalogue) -> None:
+    for feature in features:
+        _check_feature(feature, catalogue)
 
 
 def _check_feature(feature: Feature, catalogue: Catalogue) -> None:

@@ -39,3 +39,26 @@ def test_chosen_features_are_rejected_as_one_step_that_says_how_many(document):
     assert document.undo_stack.undo_label == Text("Reject: 2 features", "却下: 2個の地物")
     document.undo()
     assert {one.status for one in document.features()} == {Status.ACCEPTED}
+
+
+def test_ledgers_are_filled_in_along_the_route_as_one_step(document):
+    edits, told = MapEdits(document), []
+    document.reported.connect(told.append)
+    document.apply(LABEL, Change(added=(_sign("a", 30.0),)))
+    edits.number_along_routes()
+    assert told[-1].en.startswith("Draw the road's centre line first")
+    ends = (Vertex((0.0, 0.0, 3.0)), Vertex((100.0, 0.0, 3.0)))
+    centre = Feature("c", "road_center", Geometry.LINE, ends, {"route": "市道1号線"})
+    document.apply(LABEL, Change(added=(centre,)))
+    edits.number_along_routes()
+    (filled,) = (one for one in document.features() if one.id == "a")
+    assert filled.attributes == {
+        "number": "1",
+        "route": "市道1号線",
+        "station": "No.1+10.00",
+        "side": "left",
+    }
+    edits.number_along_routes()
+    assert told[-1].en.startswith("All that ledgers list")
+    document.undo()
+    assert not next(one for one in document.features() if one.id == "a").attributes
