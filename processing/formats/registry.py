@@ -271,6 +271,15 @@ _SURVEY_FORMATS = (
         map_title=Text("Points and parcels (SIMA)", "座標・区画（SIMA）"),
         has_attributes=False,
     ),
+    Format(
+        "sxf",
+        Text.same("SXF"),
+        (".sfc", ".p21"),
+        writes={Content.DRAWING: BY_MAKER},
+        map_title=Text("Drawing (SXF)", "図面（SXF）"),
+        writes_map=f"{_DRAWINGS}.sxf:write_sxf_map",
+        has_attributes=False,
+    ),
 )
 
 FORMATS = FormatList(

@@ -30,6 +30,7 @@ from processing.formats.drawings.dxf_document import (
 )
 from processing.formats.drawings.dxf_labels import LABEL_HEIGHT_M, label_of
 from processing.formats.drawings.dxf_text import dxf_strings, dxf_text
+from processing.formats.drawings.symbol_shapes import symbol_rotation_deg, symbol_shapes
 from processing.formats.map_delivery import DxfOptions, MapDelivery
 from processing.map.catalogue import LINE_TYPES, Catalogue, FeatureKind, Geometry
 from processing.map.feature import AttributeValue, Feature, Position, Status
@@ -38,7 +39,6 @@ from processing.map.solids import solid_of, thickness_of
 CANDIDATE_SUFFIX = "_候補"
 LABEL_SUFFIX = "_文字"
 
-_DIRECTIONS = ("direction_deg", "facing_deg")
 _INT32 = 1 << 31
 _MOST_XDATA_BYTES = 16_000
 _CHECK_EVERY = 16  # features
@@ -277,15 +277,6 @@ class _Drawing:
         """Set the extent and what is seen when the file is opened."""
         if math.inf not in self._lowest:
             self.document.show(tuple(self._lowest), tuple(self._highest))
-
-
-def _rotation_deg(feature: Feature) -> float:
-    """Counter-clockwise from the symbol's own direction, north."""
-    for name in _DIRECTIONS:
-        direction = feature.attributes.get(name)
-        if isinstance(direction, (int, float)) and math.isfinite(direction):
-            return -float(direction) % 360.0
-    return 0.0
 
 
 def _tags(value: AttributeValue, encoding: str) -> list[tuple[int, Any]]:
