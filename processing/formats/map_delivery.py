@@ -39,7 +39,7 @@ def _encoding() -> Any:
             ParameterChoice("utf-8", Text.same("UTF-8")),
             ParameterChoice("cp932", Text.same("Shift_JIS (cp932)")),
         ),
-        name=Text("Text of DXF and CSV", "DXF・CSVの文字コード"),
+        name=Text("Text of DXF, CSV and Shapefile", "DXF・CSV・Shapefileの文字コード"),
         explanation=Text(
             "Of a DXF, its version decides.", "DXFの文字コードはバージョンによって決まります。"
         ),
@@ -75,6 +75,13 @@ class TableOptions:
         name=Text("Decimals of coordinates", "座標の小数点以下の桁数"),
         explanation=Text("Of metres, in CSV.", "CSVに書き出す座標（m）の桁数です。"),
     )
+
+
+@dataclass(frozen=True)
+class ShapefileOptions:
+    """What can be chosen for Shapefiles."""
+
+    encoding: str = _encoding()
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from processing.core.text import Text
 from processing.formats.format import BY_MAKER, Content, Format
 from processing.formats.format_list import FormatList
-from processing.formats.map_delivery import DmOptions, DxfOptions, TableOptions
+from processing.formats.map_delivery import DmOptions, DxfOptions, ShapefileOptions, TableOptions
 
 _POINTS = "processing.formats.points"
 _PATHS = "processing.formats.trajectories"
@@ -179,6 +179,15 @@ _VECTOR_FORMATS = (
         },
         writes={Content.FEATURES: f"{_VECTORS}.geojson:write_geojson_features"},
         map_title=Text("GIS (GeoJSON)", "GIS（GeoJSON）"),
+    ),
+    Format(
+        "shp",
+        Text.same("Shapefile"),
+        (".shp",),
+        writes={Content.FEATURES: BY_MAKER},
+        map_title=Text("GIS (Shapefile)", "GIS（Shapefile）"),
+        writes_map=f"{_VECTORS}.shapefile:write_shapefile_map",
+        options=ShapefileOptions,
     ),
 )
 

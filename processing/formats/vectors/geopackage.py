@@ -26,7 +26,13 @@ from processing.map.catalogue import (
 )
 from processing.map.feature import AttributeValue, Feature
 
-_TYPES = {Geometry.POINT: "Point Z", Geometry.LINE: "LineString Z", Geometry.AREA: "Polygon Z"}
+GEOMETRY_TYPES = {
+    Geometry.POINT: "Point Z",
+    Geometry.LINE: "LineString Z",
+    Geometry.AREA: "Polygon Z",
+}
+"""As the library calls them."""
+
 _INT64 = 1 << 63
 
 
@@ -73,7 +79,7 @@ def write_geopackage(
             layer = _Layer(
                 name=_storable(kind if is_usual else f"{kind}_{geometry.value}"),
                 title=catalogue[kind].name.ja if kind in catalogue else "",
-                geometry_type=_TYPES[geometry],
+                geometry_type=GEOMETRY_TYPES[geometry],
                 fields=catalogue[kind].attributes if kind in catalogue else (),
             )
             _write_layer(temporary, layer, members, crs)
@@ -109,14 +115,14 @@ def _write_layer(path: Path, layer: _Layer, features: Sequence[Feature], crs: st
     import pyogrio.raw
     from pyogrio.errors import DataLayerError, DataSourceError
 
-    columns = _columns(features, layer.fields)
+    columns = feature_columns(features, layer.fields)
     with warnings.catch_warnings():
         # Said by the export itself, once: the reference system is not known.
         warnings.filterwarnings("ignore", "'crs' was not provided", UserWarning)
         try:
             pyogrio.raw.write(
                 str(path),
-                _wkb(features),
+                feature_shapes(features),
                 [values for values, _ in columns.values()],
                 list(columns),
                 field_mask=[missing for _, missing in columns.values()],
@@ -150,7 +156,7 @@ def _make_refusal(path: Path, error: RuntimeError) -> NoSpace:
 ColumnValues = tuple[NDArray[Any], NDArray[np.bool_]]  # text, float64 or int64; True where missing
 
 
-def _columns(
+def feature_columns(
     features: Sequence[Feature], fields: Sequence[AttributeField]
 ) -> Mapping[str, ColumnValues]:
     """The columns of a layer: what every feature has, then attributes as the catalogue has them."""
@@ -212,7 +218,8 @@ def _storable(text: str) -> str:
     return text.replace("\0", "\ufffd").encode("utf-8", "replace").decode("utf-8")
 
 
-def _wkb(features: Sequence[Feature]) -> NDArray[Any]:
+def feature_shapes(features: Sequence[Feature]) -> NDArray[Any]:
+    """Well-known binary of each feature, with heights."""
     import shapely
 
     shapes = []
