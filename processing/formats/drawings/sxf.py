@@ -32,7 +32,7 @@ from processing.formats.drawings.sxf_p21 import p21_text
 from processing.formats.drawings.sxf_sfc import sfc_text
 from processing.formats.drawings.symbol_shapes import symbol_rotation_deg, symbol_shapes
 from processing.formats.map_delivery import MapDelivery, Position
-from processing.formats.survey.shift_jis import ShiftJisText
+from processing.formats.shift_jis import ShiftJisText
 from processing.map.catalogue import FeatureKind, Geometry
 from processing.map.feature import Feature
 

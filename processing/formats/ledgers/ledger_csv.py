@@ -30,7 +30,7 @@ from processing.formats.ledgers.ledger_columns import (
     status_columns,
 )
 from processing.formats.map_delivery import MapDelivery, Position, TableOptions
-from processing.formats.survey.shift_jis import TWINS
+from processing.formats.shift_jis import TWINS
 from processing.map.catalogue import Catalogue, FeatureKind
 from processing.map.feature import Feature
 

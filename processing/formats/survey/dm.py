@@ -13,10 +13,10 @@ from processing.core.errors import Unsuitable
 from processing.core.monitor import Monitor
 from processing.core.text import Text
 from processing.formats.map_delivery import DmOptions, MapDelivery, Position
+from processing.formats.shift_jis import ShiftJisText
 from processing.formats.survey.dm_elements import elements_of
 from processing.formats.survey.dm_records import DmElement, DmFacts, sheet_records
 from processing.formats.survey.map_sheets import MapSheet, zone_for_sheets
-from processing.formats.survey.shift_jis import ShiftJisText
 
 _CHECK_EVERY = 64  # features
 

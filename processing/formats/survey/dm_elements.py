@@ -9,10 +9,10 @@ from dataclasses import replace
 from itertools import pairwise
 
 from processing.formats.drawings.dxf_labels import LABEL_HEIGHT_M, label_of
+from processing.formats.shift_jis import ShiftJisText
 from processing.formats.survey.dm_records import LEVEL, MOST_PLACES, NO_DATE, DmElement, DmNote
 from processing.formats.survey.map_sheets import SHEET_X_MM, SHEET_Y_MM, MapSheet, sheet_at
 from processing.formats.survey.sheet_cuts import PlaceMm, cut_area, cut_line
-from processing.formats.survey.shift_jis import ShiftJisText
 from processing.map.catalogue import FeatureKind, Geometry
 from processing.map.feature import Feature, Position
 

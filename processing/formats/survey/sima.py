@@ -15,7 +15,7 @@ from processing.core.monitor import Monitor
 from processing.core.safe_write import write_safely
 from processing.core.text import Text
 from processing.formats.map_delivery import MapDelivery
-from processing.formats.survey.shift_jis import ShiftJisText
+from processing.formats.shift_jis import ShiftJisText
 from processing.map.catalogue import FeatureKind, Geometry
 from processing.map.feature import Feature, Position
 

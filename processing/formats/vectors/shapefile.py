@@ -15,7 +15,7 @@ from processing.core.monitor import Monitor
 from processing.core.text import Text
 from processing.formats.format import MAP
 from processing.formats.map_delivery import MapDelivery, Position, ShapefileOptions
-from processing.formats.survey.shift_jis import ShiftJisText
+from processing.formats.shift_jis import ShiftJisText
 from processing.formats.vectors.geopackage import (
     GEOMETRY_TYPES,
     ColumnValues,
