@@ -189,6 +189,14 @@ _VECTOR_FORMATS = (
         writes_map=f"{_VECTORS}.shapefile:write_shapefile_map",
         options=ShapefileOptions,
     ),
+    Format(
+        "kmz",
+        Text.same("KMZ"),
+        (".kmz",),
+        writes={Content.FEATURES: f"{_VECTORS}.kmz:write_kmz_features"},
+        map_title=Text("Globe (KMZ, WGS 84)", "地球儀ソフト（KMZ、WGS 84）"),
+        needs_crs=True,
+    ),
 )
 
 _OTHER_FORMATS = (

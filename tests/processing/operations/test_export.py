@@ -302,7 +302,15 @@ def test_a_disk_that_takes_no_more_is_told_and_nothing_is_half_written(
 
 
 def test_every_format_has_a_title_in_both_languages() -> None:
-    assert tuple(one.id for one in FORMATS.maps()) == (*_ALL, "shp", "dm", "sima", "sxf", "las", "qa")
+    assert tuple(one.id for one in FORMATS.maps()) == (
+        *_ALL,
+        "shp",
+        "kmz",
+        "dm",
+        "sima",
+        "sxf",
+        "las",
+    )
     for one in FORMATS.maps():
         assert one.map_title is not None
         assert one.map_title.en != one.map_title.ja
