@@ -30,7 +30,7 @@ from processing.formats.drawings.dxf_document import (
 )
 from processing.formats.drawings.dxf_labels import LABEL_HEIGHT_M, label_of
 from processing.formats.drawings.dxf_text import dxf_strings, dxf_text
-from processing.formats.drawings.symbol_shapes import symbol_rotation_deg, symbol_shapes
+from processing.formats.drawings.symbol_shapes import symbol_rotation_deg
 from processing.formats.map_delivery import DxfOptions, MapDelivery
 from processing.map.catalogue import LINE_TYPES, Catalogue, FeatureKind, Geometry
 from processing.map.feature import AttributeValue, Feature, Position, Status
@@ -191,7 +191,7 @@ class _Drawing:
         block = need_symbol_block(self.document, kind.symbol)
         alike = (one for one in self._catalogue if one.symbol == kind.symbol)
         define_attributes(block, {one.id: one for each in alike for one in each.attributes})
-        turned = {**attributes, "rotation": _rotation_deg(feature)}
+        turned = {**attributes, "rotation": symbol_rotation_deg(feature)}
         place = feature.vertices[0].xyz
         insert = self._space.add_blockref(block.name, place, dxfattribs=turned)
         add_attributes(insert, block_values(kind, feature, self._language), self.document.encoding)

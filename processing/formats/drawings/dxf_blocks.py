@@ -5,16 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from typing import Any
-from xml.etree import ElementTree as ET
 
 from processing.core.text import Language
 from processing.formats.drawings.dxf_document import DxfDocument
 from processing.formats.drawings.dxf_text import dxf_text
+from processing.formats.drawings.symbol_shapes import symbol_shapes
 from processing.map.catalogue import AttributeField, FeatureKind
 from processing.map.feature import AttributeValue, Feature
-from resources import path_of
 
-_SVG = "{http://www.w3.org/2000/svg}"
 _INVISIBLE = 1  # DXF reference, ATTDEF and ATTRIB, group 70
 _HEIGHT_M = 1.0
 _LONGEST_BYTES = 250  # of a text in DXF; the extended data hold longer ones whole
@@ -24,29 +22,21 @@ _LONGEST_BYTES = 250  # of a text in DXF; the extended data hold longer ones who
 def need_symbol_block(document: DxfDocument, symbol: str) -> Any:
     """Give the block of a symbol; it is made if the drawing lacks it.
 
-    The SVG's unit is a metre on the ground at 1:500, its y axis looks south; what has a direction
-    looks north. Lines, polylines, polygons and circles are drawn, by the layer's colour.
+    It is drawn by the layer's colour.
     """
     name = f"ZUKA_{symbol.upper()}"
     if name in document.doc.blocks:
         return document.doc.blocks.get(name)
     block = document.doc.blocks.new(name)
     draw_outline = block.add_lwpolyline if document.has_light_polylines else block.add_polyline2d
-    # The file comes with the program.
-    root = ET.parse(path_of(f"symbols/{symbol}.svg")).getroot()  # noqa: S314
     looks = {"layer": "0", "color": 0, "linetype": "BYBLOCK"}
-    for shape in root.iter():
-        match shape.tag.removeprefix(_SVG):
-            case "circle":
-                x, y, radius = (float(shape.attrib[key]) for key in ("cx", "cy", "r"))
-                block.add_circle((x, -y), radius, dxfattribs=looks)
-            case "line":
-                x1, y1, x2, y2 = (float(shape.attrib[key]) for key in ("x1", "y1", "x2", "y2"))
-                block.add_line((x1, -y1), (x2, -y2), dxfattribs=looks)
-            case "polyline" | "polygon" as tag:
-                pairs = [pair.split(",") for pair in shape.attrib["points"].split()]
-                points = [(float(x), -float(y)) for x, y in pairs]
-                draw_outline(points, close=tag == "polygon", dxfattribs=looks)
+    for shape in symbol_shapes(symbol):
+        if shape.radius:
+            block.add_circle(shape.points[0], shape.radius, dxfattribs=looks)
+        elif len(shape.points) == 2:
+            block.add_line(*shape.points, dxfattribs=looks)
+        else:
+            draw_outline(shape.points, close=shape.is_closed, dxfattribs=looks)
     return block
 
 
