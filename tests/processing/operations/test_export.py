@@ -310,6 +310,7 @@ def test_every_format_has_a_title_in_both_languages() -> None:
         "sima",
         "sxf",
         "las",
+        "qa",
     )
     for one in FORMATS.maps():
         assert one.map_title is not None
