@@ -25,6 +25,7 @@ from processing.scoring.points.point_scores import (
     ground_score,
     noise_score,
 )
+from processing.scoring.points.six_classes import six_class_score
 
 Scorer = PointScorer | FeatureScorer | VolumeScorer
 """One per kind of result."""
@@ -55,6 +56,15 @@ CLASS_SCORER = PointScorer(
     if_true=1,
     flags={},
     score_counts=class_score,
+)
+SIX_CLASS_SCORER = PointScorer(
+    tool="waveform-classify",
+    name=Text("Six classes of a flight", "航空計測の6クラス"),
+    codes=frozenset(),
+    if_false=0,
+    if_true=1,
+    flags={},
+    score_counts=six_class_score,
 )
 CURB_SCORER = FeatureScorer("curbs", Text("Curbs", "縁石"), curb_score)
 GUTTER_SCORER = FeatureScorer("gutters", Text("Covered gutters", "蓋付き側溝"), gutter_score)

@@ -176,7 +176,7 @@ def _mark_street(
     scratch = into / "scratch"
     with report_as_user_error(scratch):
         scratch.mkdir()
-        found = _unknown(drive, scratch)
+        found = unknown_classes(drive, scratch)
         if drive.count:
             classify_drive(
                 drive,
@@ -187,7 +187,7 @@ def _mark_street(
                 models=known.models,
                 things=things,
             )
-        columns = _written(drive, found, known.least_confidence, into, monitor)
+        columns = write_classes(drive, found, known.least_confidence, into, monitor)
         remove_folder(scratch)
     return columns
 
@@ -204,7 +204,7 @@ def _mark_flight(
     columns: dict[str, FinishedColumns] = {}
     with report_as_user_error(scratch):
         scratch.mkdir()
-        found = [_unknown(strip, scratch) for strip in strips]
+        found = [unknown_classes(strip, scratch) for strip in strips]
         classify_from_air(
             strips,
             [one.codes for one in found],
@@ -216,12 +216,12 @@ def _mark_flight(
         )
         for strip, one in zip(strips, found, strict=True):
             into = folder_of[strip.id]
-            columns[strip.id] = _written(strip, one, known.least_confidence, into, monitor)
+            columns[strip.id] = write_classes(strip, one, known.least_confidence, into, monitor)
         remove_folder(scratch)
     return columns
 
 
-def _unknown(drive: Drive, scratch: Path) -> FoundClasses:
+def unknown_classes(drive: Drive, scratch: Path) -> FoundClasses:
     """Room on the disk for what is found of a drive's points."""
     return FoundClasses(
         scratch_array(scratch / f"codes {drive.id}", np.uint8, drive.count),
@@ -260,9 +260,10 @@ def _without_stop(sentence: Text) -> Text:
     return Text(sentence.en.rstrip("."), sentence.ja.rstrip("。"))
 
 
-def _written(
+def write_classes(
     drive: Drive, classes: FoundClasses, least: float, into: Path, monitor: Monitor
 ) -> FinishedColumns:
+    """The columns of a drive; less sure points are “other”, unasked ones as they were delivered."""
     with ColumnWriter(into) as writer:
         writer.append({_CLASS: np.empty(0, np.uint8), _CONFIDENCE: np.empty(0, np.float32)})
         for start, stop in chunk_ranges(drive.count):

@@ -27,6 +27,7 @@ from processing.tools.template import TEMPLATE
 from processing.tools.tool import Comparison, NewPoints, Tool
 from processing.tools.trees import TREES
 from processing.tools.volume import VOLUME
+from processing.tools.waveform_classify import WAVEFORM_CLASSIFY
 from processing.tools.waveform_decompose import WAVEFORM_DECOMPOSE
 from processing.tools.wires import WIRES
 
@@ -47,6 +48,7 @@ _DECLARED = (
     TEMPLATE,
     VOLUME,
     WAVEFORM_DECOMPOSE,
+    WAVEFORM_CLASSIFY,
 )
 
 TOOLS: Mapping[str, Tool] = {

@@ -52,16 +52,16 @@ class Strips:
 
     def __init__(self, drives: Sequence[Drive], ground: Sequence[Path]) -> None:
         self._drives, self._ground = drives, ground
-        self._starts = np.cumsum([0, *(drive.count for drive in drives)])
+        self.starts = np.cumsum([0, *(drive.count for drive in drives)])
         self._classes = [class_columns(drive.columns) for drive in drives]
-        self.count = int(self._starts[-1])
+        self.count = int(self.starts[-1])
 
     def xyz(self, points: Integers | slice) -> Floats:
         """(n, 3) m, project CRS."""
         if isinstance(points, slice):
             points = np.arange(*points.indices(self.count))
         xyz = np.empty((points.size, 3))
-        for number, own, local in self._by_drive(points):
+        for number, own, local in self.by_drive(points):
             self._drives[number].columns.give_back()
             xyz[own] = self._drives[number].xyz(local)
         return xyz
@@ -69,7 +69,7 @@ class Strips:
     def are_noise(self, points: Integers) -> NDArray[np.bool_]:
         """(n,) whether points are known to be noise."""
         found = np.zeros(points.size, np.bool_)
-        for number, own, local in self._by_drive(points):
+        for number, own, local in self.by_drive(points):
             found[own] = self._classes[number].are_noise(local)
         return found
 
@@ -77,7 +77,7 @@ class Strips:
         """What the features of points need; ``xyz`` (n, 3) m, where they are."""
         heights, is_ground = np.zeros(points.size), np.zeros(points.size, np.bool_)
         is_last, is_only = np.ones(points.size, np.bool_), np.ones(points.size, np.bool_)
-        for number, own, local in self._by_drive(points):
+        for number, own, local in self.by_drive(points):
             columns = self._drives[number].columns
             heights[own] = np.nan_to_num(self._ground_column(number, HEIGHT)[local], nan=0.0)
             is_ground[own] = self._ground_column(number, CLASS)[local] == GROUND
@@ -94,12 +94,13 @@ class Strips:
         into: Sequence[NDArray[np.generic]],
     ) -> None:
         """Put values of points into the arrays of their drives."""
-        for number, own, local in self._by_drive(points):
+        for number, own, local in self.by_drive(points):
             into[number][local] = values[own]
 
-    def _by_drive(self, points: Integers) -> list[tuple[int, NDArray[np.bool_], Integers]]:
-        of = np.searchsorted(self._starts, points, side="right") - 1
-        return [(n, of == n, points[of == n] - self._starts[n]) for n in np.unique(of).tolist()]
+    def by_drive(self, points: Integers) -> list[tuple[int, NDArray[np.bool_], Integers]]:
+        """Of each drive with some of the points: its number, which they are, their numbers there."""
+        of = np.searchsorted(self.starts, points, side="right") - 1
+        return [(n, of == n, points[of == n] - self.starts[n]) for n in np.unique(of).tolist()]
 
     def _ground_column(self, number: int, name: str) -> NDArray[np.generic]:
         dtype, _ = COLUMN_TYPES[name]

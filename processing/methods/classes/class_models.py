@@ -15,6 +15,8 @@ from resources import path_of
 MODELS = "models/classes"
 ALONE, AGAIN, SAMPLE = "alone.onnx", "again.onnx", "sample.npz"
 AERIAL_ALONE, AERIAL_AGAIN = "aerial_alone.onnx", "aerial_again.onnx"
+WAVE_ALONE, WAVE_AGAIN = "wave_alone.onnx", "wave_again.onnx"
+BARE_ALONE, BARE_AGAIN = "bare_alone.onnx", "bare_again.onnx"
 
 
 @dataclass(frozen=True)
@@ -49,6 +51,12 @@ def shipped_models() -> ClassModels:
 def aerial_models() -> ClassModels:
     """The models for clouds from the air."""
     return _read_models(AERIAL_ALONE, AERIAL_AGAIN)
+
+
+@cache
+def flight_models(*, with_waveforms: bool) -> ClassModels:
+    """The models of the six classes of flights, with waveforms or for points alone."""
+    return _read_models(*((WAVE_ALONE, WAVE_AGAIN) if with_waveforms else (BARE_ALONE, BARE_AGAIN)))
 
 
 def _read_models(*names: str) -> ClassModels:
