@@ -98,7 +98,7 @@ class Strips:
             into[number][local] = values[own]
 
     def by_drive(self, points: Integers) -> list[tuple[int, NDArray[np.bool_], Integers]]:
-        """Of each drive with some of the points: its number, which they are, their numbers there."""
+        """Of each drive with some of the points: its number, which, their numbers there."""
         of = np.searchsorted(self.starts, points, side="right") - 1
         return [(n, of == n, points[of == n] - self.starts[n]) for n in np.unique(of).tolist()]
 
