@@ -42,6 +42,7 @@ from processing.tools.signs import SIGNS
 from processing.tools.template import TEMPLATE
 from processing.tools.tool import FinishedColumns, PointBlock, PointResult
 from processing.tools.trees import TREES
+from processing.tools.waveform_classify import WAVEFORM_CLASSIFY, WaveformClassifyParameters
 from processing.tools.wires import WIRES
 from tests.builders import simulated_drive
 from tests.camera_scene import looking, photograph
@@ -71,6 +72,7 @@ IN_SPACE = (
     (NOISE.id, NoiseParameters()),
     (GROUND_TOOL.id, GroundParameters()),
     (CLASSIFY.id, ClassifyParameters()),
+    (WAVEFORM_CLASSIFY.id, WaveformClassifyParameters()),
     (FEATURES.id, FeaturesParameters(names="verticality_1m,plan_density_2m,cell_height")),
     (GROUND_TOOL.id, GroundParameters(method="published", grid_m=2.0)),
     (GROUND_TOOL.id, GroundParameters(method="lowest", tolerance_m=0.1)),
