@@ -58,6 +58,8 @@ EXPECTED = WeightPrior(
             narrow=-2.0,
             other_disc=-5.0,
             unheld=-1.5,
+            painted=-3.0,
+            cut=-2.5,
         ),
     ),
     (
@@ -80,11 +82,14 @@ EXPECTED = WeightPrior(
             narrow=1.5,
             other_disc=0.7,
             unheld=1.0,
+            painted=0.7,
+            cut=0.7,
         ),
     ),
 )
 """Before anything is learnt: a face shines, an outline fits and is seen all round. How badly ends
-fit says little: passes that lie centimetres apart disagree, and no street here has such."""
+fit says little: passes that lie centimetres apart disagree, and no street here has such. What is
+neither a face nor metal is no sign, and few things are cut by the ends of recordings."""
 
 _SEEDS, _AVENUES, _CHECK = "700-711", "600-605", "718-719"
 """Streets that the weights were learnt from, and such that they were looked at with."""

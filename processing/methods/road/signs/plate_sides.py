@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 from processing.core.arrays import Floats, Integers
@@ -37,12 +38,19 @@ class PlateSides(NamedTuple):
         Whether one saw the side that is taken for the face.
     is_sure : bool
         Whether brightness tells the face from the back.
+    both_seen : bool
+        Whether both sides were seen.
+    shine : float
+        How bright the brighter side is that was seen, in standard deviations above the middle of
+        diffuse things; NaN where nothing of a recording shines.
     """
 
     facing: Floats
     bright: float
     front_seen: bool
     is_sure: bool
+    both_seen: bool
+    shine: float
 
 
 def sides_of(pieces: ScanPieces, members: Integers, normal: Floats) -> PlateSides:
@@ -67,16 +75,21 @@ def sides_of(pieces: ScanPieces, members: Integers, normal: Floats) -> PlateSide
     least = _LEAST_SIDE * sum(one.points for one in seen)
     before, behind = (one if one.points >= least else _UNSEEN for one in seen)
     bright = max(before.share, behind.share)
+    shows_faces = bool(pieces.shows_faces[pieces.drive[members]].all())
     if before.points and behind.points:
         facing = normal if before.shine >= behind.shine else -normal
         is_sure = bright > _SHINES or abs(before.shine - behind.shine) >= _BRIGHTER
-        return PlateSides(facing, bright, front_seen=True, is_sure=is_sure)
+        shine = max(before.shine, behind.shine) if shows_faces else math.nan
+        return PlateSides(
+            facing, bright, front_seen=True, is_sure=is_sure, both_seen=True, shine=shine
+        )
     only, way = (before, normal) if before.points else (behind, -normal)
     is_face = only.share > _SHINES or only.shine >= _FACE_ABOVE
-    shows_faces = bool(pieces.shows_faces[pieces.drive[members]].all())
     is_told = only.shine > _UNSURE_TO or (only.shine < _UNSURE_FROM and shows_faces)
     is_sure = is_told or only.share > _SHINES
-    return PlateSides(way if is_face else -way, bright, is_face, is_sure)
+    shine = only.shine if shows_faces else math.nan
+    facing = way if is_face else -way
+    return PlateSides(facing, bright, is_face, is_sure, both_seen=False, shine=shine)
 
 
 class _Seen(NamedTuple):

@@ -72,6 +72,14 @@ class PlateEvidence(NamedTuple):
     thick : float
         By how much more of the scan lines go on at its left edge than at its right one, or the
         reverse, 0 to 1: they cross over to the side of a thick board or a box.
+    both_seen : bool
+        Whether both sides were seen.
+    shine : float
+        How bright the brighter side is that was seen, in standard deviations above the middle of
+        diffuse things; NaN where nothing of a recording shines.
+    cut : float
+        Share of its points of drives that begin or end on it: it may go on where nothing was
+        measured.
     """
 
     bright: float
@@ -87,6 +95,9 @@ class PlateEvidence(NamedTuple):
     front_seen: bool
     is_facing_sure: bool
     thick: float
+    both_seen: bool
+    shine: float
+    cut: float
 
 
 @dataclass(frozen=True)
@@ -189,6 +200,9 @@ def _plate(
         front_seen=sides.front_seen,
         is_facing_sure=sides.is_sure,
         thick=_thick(fitted, lines[on], pieces.values[members]),
+        both_seen=sides.both_seen,
+        shine=sides.shine,
+        cut=_cut(pieces, members),
     )
     return Plate(fitted.shape, xyz[0], xyz[1:], sides.facing, evidence, upper, members)
 
@@ -210,6 +224,13 @@ def _thick(fitted: FittedPlate, lines: Floats, values: Floats) -> float:
             return 0.0
         shares.append(float((seen != FREE).mean()))
     return abs(shares[0] - shares[1])
+
+
+def _cut(pieces: ScanPieces, members: Integers) -> float:
+    """Share of the points on a plate that are of drives that begin or end on it."""
+    ending = np.unique(pieces.drive[members[pieces.at_end[members]]])
+    counts = pieces.values[members, COUNT]
+    return float(counts[np.isin(pieces.drive[members], ending)].sum() / counts.sum())
 
 
 def _rim(fitted: FittedPlate, lines: Floats) -> tuple[int, float]:

@@ -95,12 +95,15 @@ class ScanPieces:
         Which turn of its drive's scanner each is of.
     ground : (n,) float64
         Height of the ground below its middle, m about the origin of the plan.
+    at_end : (n,) bool
+        Whether no turn came before it, or after it: what it lies on may go on.
     """
 
     values: Floats
     drive: Integers
     row: Integers
     ground: Floats
+    at_end: NDArray[np.bool_]
 
     @cached_property
     def shows_faces(self) -> NDArray[np.bool_]:
@@ -153,6 +156,12 @@ class _Head:
             np.asarray(columns["intensity"][start:stop], np.uint16),
             self._origins(start, stop),
         )
+
+    def is_at_end(self, pulses: Integers) -> NDArray[np.bool_]:
+        """(n,) whether pulses are of the first or of the last turn."""
+        every = self._drive.columns["pulse"]
+        first, last = (int(every[number]) for number in (0, -1)) if len(every) else (0, 0)
+        return np.asarray((pulses < first + self.pulses) | (pulses > last - self.pulses))
 
     def heights(self, local: Floats) -> NDArray[np.float32]:
         """(n,) above the ground; where it isn't given, above what lies lowest among the points."""
@@ -211,6 +220,7 @@ def scan_pieces(
     values: list[Floats] = []
     owners: list[Integers] = []
     rows: list[Integers] = []
+    at_end: list[NDArray[np.bool_]] = []
 
     def of_chunk(chunk: DriveChunk) -> tuple[int, Floats, Integers]:
         return chunk.drive, *_pieces_of(chunk, heads[chunk.drive], monitor)
@@ -219,13 +229,17 @@ def scan_pieces(
         values.append(found)
         owners.append(np.full(len(found), drive, np.int64))
         rows.append((pulses / heads[drive].pulses).astype(np.int64))
+        at_end.append(heads[drive].is_at_end(pulses))
     if not values:
         none = np.empty(0, np.int64)
-        return ScanPieces(np.empty((0, PIECE)), none, none, np.empty(0))
+        return ScanPieces(np.empty((0, PIECE)), none, none, np.empty(0), np.empty(0, np.bool_))
     whole = np.concatenate(values)
     middles = np.ascontiguousarray((whole[:, 0:3] + whole[:, 3:6]) / 2)
     heights = heads[0].heights(middles)
-    return ScanPieces(whole, np.concatenate(owners), np.concatenate(rows), middles[:, 2] - heights)
+    return ScanPieces(
+        whole, np.concatenate(owners), np.concatenate(rows), middles[:, 2] - heights,
+        np.concatenate(at_end),
+    )  # fmt: skip
 
 
 def pieces_between(drive: Drive, start: int, stop: int, plan: SparsePlan) -> ScanPieces:
@@ -236,7 +250,10 @@ def pieces_between(drive: Drive, start: int, stop: int, plan: SparsePlan) -> Sca
     found, pulses = _pieces_of(DriveChunk(0, start, local, is_noise), head, SilentMonitor())
     ground = float(np.quantile(local[:, 2], _LOWEST_SHARE))
     rows = (pulses / head.pulses).astype(np.int64)
-    return ScanPieces(found, np.zeros(len(found), np.int64), rows, np.full(len(found), ground))
+    return ScanPieces(
+        found, np.zeros(len(found), np.int64), rows, np.full(len(found), ground),
+        head.is_at_end(pulses),
+    )  # fmt: skip
 
 
 def _pieces_of(chunk: DriveChunk, head: _Head, monitor: Monitor) -> tuple[Floats, Integers]:

@@ -9,7 +9,8 @@ import numpy as np
 
 from processing.core.arrays import Floats
 from processing.methods.road.logistic import chance_of_logit
-from processing.methods.road.signs.plates import Plate
+from processing.methods.road.signs.brightness import SHINING
+from processing.methods.road.signs.plates import Plate, PlateEvidence
 from processing.methods.road.signs.sign_posts import PostForm
 from processing.methods.road.signs.sign_shapes import RECTANGLE
 
@@ -29,6 +30,13 @@ _HIGH_M = 3.5
 
 _NARROWEST_M, _WIDE_M = 0.2, 0.35
 """The narrowest plates are 40 cm wide (標識令, 別表第二), less what their rims are uncertain by."""
+
+_METAL, _PAINT = 0.75, 1.5
+"""Standard deviations above the middle of diffuse things up to which the metal back of a sign is,
+and from which only paint and plastic are (:mod:`.plate_sides`)."""
+
+_WHITE = 2.5
+"""The same of the brightest paint; faces of signs begin at `SHINING`."""
 
 _USUAL_ACROSS = 0.3
 """Where nobody knows the way of the vehicle: about what most signs have."""
@@ -78,6 +86,11 @@ class SignFacts(NamedTuple):
     unheld : float
         1 of what is dull and hangs on no post, arm or gantry of its own, as far as was seen: parts
         of buildings, boards on walls and poles.
+    painted : float
+        1 of what shows neither a face nor the metal of a back: one side is as bright as paint, or
+        both were seen and neither shines. 0 where nothing of a recording shines.
+    cut : float
+        Share of its points of drives that begin or end on it: pieces of larger things.
     high : float
         Of what is dull, how far its middle is above 3.5 m, over 3.5 m, 0 to 1: parts of buildings
         are.
@@ -100,6 +113,8 @@ class SignFacts(NamedTuple):
     narrow: float
     other_disc: float
     unheld: float
+    painted: float
+    cut: float
 
 
 # As `python -m processing.laboratory.road_training.sign_training` learns them, on 1,858 plates, of
@@ -107,6 +122,9 @@ class SignFacts(NamedTuple):
 # 711 and avenues 600 to 605, 60 m each). Left out one street at a time, 142 of 145 given 0.9 and
 # more were right, 13 of 23 from 0.5, 9 of 19 from 0.3, 5 of 33 from 0.1, 4 of 1,638 below; of the
 # streets 718 and 719, from which nothing was learnt, 14 of 14 from 0.5 and 3 of 145 below.
+# `painted` and `cut` were learnt on top, the others held, on 15 of the 18 streets (1,414 plates, of
+# which 109 are signs; expected as `sign_training` expects them). Left out one street at a time, 99
+# of 101 from 0.5 were right, 99 of 102 without the two.
 _CONSTANT = -5.12
 _WEIGHTS = SignFacts(
     bright=1.65,
@@ -126,6 +144,8 @@ _WEIGHTS = SignFacts(
     narrow=-3.22,
     other_disc=-4.53,
     unheld=-1.72,
+    painted=-3.19,
+    cut=-2.18,
 )
 
 _OF_SIGNS = ("single", "double", "cantilever", "gantry")
@@ -165,6 +185,8 @@ def facts_of(plate: Plate, ground_m: float, along: Floats) -> SignFacts:
         narrow=1.0 - _over(plate.shape.wide_m, _NARROWEST_M, _WIDE_M),
         other_disc=float(plate.shape.is_other_disc),
         unheld=0.0,
+        painted=_painted(one),
+        cut=one.cut,
     )
 
 
@@ -177,6 +199,15 @@ def facts_with_post(facts: SignFacts, post: PostForm | None) -> SignFacts:
 def _over(value: float, low: float, high: float) -> float:
     """Where a value lies between two, 0 to 1."""
     return min(max((value - low) / (high - low), 0.0), 1.0)
+
+
+def _painted(evidence: PlateEvidence) -> float:
+    """How surely what was seen of a plate is neither a face nor metal, 0 to 1."""
+    if evidence.bright >= _BRIGHT or math.isnan(evidence.shine):
+        return 0.0
+    is_face = _over(evidence.shine, _WHITE, SHINING)
+    above = 1.0 if evidence.both_seen else _over(evidence.shine, _METAL, _PAINT)
+    return above * (1.0 - is_face)
 
 
 def _across(plate: Plate, along: Floats) -> float:

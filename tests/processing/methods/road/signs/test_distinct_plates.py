@@ -24,6 +24,9 @@ EVIDENCE = PlateEvidence(
     front_seen=True,
     is_facing_sure=True,
     thick=0.0,
+    both_seen=True,
+    shine=9.0,
+    cut=0.0,
 )
 LIKELY = 0.1
 

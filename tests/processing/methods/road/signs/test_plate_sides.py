@@ -32,7 +32,7 @@ def sides(*seen: tuple[float, float], elsewhere: float = FACE) -> PlateSides:
         piece[COUNT], piece[SHINE] = POINTS, POINTS * bright
         piece[BRIGHTS] = POINTS if bright >= 4.5 else 0
     none = np.zeros(len(views), np.int64)
-    pieces = ScanPieces(values, none, none, np.zeros(len(views)))
+    pieces = ScanPieces(values, none, none, np.zeros(len(views)), none > 0)
     return sides_of(pieces, np.arange(len(seen)), NORTH)
 
 

@@ -1,0 +1,69 @@
+"""What paint and the end of a recording say against a plate."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from processing.methods.road.signs.plates import Plate, PlateEvidence
+from processing.methods.road.signs.sign_confidence import chance_of, facts_of
+from processing.methods.road.signs.sign_shapes import shape_of
+
+BACK = PlateEvidence(
+    0.0,
+    0.1,
+    0.95,
+    16,
+    0.8,
+    20,
+    300,
+    0.002,
+    0.0,
+    0.0,
+    front_seen=False,
+    is_facing_sure=True,
+    thick=0.0,
+    both_seen=False,
+    shine=-0.5,
+    cut=0.0,
+)
+"""Of a plate whose metal back was seen alone."""
+
+
+def chance(evidence: PlateEvidence) -> float:
+    outline = np.array([[0.3, 0.0, 2.3], [-0.3, 0.0, 2.3], [0.0, 0.0, 2.9]])
+    plate = Plate(
+        shape_of("circle", 0.6),
+        np.array([0.0, 0.0, 2.6]),
+        outline,
+        np.array([0.0, 1.0, 0.0]),
+        evidence,
+        -1,
+        np.arange(10),
+    )
+    return chance_of(facts_of(plate, 0.0, np.array([0.0, 1.0])))
+
+
+@pytest.mark.parametrize(
+    "worse",
+    [
+        BACK._replace(shine=2.0),
+        BACK._replace(both_seen=True),
+        BACK._replace(cut=1.0),
+    ],
+    ids=["as bright as paint", "neither side shines", "the recording ends on it"],
+)
+def test_a_dull_plate_that_is_no_back_of_a_sign_is_hardly_one(worse: PlateEvidence) -> None:
+    assert chance(BACK) > 0.7
+    assert chance(worse) < 0.5
+
+
+def test_where_nothing_of_a_recording_shines_paint_says_nothing() -> None:
+    assert chance(BACK._replace(both_seen=True, shine=math.nan)) == chance(BACK)
+
+
+def test_what_shines_is_no_paint_though_one_side_is_dull() -> None:
+    face = BACK._replace(bright=1.0, shine=9.0)
+    assert chance(face._replace(both_seen=True)) == chance(face) > 0.9
