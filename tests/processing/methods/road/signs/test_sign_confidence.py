@@ -16,7 +16,7 @@ BACK = PlateEvidence(
     0.1,
     0.95,
     16,
-    0.8,
+    0.3,
     20,
     300,
     0.002,
@@ -29,7 +29,7 @@ BACK = PlateEvidence(
     shine=-0.5,
     cut=0.0,
 )
-"""Of a plate whose metal back was seen alone."""
+"""Of a plate of which the metal back alone was seen, and of its rim a part."""
 
 
 def chance(evidence: PlateEvidence) -> float:
