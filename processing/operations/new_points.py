@@ -8,18 +8,24 @@ from pathlib import Path
 
 import numpy as np
 
-from processing.core.errors import MissingInput
+from processing.core.errors import MissingInput, OutOfRange
 from processing.core.monitor import Monitor, parts_of
 from processing.core.parameters import ParameterValue, fill_parameters
 from processing.core.text import Text
 from processing.formats.format import Content
 from processing.formats.points.new_points import Part, write_new_points
+from processing.formats.points.waveform_output import (
+    WaveformLas,
+    WaveformRecords,
+    write_waveform_las,
+)
 from processing.formats.registry import FORMATS
 from processing.operations.inputs import OpenedInputs, OperationInputs, opened_inputs
 from processing.recording.vehicle_path.clock import ClockKind, kind_of
+from processing.recording.waveform_packets.descriptors import WaveformDescriptor
 from processing.tools.registry import POINT_MAKERS
 from processing.tools.running.runner import check_needs
-from processing.tools.tool import NewPoints, Tool
+from processing.tools.tool import MadePoints, NewPoints, Tool
 
 
 @dataclass(frozen=True)
@@ -62,10 +68,20 @@ def make_points(operation: NewPointsOperation, monitor: Monitor) -> Path:
                 "--output でLASかLAZのファイルを指定してください。",
             ),
         )
+    descriptor = _method_of(tool).descriptor
     FORMATS.format_to_write(output, Content.POINTS)
+    if descriptor is not None and output.suffix.lower() != _WITH_PACKETS:
+        raise OutOfRange(
+            Text("Waveforms are written beside LAS.", "波形はLASと一緒に書き出します。"),
+            Text.same(str(output)),
+            Text("Give a name ending in .las.", ".las で終わる名前にしてください。"),
+        )
     with opened_inputs(operation.inputs, monitor, beside=output.parent) as opened:
         for drive in opened.chosen:
             check_needs(tool, drive)
+        if descriptor is not None:
+            _write_with_waveforms(output, opened, (tool, parameters, descriptor), monitor)
+            return output
         write_new_points(
             output,
             _parts(tool, parameters, opened, monitor),
@@ -77,16 +93,57 @@ def make_points(operation: NewPointsOperation, monitor: Monitor) -> Path:
     return output
 
 
+_WITH_PACKETS = ".las"
+
+
+def _method_of(tool: Tool) -> NewPoints:
+    if not isinstance(tool.method, NewPoints):
+        raise TypeError(tool.id)
+    return tool.method
+
+
 def _parts(
     tool: Tool, parameters: object, opened: OpenedInputs, monitor: Monitor
 ) -> Iterator[Part]:
-    method = tool.method
-    if not isinstance(method, NewPoints):
-        raise TypeError(tool.id)
+    for made in _made(tool, parameters, opened, monitor):
+        yield made.xyz, made.columns, made.extra
+
+
+def _made(
+    tool: Tool, parameters: object, opened: OpenedInputs, monitor: Monitor
+) -> Iterator[MadePoints]:
+    method = _method_of(tool)
     sizes = [drive.count for drive in opened.chosen]
     for drive, part in zip(opened.chosen, parts_of(monitor, sizes), strict=True):
-        for made in method.make(drive, parameters, part):
-            yield made.xyz, made.columns, made.extra
+        yield from method.make(drive, parameters, part)
+
+
+def _write_with_waveforms(
+    output: Path,
+    opened: OpenedInputs,
+    what: tuple[Tool, object, WaveformDescriptor],
+    monitor: Monitor,
+) -> None:
+    tool, parameters, descriptor = what
+    # The grid of the first drive: its points keep their coordinates to the bit.
+    info = opened.chosen[0].info
+    description = WaveformLas(
+        opened.crs, info.scale, info.offset, descriptor, _is_adjusted_standard(opened)
+    )
+    made = _made(tool, parameters, opened, monitor)
+    records = (_records_of(one, description) for one in made)
+    write_waveform_las(output, records, description, monitor, never=opened.delivered)
+
+
+def _records_of(made: MadePoints, description: WaveformLas) -> WaveformRecords:
+    packets = made.packets
+    if packets is None:
+        raise TypeError(description)
+    steps = (made.xyz - np.asarray(description.offset)) / np.asarray(description.scale)
+    columns = {"xyz": np.rint(steps).astype(np.int64), **made.columns}
+    return WaveformRecords(
+        columns, packets.packet, packets.location_ps, packets.direction, packets.samples
+    )
 
 
 def _is_adjusted_standard(opened: OpenedInputs) -> bool:

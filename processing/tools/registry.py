@@ -29,6 +29,7 @@ from processing.tools.trees import TREES
 from processing.tools.volume import VOLUME
 from processing.tools.waveform_classify import WAVEFORM_CLASSIFY
 from processing.tools.waveform_decompose import WAVEFORM_DECOMPOSE
+from processing.tools.waveform_estimate import WAVEFORM_ESTIMATE
 from processing.tools.wires import WIRES
 
 _DECLARED = (
@@ -49,6 +50,7 @@ _DECLARED = (
     VOLUME,
     WAVEFORM_DECOMPOSE,
     WAVEFORM_CLASSIFY,
+    WAVEFORM_ESTIMATE,
 )
 
 TOOLS: Mapping[str, Tool] = {

@@ -28,6 +28,7 @@ from processing.methods.road.requested_position import RequestedPosition
 from processing.recording.columns.columns import Columns, column_path
 from processing.recording.columns.ordering import read_chunk
 from processing.recording.drive import Drive
+from processing.recording.waveform_packets.descriptors import WaveformDescriptor
 from processing.scoring.points.asked_classes import AskedClass
 from processing.scoring.scorers import Scorer
 
@@ -350,11 +351,36 @@ class MadePoints:
         (n,) each, by the names that LAS gives them: ``gps_time``, ``intensity``, …
     extra : mapping
         (n,) each, by names of their own; the same in all parts of a result.
+    packets : MadePackets or None
+        Their waveforms, where the method's descriptor says that there are.
     """
 
     xyz: NDArray[np.float64]
     columns: Mapping[str, NDArray[Any]]
     extra: Mapping[str, NDArray[Any]]
+    packets: MadePackets | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class MadePackets:
+    """The waveforms of made points, several of which may lie in one packet.
+
+    Attributes
+    ----------
+    packet : (n,) int64
+        Row in ``samples`` of each point's packet.
+    location_ps : (n,) float32
+        The point's time after the packet's first sample.
+    direction : (n, 3) float32
+        m/ps, to the sensor.
+    samples : (k, m) unsigned
+        Counts; m as the method's descriptor says.
+    """
+
+    packet: NDArray[np.int64]
+    location_ps: NDArray[np.float32]
+    direction: NDArray[np.float32]
+    samples: NDArray[Any]
 
 
 # A drive, the tool's parameters, whom to tell: its points, some at a time.
@@ -369,9 +395,12 @@ class NewPoints:
     ----------
     make : callable
         The points, some at a time.
+    descriptor : WaveformDescriptor or None
+        How the waveforms are coded that come with all points; None where none come.
     """
 
     make: PointMaker
+    descriptor: WaveformDescriptor | None = None
 
 
 PointMethod = PerPoint | PerPointOfDrive | PerDrive | Together

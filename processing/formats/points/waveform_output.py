@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import struct
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, BinaryIO
@@ -89,7 +89,12 @@ class WaveformRecords:
 
 
 def write_waveform_las(
-    path: Path, records: Iterable[WaveformRecords], description: WaveformLas, monitor: Monitor
+    path: Path,
+    records: Iterable[WaveformRecords],
+    description: WaveformLas,
+    monitor: Monitor,
+    *,
+    never: Collection[Path] = (),
 ) -> None:
     """Write points of format 9 (LAS 1.4) and their packets in a ``.wdp`` beside them.
 
@@ -99,17 +104,19 @@ def write_waveform_las(
         ``.las``; the other file has the same name.
     records : iterable of WaveformRecords
         Some points at a time.
+    never : collection of Path
+        Files that must not be overwritten: the inputs of the work.
 
     Raises
     ------
-    NoSpace, Cancelled
+    NoSpace, InUse, Cancelled
         Nothing is left behind.
     """
     frame = _frame_of(description)
     written = _Written()
     with (
-        write_safely(path) as points,
-        write_safely(path.with_suffix(PACKETS_ENDING)) as packets,
+        write_safely(path, never=never) as points,
+        write_safely(path.with_suffix(PACKETS_ENDING), never=never) as packets,
         points.open("wb+") as file,
         packets.open("wb+") as beside,
     ):
