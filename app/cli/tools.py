@@ -10,7 +10,7 @@ from app.settings.language import system_language
 from processing.core.parameters import Parameter, parameters_of
 from processing.tools.registry import every_tool
 from processing.tools.running.runner import any_tool
-from processing.tools.tool import Comparison, NewPoints, Tool
+from processing.tools.tool import Comparison, NewPoints, NewPointsTogether, Tool
 
 
 def command(arguments: argparse.Namespace) -> int:
@@ -45,7 +45,7 @@ def _describe_tool(tool: Tool) -> dict[str, object]:
 def _gives(tool: Tool) -> str:
     if isinstance(tool.method, Comparison):
         return "volumes"
-    if isinstance(tool.method, NewPoints):
+    if isinstance(tool.method, NewPoints | NewPointsTogether):
         return "points"
     return "candidates" if tool.gives_candidates else "columns"
 

@@ -25,7 +25,7 @@ from processing.recording.vehicle_path.clock import ClockKind, kind_of
 from processing.recording.waveform_packets.descriptors import WaveformDescriptor
 from processing.tools.registry import POINT_MAKERS
 from processing.tools.running.runner import check_needs
-from processing.tools.tool import MadePoints, NewPoints, Tool
+from processing.tools.tool import MadePoints, NewPoints, NewPointsTogether, Tool
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,8 @@ def make_points(operation: NewPointsOperation, monitor: Monitor) -> Path:
                 "--output でLASかLAZのファイルを指定してください。",
             ),
         )
-    descriptor = _method_of(tool).descriptor
+    method = tool.method
+    descriptor = method.descriptor if isinstance(method, NewPointsTogether) else None
     FORMATS.format_to_write(output, Content.POINTS)
     if descriptor is not None and output.suffix.lower() != _WITH_PACKETS:
         raise OutOfRange(
@@ -96,12 +97,6 @@ def make_points(operation: NewPointsOperation, monitor: Monitor) -> Path:
 _WITH_PACKETS = ".las"
 
 
-def _method_of(tool: Tool) -> NewPoints:
-    if not isinstance(tool.method, NewPoints):
-        raise TypeError(tool.id)
-    return tool.method
-
-
 def _parts(
     tool: Tool, parameters: object, opened: OpenedInputs, monitor: Monitor
 ) -> Iterator[Part]:
@@ -112,7 +107,12 @@ def _parts(
 def _made(
     tool: Tool, parameters: object, opened: OpenedInputs, monitor: Monitor
 ) -> Iterator[MadePoints]:
-    method = _method_of(tool)
+    method = tool.method
+    if isinstance(method, NewPointsTogether):
+        yield from method.make(opened.chosen, parameters, monitor)
+        return
+    if not isinstance(method, NewPoints):
+        raise TypeError(tool.id)
     sizes = [drive.count for drive in opened.chosen]
     for drive, part in zip(opened.chosen, parts_of(monitor, sizes), strict=True):
         yield from method.make(drive, parameters, part)

@@ -24,7 +24,7 @@ from processing.tools.poles import POLES
 from processing.tools.segments import SEGMENTS
 from processing.tools.signs import SIGNS
 from processing.tools.template import TEMPLATE
-from processing.tools.tool import Comparison, NewPoints, Tool
+from processing.tools.tool import Comparison, NewPoints, NewPointsTogether, Tool
 from processing.tools.trees import TREES
 from processing.tools.volume import VOLUME
 from processing.tools.waveform_classify import WAVEFORM_CLASSIFY
@@ -54,7 +54,9 @@ _DECLARED = (
 )
 
 TOOLS: Mapping[str, Tool] = {
-    tool.id: tool for tool in _DECLARED if not isinstance(tool.method, Comparison | NewPoints)
+    tool.id: tool
+    for tool in _DECLARED
+    if not isinstance(tool.method, Comparison | NewPoints | NewPointsTogether)
 }
 
 COMPARISONS: Mapping[str, Tool] = {
@@ -64,7 +66,7 @@ COMPARISONS: Mapping[str, Tool] = {
 
 
 POINT_MAKERS: Mapping[str, Tool] = {
-    tool.id: tool for tool in _DECLARED if isinstance(tool.method, NewPoints)
+    tool.id: tool for tool in _DECLARED if isinstance(tool.method, NewPoints | NewPointsTogether)
 }
 """Those that make points of their own, into a file."""
 

@@ -352,7 +352,7 @@ class MadePoints:
     extra : mapping
         (n,) each, by names of their own; the same in all parts of a result.
     packets : MadePackets or None
-        Their waveforms, where the method's descriptor says that there are.
+        Their waveforms, where the method makes some.
     """
 
     xyz: NDArray[np.float64]
@@ -385,6 +385,8 @@ class MadePackets:
 
 # A drive, the tool's parameters, whom to tell: its points, some at a time.
 PointMaker = Callable[[Drive, Any, Monitor], Iterator[MadePoints]]
+# The same of all drives of its inputs.
+JointPointMaker = Callable[[tuple[Drive, ...], Any, Monitor], Iterator[MadePoints]]
 
 
 @dataclass(frozen=True)
@@ -395,12 +397,25 @@ class NewPoints:
     ----------
     make : callable
         The points, some at a time.
-    descriptor : WaveformDescriptor or None
-        How the waveforms are coded that come with all points; None where none come.
     """
 
     make: PointMaker
-    descriptor: WaveformDescriptor | None = None
+
+
+@dataclass(frozen=True)
+class NewPointsTogether:
+    """A method that makes points with waveforms from all drives together; they go into a file.
+
+    Attributes
+    ----------
+    make : callable
+        The points, some at a time.
+    descriptor : WaveformDescriptor
+        How their waveforms are coded.
+    """
+
+    make: JointPointMaker
+    descriptor: WaveformDescriptor
 
 
 PointMethod = PerPoint | PerPointOfDrive | PerDrive | Together
@@ -409,7 +424,7 @@ PointMethod = PerPoint | PerPointOfDrive | PerDrive | Together
 FindingMethod = Finder | SurveyFinder
 """Finds things, which a person accepts or rejects."""
 
-ToolMethod = PointMethod | FindingMethod | Comparison | NewPoints
+ToolMethod = PointMethod | FindingMethod | Comparison | NewPoints | NewPointsTogether
 """How a tool works; :mod:`processing.tools.running.runner` knows what each needs."""
 
 

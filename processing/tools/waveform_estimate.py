@@ -33,7 +33,7 @@ from processing.methods.waveforms.estimation.pulse_returns import (
 from processing.methods.waveforms.pulse_file import read_pulse
 from processing.recording.drive import Drive
 from processing.recording.waveform_packets.descriptors import WaveformDescriptor
-from processing.tools.tool import MadePackets, MadePoints, Needs, NewPoints, Tool
+from processing.tools.tool import MadePackets, MadePoints, Needs, NewPointsTogether, Tool
 
 _PS_IN_NS = 1000
 _EVEN_COUNTS = 100.0
@@ -80,9 +80,9 @@ class WaveformEstimateParameters:
 
 
 def make_waveforms(
-    drive: Drive, parameters: WaveformEstimateParameters, monitor: Monitor
+    drives: tuple[Drive, ...], parameters: WaveformEstimateParameters, monitor: Monitor
 ) -> Iterator[MadePoints]:
-    """The drive's points, each with the waveform of its pulse.
+    """The points of drives, each with the waveform of its pulse.
 
     Raises
     ------
@@ -91,15 +91,19 @@ def make_waveforms(
     if parameters.pulse:
         pulse = response_of(*read_pulse(Path(parameters.pulse)))
     else:
-        pulse = response_from_points(drive)
-    knows_intensity = parameters.inputs == "all" and has_intensities(drive)
+        pulse = response_from_points(max(drives, key=_size_of))
+    knows_intensity = parameters.inputs == "all" and any(map(has_intensities, drives))
     if knows_intensity:
-        by = parameters.intensity_of_count or intensity_of_count(drive)
+        by = parameters.intensity_of_count or max(map(intensity_of_count, drives))
     else:
         by = EVEN_ENERGY / _EVEN_COUNTS
-    with scratch_folder(drive.folder) as scratch:
-        for found in waveforms_for(drive, Wishes(pulse, knows_intensity, by), scratch, monitor):
-            yield _points(drive, found)
+    with scratch_folder(drives[0].folder) as scratch:
+        for found in waveforms_for(drives, Wishes(pulse, knows_intensity, by), scratch, monitor):
+            yield _points(drives[found.drive], found)
+
+
+def _size_of(drive: Drive) -> int:
+    return drive.count
 
 
 def _points(drive: Drive, found: PointsWithWaves) -> MadePoints:
@@ -146,7 +150,7 @@ WAVEFORM_ESTIMATE = Tool(
     group=Text("Waveforms", "波形"),
     needs=Needs.POINTS,
     parameters=WaveformEstimateParameters,
-    method=NewPoints(
+    method=NewPointsTogether(
         make_waveforms,
         WaveformDescriptor(
             16, SAMPLES, spacing_ps=_PS_IN_NS, gain=1.0 / STEPS_OF_COUNT, offset=0.0

@@ -30,6 +30,7 @@ from processing.tools.tool import (
     FinishedColumns,
     Needs,
     NewPoints,
+    NewPointsTogether,
     PerDrive,
     PerPoint,
     PerPointOfDrive,
@@ -292,7 +293,7 @@ def _result_of(
                 )
                 monitor.check()
             return result
-        case Comparison() | NewPoints():
+        case Comparison() | NewPoints() | NewPointsTogether():
             message = f"{tool.id} says nothing about the points of a drive"
             raise ValueError(message)
         case _:

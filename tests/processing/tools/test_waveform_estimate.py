@@ -41,7 +41,7 @@ def pulse(flight: Flight) -> Path:
     return path
 
 
-def run(*arguments: object) -> int:
+def run(*arguments: object) -> object:
     return run_in_terminal(["run", "waveform-estimate", *map(str, arguments)])
 
 

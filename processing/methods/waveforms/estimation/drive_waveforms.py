@@ -1,17 +1,18 @@
-"""Waveforms of all pulses of a drive: its returns are grouped, described and given their packets.
+"""Waveforms of all pulses of a flight: its returns are grouped, described and given their packets.
 
 1. Points of the same time are a pulse; where it came back more than once, its ray is known, and
    from these rays where the aircraft was (:mod:`flown_path`).
 2. A part of the plan at a time, each packet's returns and what lies around its ray become a
    waveform (:mod:`packet_inputs`), kept in a file for the time of the run.
-3. Points follow in the order of the drive, with their packets.
+3. Points follow drive by drive in the order of time, with their packets.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -85,26 +86,70 @@ class Wishes:
 
 
 class _InTime:
-    """A drive's points in the order of time and returns, whatever its own order is."""
+    """Points of drives, one after the other, each in the order of time and returns."""
 
-    def __init__(self, drive: Drive, file: Path) -> None:
-        self.drive, self.count = drive, drive.count
-        self.order: Integers = scratch_array(file, np.int64, drive.count)
-        everything = slice(0, drive.count)
-        time = np.asarray(drive.columns["time"][everything], np.float64)
-        self.order[:] = np.lexsort((_numbers(drive, everything), time))
+    def __init__(self, drives: Sequence[Drive], file: Path) -> None:
+        self.drives = drives
+        self.starts = np.cumsum([0, *(drive.count for drive in drives)])
+        self.count = int(self.starts[-1])
+        self.order: Integers = scratch_array(file, np.int64, self.count)
+        for drive, start in zip(drives, self.starts, strict=False):
+            everything = slice(0, drive.count)
+            time = np.asarray(drive.columns["time"][everything], np.float64)
+            numbers = np.zeros(drive.count, np.uint8)
+            if drive.columns.has("return_number"):
+                numbers = np.asarray(drive.columns["return_number"][everything])
+            self.order[start : start + drive.count] = np.lexsort((numbers, time))
 
     def xyz(self, points: Integers | slice) -> Floats:
         """Places, m, project CRS."""
-        return self.drive.xyz(self.order[points])
+        parts = [(own, self.drives[n].xyz(local)) for n, own, local in self._by_drive(points)]
+        return self._joined(parts, (self._size(points), 3), np.float64)
 
     def time(self, points: Integers | slice) -> Floats:
-        """On the drive's clock, s."""
-        return np.asarray(self.drive.columns["time"][self.order[points]], np.float64)
+        """On the drives' clock, s."""
+        return self._column("time", points, np.float64)
 
-    def numbers(self, points: slice) -> NDArray[np.uint8]:
+    def numbers(self, points: Integers | slice) -> NDArray[np.uint8]:
         """Which of its pulse's returns each point is; 0 where nobody said."""
-        return _numbers(self.drive, self.order[points])
+        return self._column("return_number", points, np.uint8)
+
+    def give_back(self) -> None:
+        """Let go of what was read."""
+        for drive in self.drives:
+            drive.columns.give_back()
+
+    # Any: of the type that is asked for.
+    def _column(self, name: str, points: Integers | slice, dtype: type[Any]) -> NDArray[Any]:
+        parts = [
+            (own, np.asarray(self.drives[n].columns[name][local]))
+            for n, own, local in self._by_drive(points)
+            if self.drives[n].columns.has(name)
+        ]
+        return self._joined(parts, (self._size(points),), dtype)
+
+    def _joined(
+        self,
+        parts: list[tuple[NDArray[np.bool_], NDArray[Any]]],
+        shape: tuple[int, ...],
+        dtype: type[Any],
+    ) -> NDArray[Any]:
+        values = np.zeros(shape, dtype)
+        for own, part in parts:
+            values[own] = part
+        return values
+
+    def _size(self, points: Integers | slice) -> int:
+        return len(range(*points.indices(self.count))) if isinstance(points, slice) else points.size
+
+    def _by_drive(
+        self, points: Integers | slice
+    ) -> Iterator[tuple[int, NDArray[np.bool_], Integers]]:
+        if isinstance(points, slice):
+            points = np.arange(*points.indices(self.count))
+        of = np.searchsorted(self.starts, points, side="right") - 1
+        for number in np.unique(of).tolist():
+            yield number, of == number, np.asarray(self.order[points[of == number]])
 
     def energies(self, points: Integers, wishes: Wishes, packet: Integers) -> NDArray[np.float32]:
         """Of returns, in intensities; even shares of their pulse where those aren't known.
@@ -115,16 +160,9 @@ class _InTime:
             Of the points, all those of a packet among them.
         """
         if wishes.knows_intensity:
-            return np.asarray(self.drive.columns["intensity"][self.order[points]], np.float32)
+            return self._column("intensity", points, np.float32)
         _, of, returns = np.unique(packet, return_inverse=True, return_counts=True)
         return (EVEN_ENERGY / returns[of]).astype(np.float32)
-
-
-def _numbers(drive: Drive, points: Integers | slice) -> NDArray[np.uint8]:
-    if drive.columns.has("return_number"):
-        return np.asarray(drive.columns["return_number"][points], np.uint8)
-    size = points.stop - points.start if isinstance(points, slice) else points.size
-    return np.zeros(size, np.uint8)
 
 
 @dataclass(frozen=True, eq=False)
@@ -133,6 +171,8 @@ class PointsWithWaves:
 
     Attributes
     ----------
+    drive : int
+        Which of the drives.
     points : (n,) int64
         Of the drive, in the order of time.
     packet : (n,) int64
@@ -145,6 +185,7 @@ class PointsWithWaves:
         Counts of 8 bits, in ``STEPS_OF_COUNT``.
     """
 
+    drive: int
     points: Integers
     packet: Integers
     after_ns: NDArray[np.float32]
@@ -166,12 +207,13 @@ class _Grouped:
 
 
 def waveforms_for(
-    drive: Drive, wishes: Wishes, scratch: Path, monitor: Monitor
+    drives: Sequence[Drive], wishes: Wishes, scratch: Path, monitor: Monitor
 ) -> Iterator[PointsWithWaves]:
-    """Estimate the waveforms of a drive.
+    """Estimate the waveforms of drives: lines of a flight, which lie over each other.
 
     Parameters
     ----------
+    drives : sequence of Drive
     scratch : Path
         An empty folder for what is kept meanwhile: some 350 bytes a point.
 
@@ -179,9 +221,9 @@ def waveforms_for(
     ------
     NoSpace, BadFile, Cancelled
     """
-    if drive.count == 0:
+    points = _InTime(drives, scratch / "order")
+    if points.count == 0:
         return
-    points = _InTime(drive, scratch / "order")
     grouped = _group(points, wishes, scratch, PartMonitor(monitor, 0.0, _GROUPED))
     cloud = TiledCloud(
         points.xyz,
@@ -191,7 +233,7 @@ def waveforms_for(
         monitor=PartMonitor(monitor, _GROUPED, _TILED),
     )
     # The tiles count points; a pulse may have several.
-    spacing_m = cloud.spacing_m * float(np.sqrt(drive.count / grouped.packets))
+    spacing_m = cloud.spacing_m * float(np.sqrt(points.count / grouped.packets))
     network = shipped_network(knows_intensity=wishes.knows_intensity)
     estimator = Estimator(
         network, wishes.pulse, grouped.brightness, spacing_m, wishes.knows_intensity
@@ -203,7 +245,7 @@ def waveforms_for(
         monitor.check()
         _estimate_part(points, grouped, (part, estimator, wishes), waves)
         done += part.own.size
-        monitor.report(_TILED + (1.0 - _TILED) * done / drive.count)
+        monitor.report(_TILED + (1.0 - _TILED) * done / points.count)
     for start, stop in grouped.stretches:
         yield _with_waves(points, grouped, slice(start, stop), waves)
 
@@ -242,17 +284,18 @@ def _group(points: _InTime, wishes: Wishes, scratch: Path, monitor: Monitor) -> 
 def _path_of(rays: list[tuple[Floats, Floats, Floats]], points: _InTime) -> FlownPath:
     time, first, last = (np.concatenate(one) for one in zip(*rays, strict=True))
     order = np.argsort(time, kind="stable")
-    ends = points.time(np.array([0, points.count - 1]))
-    bounds = (float(np.nan_to_num(ends[0])), float(np.nan_to_num(ends[1])))
+    ends = points.time(np.concatenate([points.starts[:-1], points.starts[1:] - 1]))
+    bounds = (float(np.nan_to_num(ends).min()), float(np.nan_to_num(ends).max()))
     return flown_path(time[order], first[order], last[order], bounds)
 
 
 def _stretches(points: _InTime) -> Iterator[tuple[int, int]]:
-    """Consecutive points between which no pulse is cut."""
+    """Consecutive points of one drive between which no pulse is cut."""
     start = 0
     while start < points.count:
-        stop = min(start + _POINTS_AT_ONCE, points.count)
-        if stop < points.count:
+        end = int(points.starts[np.searchsorted(points.starts, start, side="right")])
+        stop = min(start + _POINTS_AT_ONCE, end)
+        if stop < end:
             low = max(start + 1, stop - _MOST_OF_A_TIME)
             time = points.time(slice(low - 1, stop + 1))
             changes = np.flatnonzero(time[1:] != time[:-1])
@@ -270,7 +313,7 @@ def _estimate_part(
 ) -> None:
     """Fill the waveforms of the packets whose first return lies in a part."""
     part, estimator, wishes = what
-    points.drive.columns.give_back()
+    points.give_back()
     packet = np.asarray(grouped.packet[part.own])
     firsts = part.own[np.asarray(grouped.owner[packet]) == part.own]
     if not firsts.size:
@@ -324,7 +367,8 @@ def _with_waves(
     time = np.nan_to_num(points.time(owners))
     directions = grouped.path.directions(points.xyz(owners), time)
     return PointsWithWaves(
-        points.order[here],
+        int(np.searchsorted(points.starts, here.start, side="right")) - 1,
+        np.asarray(points.order[here]),
         packet - first,
         np.asarray(grouped.after_ns[here]),
         directions[packet - first],

@@ -49,7 +49,7 @@ class SystemResponse:
         fine = np.arange(self.times[0], self.times[-1], 0.05)
         return 0.05 * float((np.interp(fine, self.times, self.values) > 0.5).sum())
 
-    def at(self, times: NDArray[np.generic]) -> Floats:
+    def at(self, times: Floats | Integers) -> Floats:
         """Values at any times, ns; 0 beyond its ends."""
         return np.asarray(np.interp(times, self.times, self.values, left=0.0, right=0.0))
 
