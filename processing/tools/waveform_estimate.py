@@ -16,7 +16,7 @@ from processing.methods.waveforms.estimation.drive_waveforms import (
     EVEN_ENERGY,
     STEPS_OF_COUNT,
     PointsWithWaves,
-    Wishes,
+    EstimateRequest,
     waveforms_for,
 )
 from processing.methods.waveforms.estimation.known_pulse import (
@@ -98,7 +98,9 @@ def make_waveforms(
     else:
         by = EVEN_ENERGY / _EVEN_COUNTS
     with scratch_folder(drives[0].folder) as scratch:
-        for found in waveforms_for(drives, Wishes(pulse, knows_intensity, by), scratch, monitor):
+        for found in waveforms_for(
+            drives, EstimateRequest(pulse, knows_intensity, by), scratch, monitor
+        ):
             yield _points(drives[found.drive], found)
 
 

@@ -23,7 +23,7 @@ from processing.core.scratch_arrays import scratch_array
 from processing.methods.noise.tiles_of_space import SpacePart, TiledCloud
 from processing.methods.waveforms.estimation.flown_path import FlownPath, flown_path
 from processing.methods.waveforms.estimation.packet_inputs import (
-    Brightness,
+    ReturnBrightness,
     Estimator,
     Returns,
     SystemResponse,
@@ -68,7 +68,7 @@ _GROUPED, _TILED = 0.15, 0.25
 
 
 @dataclass(frozen=True)
-class Wishes:
+class EstimateRequest:
     """How waveforms are to be estimated.
 
     Attributes
@@ -151,7 +151,9 @@ class _InTime:
         for number in np.unique(of).tolist():
             yield number, of == number, np.asarray(self.order[points[of == number]])
 
-    def energies(self, points: Integers, wishes: Wishes, packet: Integers) -> NDArray[np.float32]:
+    def energies(
+        self, points: Integers, request: EstimateRequest, packet: Integers
+    ) -> NDArray[np.float32]:
         """Of returns, in intensities; even shares of their pulse where those aren't known.
 
         Parameters
@@ -159,7 +161,7 @@ class _InTime:
         packet : (n,) int64
             Of the points, all those of a packet among them.
         """
-        if wishes.knows_intensity:
+        if request.knows_intensity:
             return self._column("intensity", points, np.float32)
         _, of, returns = np.unique(packet, return_inverse=True, return_counts=True)
         return (EVEN_ENERGY / returns[of]).astype(np.float32)
@@ -203,11 +205,11 @@ class _Grouped:
     packets: int
     stretches: tuple[tuple[int, int], ...]
     path: FlownPath
-    brightness: Brightness
+    brightness: ReturnBrightness
 
 
 def waveforms_for(
-    drives: Sequence[Drive], wishes: Wishes, scratch: Path, monitor: Monitor
+    drives: Sequence[Drive], request: EstimateRequest, scratch: Path, monitor: Monitor
 ) -> Iterator[PointsWithWaves]:
     """Estimate the waveforms of drives: lines of a flight, which lie over each other.
 
@@ -224,7 +226,7 @@ def waveforms_for(
     points = _InTime(drives, scratch / "order")
     if points.count == 0:
         return
-    grouped = _group(points, wishes, scratch, PartMonitor(monitor, 0.0, _GROUPED))
+    grouped = _group(points, request, scratch, PartMonitor(monitor, 0.0, _GROUPED))
     cloud = TiledCloud(
         points.xyz,
         points.count,
@@ -234,23 +236,23 @@ def waveforms_for(
     )
     # The tiles count points; a pulse may have several.
     spacing_m = cloud.spacing_m * float(np.sqrt(points.count / grouped.packets))
-    network = shipped_network(knows_intensity=wishes.knows_intensity)
+    network = shipped_network(knows_intensity=request.knows_intensity)
     estimator = Estimator(
-        network, wishes.pulse, grouped.brightness, spacing_m, wishes.knows_intensity
+        network, request.pulse, grouped.brightness, spacing_m, request.knows_intensity
     )
     waves = scratch_array(scratch / "waves", np.uint16, grouped.packets * SAMPLES)
     waves = waves.reshape(-1, SAMPLES)
     done = 0
     for part in cloud.parts(_REACH_M, _POINTS_PER_PART):
         monitor.check()
-        _estimate_part(points, grouped, (part, estimator, wishes), waves)
+        _estimate_part(points, grouped, (part, estimator, request), waves)
         done += part.own.size
         monitor.report(_TILED + (1.0 - _TILED) * done / points.count)
     for start, stop in grouped.stretches:
         yield _with_waves(points, grouped, slice(start, stop), waves)
 
 
-def _group(points: _InTime, wishes: Wishes, scratch: Path, monitor: Monitor) -> _Grouped:
+def _group(points: _InTime, request: EstimateRequest, scratch: Path, monitor: Monitor) -> _Grouped:
     count = points.count
     packet = scratch_array(scratch / "packet", np.int64, count)
     owner = scratch_array(scratch / "owner", np.int64, count)
@@ -268,7 +270,7 @@ def _group(points: _InTime, wishes: Wishes, scratch: Path, monitor: Monitor) -> 
         after[start + found.order] = found.after_ns
         firsts = found.order[found.owner]
         owner[packets : packets + firsts.size] = start + firsts
-        energy = points.energies(np.arange(start, stop), wishes, packet[here] - packets)
+        energy = points.energies(np.arange(start, stop), request, packet[here] - packets)
         of_all += np.bincount(energy.astype(np.int64), minlength=_INTENSITIES)
         of_first += np.bincount(energy[firsts].astype(np.int64), minlength=_INTENSITIES)
         lasts = found.order[np.append(found.owner[1:], len(xyz)) - 1]
@@ -308,11 +310,11 @@ def _stretches(points: _InTime) -> Iterator[tuple[int, int]]:
 def _estimate_part(
     points: _InTime,
     grouped: _Grouped,
-    what: tuple[SpacePart, Estimator, Wishes],
+    what: tuple[SpacePart, Estimator, EstimateRequest],
     waves: NDArray[np.uint16],
 ) -> None:
     """Fill the waveforms of the packets whose first return lies in a part."""
-    part, estimator, wishes = what
+    part, estimator, request = what
     points.give_back()
     packet = np.asarray(grouped.packet[part.own])
     firsts = part.own[np.asarray(grouped.owner[packet]) == part.own]
@@ -327,14 +329,14 @@ def _estimate_part(
     order = np.argsort(numbers)
     rows = order[np.searchsorted(numbers[order], grouped.packet[own])]
     middle = points.xyz(firsts[:1])[0]
-    returns = Returns(
+    returns = PulseReturns(
         points.xyz(own) - middle,
-        points.energies(own, wishes, rows),
+        points.energies(own, request, rows),
         rows,
         np.asarray(grouped.after_ns[own]),
         np.asarray(grouped.owner[grouped.packet[own]]) == own,
     )
-    around = _around(points, grouped, near, (wishes, middle))
+    around = _around(points, grouped, near, (request, middle))
     at = np.searchsorted(numbers[order], around.packet)
     at = np.minimum(at, numbers.size - 1)
     is_own = numbers[order][at] == around.packet
@@ -344,16 +346,16 @@ def _estimate_part(
     )
     time = points.time(firsts)
     directions = grouped.path.directions(points.xyz(firsts), np.nan_to_num(time))
-    found = estimator.waves(returns, directions, around) / wishes.intensity_of_count
+    found = estimator.waves(returns, directions, around) / request.intensity_of_count
     waves[numbers] = np.clip(np.rint(STEPS_OF_COUNT * found), 0.0, _MOST_STEPS).astype(np.uint16)
 
 
 def _around(
-    points: _InTime, grouped: _Grouped, near: Integers, what: tuple[Wishes, Floats]
+    points: _InTime, grouped: _Grouped, near: Integers, what: tuple[EstimateRequest, Floats]
 ) -> Neighbours:
-    wishes, middle = what
+    request, middle = what
     packet = np.asarray(grouped.packet[near])
-    energy = points.energies(near, wishes, packet)
+    energy = points.energies(near, request, packet)
     is_first = np.asarray(grouped.owner[packet]) == near
     return Neighbours(points.xyz(near) - middle, energy, packet, is_first)
 

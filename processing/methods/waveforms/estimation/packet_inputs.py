@@ -59,21 +59,21 @@ class SystemResponse:
         return self.at(np.arange(-PULSE_BEFORE_NS, PULSE_BEHIND_NS + 1)).astype(np.float32)
 
 
-class Brightness(NamedTuple):
+class ReturnBrightness(NamedTuple):
     """Of a recording's returns, in intensities: of a usual first one, and of the faintest."""
 
     usual: float
     faint: float
 
 
-def brightness_of(counts: Integers, first_counts: Integers) -> Brightness:
+def brightness_of(counts: Integers, first_counts: Integers) -> ReturnBrightness:
     """From how many returns have each intensity: of all, and of first ones."""
     usual = np.searchsorted(np.cumsum(first_counts), 0.5 * first_counts.sum())
     faint = np.searchsorted(np.cumsum(counts), _FAINT_PERCENT / 100 * counts.sum())
-    return Brightness(max(1.0, float(usual)), max(1.0, float(faint)))
+    return ReturnBrightness(max(1.0, float(usual)), max(1.0, float(faint)))
 
 
-class Returns(NamedTuple):
+class PulseReturns(NamedTuple):
     """Returns of some packets and of those around.
 
     ``xyz`` (n, 3) float64 m; ``energy`` (n,) float32 intensities; ``packet`` (n,) int64;
@@ -95,7 +95,7 @@ class Estimator:
     ----------
     network : ResponseNetwork
     pulse : SystemResponse
-    brightness : Brightness
+    brightness : ReturnBrightness
     spacing_m : float
         Between pulses, seen from above.
     knows_intensity : bool
@@ -104,16 +104,16 @@ class Estimator:
 
     network: ResponseNetwork
     pulse: SystemResponse
-    brightness: Brightness
+    brightness: ReturnBrightness
     spacing_m: float
     knows_intensity: bool
 
-    def waves(self, own: Returns, directions: Floats, around: Neighbours) -> F32:
+    def waves(self, own: PulseReturns, directions: Floats, around: Neighbours) -> F32:
         """Waveforms of packets in intensities, (k, SAMPLES).
 
         Parameters
         ----------
-        own : Returns
+        own : PulseReturns
             All returns of k packets, ``packet`` from 0 to k − 1, each with its first return.
         directions : (k, 3) float64
             Of the packets, away from the sensor.
@@ -144,11 +144,11 @@ class Estimator:
         found = self.network.waves(channels, facts, scaled[1], self.pulse.by_ns)
         return np.asarray(found * top[:, None], np.float32)
 
-    def plain(self, own: Returns, packets: int) -> F32:
+    def plain(self, own: PulseReturns, packets: int) -> F32:
         """The plain estimate: the pulse at each return, (k, SAMPLES) intensities."""
         return self._own_light(own, packets)[2]
 
-    def _own_light(self, own: Returns, packets: int) -> tuple[F32, F32, F32]:
+    def _own_light(self, own: PulseReturns, packets: int) -> tuple[F32, F32, F32]:
         """Strongest return of each packet, its returns by ns, and the pulse at each."""
         top, impulses = np.zeros(packets, np.float32), np.zeros((packets, SAMPLES), np.float32)
         plain = np.zeros((packets, SAMPLES), np.float32)
@@ -165,7 +165,7 @@ class Estimator:
         np.add.at(plain, (own.packet[row], sample[row, column]), values[row, column])
         return np.maximum(top, 1e-3), impulses, plain
 
-    def _profiles(self, own: Returns, directions: Floats, around: Neighbours) -> F32:
+    def _profiles(self, own: PulseReturns, directions: Floats, around: Neighbours) -> F32:
         radii = np.clip(RADII * self.spacing_m, RADII_LEAST_M, RADII_MOST_M)
         first = np.flatnonzero(own.is_first)
         packets = own.packet[first]

@@ -19,7 +19,7 @@ LAST_NS = SAMPLES - FIRST_SAMPLE_NS
 """After the first return: a return farther on lies behind the packet's end and begins its own."""
 
 
-class PacketReturns(NamedTuple):
+class GroupedReturns(NamedTuple):
     """Points in the order of pulses and ranges, and the packets they lie in.
 
     ``order`` (n,) int64: the points as they were given; ``packet`` (n,) int64, rising from 0;
@@ -33,7 +33,7 @@ class PacketReturns(NamedTuple):
     owner: Integers
 
 
-def packets_of_returns(xyz: Floats, time: Floats, number: NDArray[np.uint8]) -> PacketReturns:
+def packets_of_returns(xyz: Floats, time: Floats, number: NDArray[np.uint8]) -> GroupedReturns:
     """Returns that were measured at the same time are of one pulse.
 
     Parameters
@@ -62,7 +62,7 @@ def packets_of_returns(xyz: Floats, time: Floats, number: NDArray[np.uint8]) -> 
         is_new |= late
         first = np.flatnonzero(is_new)
     packet = np.cumsum(is_new) - 1
-    return PacketReturns(order, packet, after.astype(np.float32), first)
+    return GroupedReturns(order, packet, after.astype(np.float32), first)
 
 
 _MOST_PACKETS = 16
