@@ -15,8 +15,8 @@ from processing.core.text import Text
 from processing.methods.waveforms.estimation.drive_waveforms import (
     EVEN_ENERGY,
     STEPS_OF_COUNT,
-    PointsWithWaves,
     EstimateRequest,
+    PointsWithWaves,
     waveforms_for,
 )
 from processing.methods.waveforms.estimation.known_pulse import (

@@ -23,9 +23,9 @@ from processing.core.scratch_arrays import scratch_array
 from processing.methods.noise.tiles_of_space import SpacePart, TiledCloud
 from processing.methods.waveforms.estimation.flown_path import FlownPath, flown_path
 from processing.methods.waveforms.estimation.packet_inputs import (
-    ReturnBrightness,
     Estimator,
-    Returns,
+    PulseReturns,
+    ReturnBrightness,
     SystemResponse,
     brightness_of,
 )
