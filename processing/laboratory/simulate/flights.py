@@ -81,7 +81,9 @@ _FIRST_COLUMNS: Columns = {
 }
 
 
-def simulate_flight(request: FlightRequest, folder: Path, monitor: Monitor) -> Simulated:
+def simulate_flight(
+    request: FlightRequest, folder: Path, monitor: Monitor, sensor: FlightSensor | None = None
+) -> Simulated:
     """Fly over a landscape, and write the delivery and its truth.
 
     Parameters
@@ -90,6 +92,8 @@ def simulate_flight(request: FlightRequest, folder: Path, monitor: Monitor) -> S
         Holds ``in`` (``flight.las`` with ``flight.wdp``, ``points.laz``, ``system_pulse.csv``) and
         ``truth`` (``truth.npz``, ``beams.npz``, ``first.npz``, ``scene.json``) afterwards; appears
         only when everything is written.
+    sensor : FlightSensor, optional
+        Flown in place of the one that the request names.
 
     Raises
     ------
@@ -101,7 +105,7 @@ def simulate_flight(request: FlightRequest, folder: Path, monitor: Monitor) -> S
         What the operating system says; `Cancelled`.
     """
     request = fill_parameters(FlightRequest, dataclasses.asdict(request))
-    sensor = flight_sensor_of(request.sensor)
+    sensor = sensor or flight_sensor_of(request.sensor)
     with write_whole_folder(folder) as hidden:
         for part in ("in", "truth"):
             (hidden / part).mkdir()

@@ -24,6 +24,7 @@ from processing.methods.noise.tiles_of_space import SpacePart, TiledCloud
 from processing.methods.waveforms.estimation.flown_path import FlownPath, flown_path
 from processing.methods.waveforms.estimation.packet_inputs import (
     Estimator,
+    PacketDescriber,
     PulseReturns,
     ReturnBrightness,
     SystemResponse,
@@ -237,9 +238,8 @@ def waveforms_for(
     # The tiles count points; a pulse may have several.
     spacing_m = cloud.spacing_m * float(np.sqrt(points.count / grouped.packets))
     network = shipped_network(knows_intensity=request.knows_intensity)
-    estimator = Estimator(
-        network, request.pulse, grouped.brightness, spacing_m, request.knows_intensity
-    )
+    known = PacketDescriber(request.pulse, grouped.brightness, spacing_m, request.knows_intensity)
+    estimator = Estimator(network, known)
     waves = scratch_array(scratch / "waves", np.uint16, grouped.packets * SAMPLES)
     waves = waves.reshape(-1, SAMPLES)
     done = 0
@@ -342,7 +342,7 @@ def _estimate_part(
     is_own = numbers[order][at] == around.packet
     around = around._replace(
         packet=np.where(is_own, order[at], -1),
-        energy=(around.energy / estimator.brightness.usual).astype(np.float32),
+        energy=(around.energy / estimator.known.brightness.usual).astype(np.float32),
     )
     time = points.time(firsts)
     directions = grouped.path.directions(points.xyz(firsts), np.nan_to_num(time))

@@ -87,13 +87,26 @@ class PulseReturns(NamedTuple):
     is_first: NDArray[np.bool_]
 
 
+class PacketInputs(NamedTuple):
+    """What the network is given of k packets.
+
+    ``channels`` (k, c, SAMPLES), ``facts`` (k, f) and ``plain`` (k, SAMPLES), the plain estimate,
+    as :class:`ResponseNetwork` has them; ``top`` (k,) each packet's strongest return, intensities,
+    the unit of the others. All float32.
+    """
+
+    channels: F32
+    facts: F32
+    plain: F32
+    top: F32
+
+
 @dataclass(frozen=True)
-class Estimator:
-    """Makes waveforms of returns.
+class PacketDescriber:
+    """Makes of returns what the network sees; training and use share it.
 
     Attributes
     ----------
-    network : ResponseNetwork
     pulse : SystemResponse
     brightness : ReturnBrightness
     spacing_m : float
@@ -102,14 +115,13 @@ class Estimator:
         Else each pulse's energy is shared evenly by its returns.
     """
 
-    network: ResponseNetwork
     pulse: SystemResponse
     brightness: ReturnBrightness
     spacing_m: float
     knows_intensity: bool
 
-    def waves(self, own: PulseReturns, directions: Floats, around: Neighbours) -> F32:
-        """Waveforms of packets in intensities, (k, SAMPLES).
+    def inputs(self, own: PulseReturns, directions: Floats, around: Neighbours) -> PacketInputs:
+        """What is known of packets.
 
         Parameters
         ----------
@@ -140,13 +152,7 @@ class Estimator:
             ],
             axis=1,
         ).astype(np.float32)
-        channels = channels_of(*scaled, profiles)
-        found = self.network.waves(channels, facts, scaled[1], self.pulse.by_ns)
-        return np.asarray(found * top[:, None], np.float32)
-
-    def plain(self, own: PulseReturns, packets: int) -> F32:
-        """The plain estimate: the pulse at each return, (k, SAMPLES) intensities."""
-        return self._own_light(own, packets)[2]
+        return PacketInputs(channels_of(*scaled, profiles), facts, scaled[1], top)
 
     def _own_light(self, own: PulseReturns, packets: int) -> tuple[F32, F32, F32]:
         """Strongest return of each packet, its returns by ns, and the pulse at each."""
@@ -175,3 +181,18 @@ class Estimator:
         profile_kernel(plan_grid(around.xyz, _CELL_M), around, rays, radii, found)
         into[packets] = found
         return into
+
+
+@dataclass(frozen=True)
+class Estimator:
+    """Makes waveforms of returns: what a network answers to what is known of them."""
+
+    network: ResponseNetwork
+    known: PacketDescriber
+
+    def waves(self, own: PulseReturns, directions: Floats, around: Neighbours) -> F32:
+        """Waveforms of packets in intensities, (k, SAMPLES); as :meth:`PacketDescriber.inputs`."""
+        seen = self.known.inputs(own, directions, around)
+        pulse = self.known.pulse.by_ns
+        found = self.network.waves(seen.channels, seen.facts, seen.plain, pulse)
+        return np.asarray(found * seen.top[:, None], np.float32)

@@ -1,0 +1,1 @@
+"""Makes the networks that estimate waveforms: flights of drawn scanners, examples, fit."""
