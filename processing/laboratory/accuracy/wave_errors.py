@@ -16,7 +16,8 @@ _SHIFTS = np.linspace(-0.5, 0.5, 11)
 
 _COARSE = np.geomspace(0.4, 1.6, 29)
 _FINE = np.linspace(0.97, 1.03, 7)
-"""Factors of brightness, around the one that the maxima tell: steps of 5 %, then of 1 %."""
+"""Factors of brightness, around the one that the maxima tell: steps of 5 % with three of the shifts,
+then of 1 % with all."""
 
 _BEHIND = 64
 """Zeros behind the samples, lest what is moved out of the end comes in at the beginning."""
@@ -55,7 +56,8 @@ def wave_error(estimated: AnyFloats, true: AnyFloats, label: NDArray[np.uint8]) 
     moved = [_moved(estimated, shift) for shift in _SHIFTS]
     heights = np.maximum(estimated.max(axis=1), 1e-9)
     factor = float(np.median(true.max(axis=1) / heights))
-    best = min((_error(moved, true, label, factor * one) for one in _COARSE), key=_mean_of)
+    few = moved[:: len(moved) // 2]
+    best = min((_error(few, true, label, factor * one) for one in _COARSE), key=_mean_of)
     return min((_error(moved, true, label, best.factor * one) for one in _FINE), key=_mean_of)
 
 
