@@ -16,8 +16,8 @@ _SHIFTS = np.linspace(-0.5, 0.5, 11)
 
 _COARSE = np.geomspace(0.4, 1.6, 29)
 _FINE = np.linspace(0.97, 1.03, 7)
-"""Factors of brightness, around the one that the maxima tell: steps of 5 % with three of the shifts,
-then of 1 % with all."""
+"""Factors of brightness, around the one that the maxima tell: steps of 5 % with three of the
+shifts, then of 1 % with all."""
 
 _BEHIND = 64
 """Zeros behind the samples, lest what is moved out of the end comes in at the beginning."""
