@@ -29,7 +29,10 @@ LATER = (
 )
 """What the demo doesn't use; numba compiles a kernel at its first use where nobody did before."""
 
-TRAINING = ("processing.laboratory.class_training.image_network",)
+TRAINING = (
+    "processing.laboratory.class_training.image_network",
+    "processing.laboratory.waveform_training.response_learner",
+)
 """What asks for the extra ``train``, and has no kernels."""
 
 
