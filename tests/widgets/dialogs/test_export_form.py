@@ -38,5 +38,13 @@ def test_what_is_chosen_is_asked_for(qtbot: QtBot, tmp_path: Path) -> None:
     (request,) = asked.args
     assert isinstance(request, ExportOptions)
     assert request.formats == ("tiny",)
-    expected = {"dxf_version": "R2000", "encoding": "utf-8", "digits": 3, "tiny_decimals": 1}
+    expected = {
+        "dxf_version": "R2000",
+        "encoding": "utf-8",
+        "digits": 3,
+        "dm_accuracy": 34,
+        "dm_company": "",
+        "dm_approval": "",
+        "tiny_decimals": 1,
+    }
     assert request.options == expected
