@@ -26,10 +26,12 @@ from processing.methods.road.signs.sign_confidence import (
     SignFacts,
     chance_of,
     facts_of,
+    facts_with_other_side,
     facts_with_post,
 )
 from processing.methods.road.signs.sign_posts import PostForm, posts_of
 from processing.methods.road.signs.sign_shapes import SignShape, looked_for
+from processing.methods.road.signs.two_sided import with_other_side
 from processing.recording.drive import Drive
 
 _LEAST_REACH_M, _MOST_REACH_M = 0.1, 0.8
@@ -133,6 +135,7 @@ def road_signs(
     for number, signs_of_group in enumerate(in_order(of_group, groups)):
         found += signs_of_group
         monitor.report(0.8 + 0.1 * (number + 1) / len(groups))
+    found = _with_other_sides(found)
     kept = distinct_plates(
         [one.plate for one in found], np.array([one.confidence for one in found]), _LIKELY
     )
@@ -144,6 +147,19 @@ def road_signs(
     held = [_with_post(one, form) for one, form in zip(likely, forms, strict=True)]
     held += [_with_post(one, None) for one in others]
     return tuple(sorted(held, key=lambda one: -one.confidence))
+
+
+def _with_other_sides(signs: list[RoadSign]) -> list[RoadSign]:
+    """Signs, those less sure of which the other side was found and doesn't shine either."""
+    others = with_other_side([one.plate for one in signs])
+    found = []
+    for sign, other in zip(signs, others, strict=True):
+        if other is None:
+            found.append(sign)
+            continue
+        facts = facts_with_other_side(sign.facts, sign.plate, signs[other].plate)
+        found.append(replace(sign, facts=facts, confidence=chance_of(facts)))
+    return found
 
 
 def _with_post(sign: RoadSign, post: PostForm | None) -> RoadSign:

@@ -196,6 +196,12 @@ def facts_with_post(facts: SignFacts, post: PostForm | None) -> SignFacts:
     return facts._replace(unheld=0.0 if is_held else 1.0)
 
 
+def facts_with_other_side(facts: SignFacts, plate: Plate, other: Plate) -> SignFacts:
+    """The same of a plate of which the other side was found as a plate of its own."""
+    shine = max(plate.evidence.shine, other.evidence.shine)
+    return facts._replace(painted=_painted(plate.evidence._replace(shine=shine, both_seen=True)))
+
+
 def _over(value: float, low: float, high: float) -> float:
     """Where a value lies between two, 0 to 1."""
     return min(max((value - low) / (high - low), 0.0), 1.0)
