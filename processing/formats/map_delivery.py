@@ -46,6 +46,17 @@ def _encoding() -> Any:
     )
 
 
+# Any: as the declarations of processing.core.parameters.
+def _digits() -> Any:
+    return count(
+        3,
+        low=0,
+        high=_MOST_DIGITS,
+        name=Text("Decimals of coordinates", "座標の小数点以下の桁数"),
+        explanation=Text("Of metres, in CSV and XLSX.", "CSV・XLSXに書き出す座標（m）の桁数です。"),
+    )
+
+
 @dataclass(frozen=True)
 class DxfOptions:
     """What can be chosen for a drawing."""
@@ -68,13 +79,14 @@ class TableOptions:
     """What can be chosen for tables."""
 
     encoding: str = _encoding()
-    digits: int = count(
-        3,
-        low=0,
-        high=_MOST_DIGITS,
-        name=Text("Decimals of coordinates", "座標の小数点以下の桁数"),
-        explanation=Text("Of metres, in CSV.", "CSVに書き出す座標（m）の桁数です。"),
-    )
+    digits: int = _digits()
+
+
+@dataclass(frozen=True)
+class WorkbookOptions:
+    """What can be chosen for workbooks."""
+
+    digits: int = _digits()
 
 
 @dataclass(frozen=True)

@@ -9,7 +9,13 @@ from __future__ import annotations
 from processing.core.text import Text
 from processing.formats.format import BY_MAKER, Content, Format
 from processing.formats.format_list import FormatList
-from processing.formats.map_delivery import DmOptions, DxfOptions, ShapefileOptions, TableOptions
+from processing.formats.map_delivery import (
+    DmOptions,
+    DxfOptions,
+    ShapefileOptions,
+    TableOptions,
+    WorkbookOptions,
+)
 
 _POINTS = "processing.formats.points"
 _PATHS = "processing.formats.trajectories"
@@ -181,6 +187,15 @@ _VECTOR_FORMATS = (
         map_title=Text("GIS (GeoJSON)", "GIS（GeoJSON）"),
     ),
     Format(
+        "xlsx",
+        Text.same("XLSX"),
+        (".xlsx",),
+        writes={Content.REPORT: BY_MAKER},
+        map_title=Text("Ledgers (XLSX)", "台帳（XLSX）"),
+        writes_map="processing.formats.ledgers.ledger_xlsx:write_xlsx_map",
+        options=WorkbookOptions,
+    ),
+    Format(
         "shp",
         Text.same("Shapefile"),
         (".shp",),
@@ -221,12 +236,6 @@ _OTHER_FORMATS = (
             Content.REPORT: BY_MAKER,
             Content.PLOT: BY_MAKER,
         },
-    ),
-    Format(
-        "xlsx",
-        Text.same("XLSX"),
-        (".xlsx",),
-        writes={Content.REPORT: BY_MAKER},
     ),
     Format(
         "qa",

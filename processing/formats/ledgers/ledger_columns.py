@@ -24,6 +24,14 @@ _DEGREE_DIGITS = 8  # about a millimetre
 CellText = Callable[[Feature], str]
 
 
+def _always(_feature: Feature) -> bool:
+    return True
+
+
+def _never(_feature: Feature) -> bool:
+    return False
+
+
 @dataclass(frozen=True)
 class TableStyle:
     """How a table is written.
@@ -55,12 +63,21 @@ class TableStyle:
 
 @dataclass(frozen=True)
 class LedgerColumn:
-    """A column: its id for programs, its title for people, its unit, its cells."""
+    """A column: its id for programs, its title for people, its unit, its cells.
+
+    Attributes
+    ----------
+    cell : callable
+        What stands in a feature's row, numbers with their decimals.
+    is_number : callable
+        Whether that is a number, for tables whose cells have types.
+    """
 
     id: str
     title: Text
     unit: str
     cell: CellText
+    is_number: Callable[[Feature], bool] = _never
 
     def header(self, language: Language | None) -> str:
         """What stands in the first row."""
@@ -83,6 +100,22 @@ def header(id: str, title: Text, unit: str, language: Language | None) -> str:  
         return guard_text(id)
     words = title.in_language(language)
     return guard_text(f"{words} [{unit}]" if unit else words)
+
+
+def distinct_headers(headers: Sequence[str]) -> list[str]:
+    """Headers of which no two are the same: readers find columns by them."""
+    distinct: dict[str, None] = {}
+    for words in headers:
+        own, number = words, 2
+        while own in distinct:
+            own, number = f"{words} ({number})", number + 1
+        distinct[own] = None
+    return list(distinct)
+
+
+def unguarded(text: str) -> str:
+    """The text that :func:`guard_text` was given."""
+    return text.removeprefix("'")
 
 
 def guard_text(text: str) -> str:
@@ -143,7 +176,7 @@ def status_columns(style: TableStyle) -> tuple[LedgerColumn, ...]:
 
     return (
         LedgerColumn("status", Text("Status", "状態"), "", status),
-        LedgerColumn("confidence", Text("Confidence", "信頼度"), "", confidence),
+        LedgerColumn("confidence", Text("Confidence", "信頼度"), "", confidence, _always),
         LedgerColumn("tool", Text("Made by", "作成方法"), "", tool),
     )
 
@@ -162,7 +195,7 @@ def place_columns(features: Iterable[Feature], style: TableStyle) -> tuple[Ledge
         columns += (_measure("plan_area_m2", Text("Plan area", "面積"), plan_area_m2, style),)
     if shapes - {Geometry.POINT}:
         count = LedgerColumn(
-            "vertices", Text("Vertices", "頂点数"), "", lambda one: str(len(one.vertices))
+            "vertices", Text("Vertices", "頂点数"), "", lambda one: str(len(one.vertices)), _always
         )
         columns += (count,)
     return columns
@@ -180,7 +213,7 @@ def _position_columns(
 
     return tuple(
         LedgerColumn(
-            prefix + id_, Text(title.en + name.en, title.ja + name.ja), unit, cell_of(axis)
+            prefix + id_, Text(title.en + name.en, title.ja + name.ja), unit, cell_of(axis), _always
         )
         for axis, (id_, name, unit) in enumerate(POSITION)
     )
@@ -199,7 +232,7 @@ def _measure(
 
     # Shift_JIS has the square metre as one character, and no raised two.
     square_metre = "㎡" if style.language == "ja" else "m2"
-    return LedgerColumn(id_, title, square_metre if is_area else "m", cell)
+    return LedgerColumn(id_, title, square_metre if is_area else "m", cell, _always)
 
 
 def latitude_columns(features: Sequence[Feature], style: TableStyle) -> tuple[LedgerColumn, ...]:
@@ -229,8 +262,8 @@ def latitude_columns(features: Sequence[Feature], style: TableStyle) -> tuple[Le
         return cell
 
     return (
-        LedgerColumn("latitude_deg", Text("Latitude", "緯度"), "°", cell_of(0)),
-        LedgerColumn("longitude_deg", Text("Longitude", "経度"), "°", cell_of(1)),
+        LedgerColumn("latitude_deg", Text("Latitude", "緯度"), "°", cell_of(0), _always),
+        LedgerColumn("longitude_deg", Text("Longitude", "経度"), "°", cell_of(1), _always),
     )
 
 
@@ -262,7 +295,11 @@ def attribute_column(
         known = field_of(catalogue, feature.kind, field.id)
         return attribute_cell(feature.attributes.get(field.id), known or field, style)
 
-    return LedgerColumn(field.id, field.name, field.unit, cell)
+    def is_number(feature: Feature) -> bool:
+        value = feature.attributes.get(field.id)
+        return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+    return LedgerColumn(field.id, field.name, field.unit, cell, is_number)
 
 
 def attribute_cell(value: AttributeValue, field: AttributeField, style: TableStyle) -> str:

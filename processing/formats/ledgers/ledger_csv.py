@@ -20,6 +20,7 @@ from processing.formats.ledgers.ledger_columns import (
     TableStyle,
     attribute_column,
     crs_column,
+    distinct_headers,
     fields_of,
     guard_text,
     header,
@@ -29,10 +30,12 @@ from processing.formats.ledgers.ledger_columns import (
     place_columns,
     status_columns,
 )
+from processing.formats.ledgers.road_columns import road_columns
 from processing.formats.map_delivery import MapDelivery, Position, TableOptions
 from processing.formats.shift_jis import TWINS
 from processing.map.catalogue import Catalogue, FeatureKind
 from processing.map.feature import Feature
+from processing.map.routes.road_sections import RoadSection, road_sections
 
 _CHECK_EVERY = 256
 
@@ -92,9 +95,17 @@ def write_ledger(
     OutOfRange, UserError
         As :func:`write_features`.
     """
+    columns = ledger_columns(features, kind, style)
+    _write_rows(path, features, columns, style, monitor=monitor, never=never)
+
+
+def ledger_columns(
+    features: Sequence[Feature], kind: FeatureKind, style: TableStyle
+) -> tuple[LedgerColumn, ...]:
+    """The columns of the ledger of one kind: its attributes first, then where each feature is."""
     catalogue = Catalogue((kind,))
     fields = {one.id: one for one in (*kind.attributes, *fields_of(features, catalogue))}
-    columns = (
+    return (
         *(attribute_column(one, catalogue, style) for one in fields.values()),
         *place_columns(features, style),
         *latitude_columns(features, style),
@@ -102,7 +113,28 @@ def write_ledger(
         *status_columns(style),
         *identity_columns(),
     )
-    _write_rows(path, features, columns, style, monitor=monitor, never=never)
+
+
+def write_road_ledger(
+    path: Path,
+    sections: Sequence[RoadSection],
+    catalogue: Catalogue,
+    style: TableStyle,
+    *,
+    never: Iterable[Path] = (),
+) -> None:
+    """Write the road's ledger sheet (道路台帳調書): a row for each section between stations.
+
+    Raises
+    ------
+    OutOfRange, UserError
+        As :func:`write_features`.
+    """
+    columns = road_columns(catalogue, style)
+    with _open_table(path, style, never) as table:
+        table.write([header(*one.title, style.language) for one in columns], "")
+        for section in sections:
+            table.write([one.cell(section) for one in columns], "")
 
 
 def write_vertices(
@@ -137,22 +169,26 @@ def write_csv_features(
     path: Path, delivery: MapDelivery, monitor: Monitor, *, never: Iterable[Path] = ()
 ) -> None:
     """Write a map that is handed in as one table, as :func:`write_features`."""
-    style = _style_of(delivery)
+    style = style_of(delivery)
     write_features(path, delivery.features, delivery.catalogue, style, monitor=monitor, never=never)
 
 
 def write_csv_map(delivery: MapDelivery, position: Position, monitor: Monitor) -> None:
     """Write a map that is handed in as tables of all features, of vertices, and of each kind."""
-    features, style = delivery.features, _style_of(delivery)
+    features, style = delivery.features, style_of(delivery)
     write_csv_features(position(f"{MAP}.csv"), delivery, monitor)
     write_vertices(position("vertices.csv"), features, style, monitor=monitor)
     for kind in delivery.catalogue:
         members = [feature for feature in features if feature.kind == kind.id]
         if members:
             write_ledger(position(f"ledger_{kind.id}.csv"), members, kind, style, monitor=monitor)
+    sections = road_sections(features, delivery.catalogue)
+    if sections:
+        write_road_ledger(position("ledger_road_sections.csv"), sections, delivery.catalogue, style)
 
 
-def _style_of(delivery: MapDelivery) -> TableStyle:
+def style_of(delivery: MapDelivery) -> TableStyle:
+    """How the tables of a map are written that is handed in."""
     options = delivery.options_of(TableOptions)
     return TableStyle(delivery.language, options.encoding, options.digits, delivery.crs)
 
@@ -168,23 +204,12 @@ def _write_rows(
 ) -> None:
     monitor = monitor or SilentMonitor()
     with _open_table(path, style, never) as table:
-        table.write(_distinct([column.header(style.language) for column in columns]), "")
+        table.write(distinct_headers([column.header(style.language) for column in columns]), "")
         for number, feature in enumerate(features):
             if number % _CHECK_EVERY == 0:
                 monitor.check()
                 monitor.report(number / len(features))
             table.write([column.cell(feature) for column in columns], feature.id)
-
-
-def _distinct(headers: Sequence[str]) -> list[str]:
-    """Headers of which no two are the same: readers find columns by them."""
-    distinct: dict[str, None] = {}
-    for words in headers:
-        own, number = words, 2
-        while own in distinct:
-            own, number = f"{words} ({number})", number + 1
-        distinct[own] = None
-    return list(distinct)
 
 
 class _Table:

@@ -304,6 +304,7 @@ def test_a_disk_that_takes_no_more_is_told_and_nothing_is_half_written(
 def test_every_format_has_a_title_in_both_languages() -> None:
     assert tuple(one.id for one in FORMATS.maps()) == (
         *_ALL,
+        "xlsx",
         "shp",
         "kmz",
         "dm",
