@@ -125,6 +125,9 @@ def _add_working_commands(commands: _Commands[_Parser]) -> None:
         help="where labels of points come from: an extra dimension, or the delivered classes",
     )
     importing.set_defaults(module="import_drives")
+    numbering = commands.add_parser("number", help="number what ledgers list along the routes")
+    numbering.add_argument("project", type=Path, metavar="PROJECT")
+    numbering.set_defaults(module="maps.number")
     learning = commands.add_parser("learn", help="a model of classes from what was painted")
     learning.add_argument("project", type=Path, metavar="PROJECT")
     learning.add_argument("--json", action="store_true")

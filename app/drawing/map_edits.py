@@ -20,6 +20,12 @@ from processing.map.drafting.measuring import Width, width_between
 from processing.map.feature import Feature, Status, Vertex, new_feature_id
 from processing.map.routes.numbering import number_along_routes
 from processing.map.routes.route import routes_of
+from processing.operations.map_steps import (
+    ALL_NUMBERED,
+    NO_CENTRE_LINE,
+    NUMBER_LABEL,
+    NUMBERED,
+)
 from widgets.mouse_tools.drawing.measure import KEEP, MEASUREMENT, NO_SUCH_KIND
 from widgets.mouse_tools.removal import removal_of
 
@@ -34,19 +40,6 @@ WIDTH = Text(
     "幅 平均{mean:.3f} m（最小{least:.3f} m、最大{greatest:.3f} m）",
 )
 _FEWEST_OF_RING = 3
-_NO_CENTRE_LINE = Text(
-    "Draw the road's centre line first and give it its route.",
-    "先に道路中心線を描き、路線名を記入してください。",
-)
-_ALL_NUMBERED = Text(
-    "All that ledgers list along the centre lines is filled in.",
-    "中心線沿いの台帳の地物は、すべて記入済みです。",
-)
-_NUMBER = Text("Number {count} features along the route", "{count}個の地物に測点・番号を記入")
-_NUMBERED = Text(
-    "Number, route, station and side filled in for {count} features.",
-    "{count}個の地物に整理番号・路線名・測点・左右を記入しました。",
-)
 _NO_PASTE = Text("There is nothing to paste.", "貼り付けるものがありません。")
 
 
@@ -131,15 +124,15 @@ class MapEdits:
         document = self._document
         features, catalogue = tuple(document.features()), document.catalogue()
         if not routes_of(features, catalogue):
-            document.reported.emit(_NO_CENTRE_LINE)
+            document.reported.emit(NO_CENTRE_LINE)
             return
         change = number_along_routes(features, catalogue)
         if change.is_empty:
-            document.reported.emit(_ALL_NUMBERED)
+            document.reported.emit(ALL_NUMBERED)
             return
         count = len(change.replaced)
-        document.apply(_NUMBER.filled(count=f"{count:,}"), change)
-        document.reported.emit(_NUMBERED.filled(count=f"{count:,}"))
+        document.apply(NUMBER_LABEL.filled(count=f"{count:,}"), change)
+        document.reported.emit(NUMBERED.filled(count=f"{count:,}"))
 
     def copy(self) -> None:
         """Put what is chosen on the clipboard, for this or any other project."""

@@ -19,11 +19,16 @@ from processing.core.text import Text
 from processing.operations.extraction import ExtractOperation, extract
 from processing.operations.import_files import ImportOperation, import_files
 from processing.operations.learn import LearnOperation, learn_in_project
+from processing.operations.map_steps import (
+    NumberOperation,
+    UndoOperation,
+    number_features,
+    undo_step,
+)
 from processing.operations.project_export import ExportOperation, export_project
 from processing.operations.project_volumes import KeepVolumeOperation, keep_volume
 from processing.operations.run import RunOperation, run_operation
 from processing.operations.score import ScoreOperation, score_result
-from processing.operations.undo import UndoOperation, undo_step
 from processing.operations.volume import VolumeOperation, compare_grounds
 from processing.operations.written_values import (
     json_text,
@@ -65,6 +70,7 @@ OPERATIONS: Kinds = {
         OperationKind("run", RunOperation, run_operation),
         OperationKind("extract", ExtractOperation, extract),
         OperationKind("learn", LearnOperation, learn_in_project),
+        OperationKind("number", NumberOperation, number_features),
         OperationKind("undo", UndoOperation, undo_step),
         OperationKind("export", ExportOperation, export_project),
         OperationKind("score", ScoreOperation, score_result),

@@ -23,6 +23,7 @@ from processing.core.monitor import SilentMonitor
 from processing.map.feature import Feature, Status
 from processing.operations.export import ExportRequest
 from processing.operations.inputs import OperationInputs
+from processing.operations.map_steps import UndoneStep, UndoOperation
 from processing.operations.operation_files import perform, read_operation, write_operation
 from processing.operations.project_volumes import (
     KeepVolumeOperation,
@@ -31,7 +32,6 @@ from processing.operations.project_volumes import (
     store_volume,
 )
 from processing.operations.run import RunOperation, operation_on_drive
-from processing.operations.undo import UndoneStep, UndoOperation
 from processing.operations.volume import VolumeOperation
 from processing.operations.volume_sides import VolumeSide
 from processing.project.importing.dropped_files import request_of_files

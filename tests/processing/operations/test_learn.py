@@ -22,8 +22,8 @@ from processing.methods.classes.class_models import shipped_models
 from processing.operations.import_files import ImportOperation, import_files
 from processing.operations.inputs import OperationInputs
 from processing.operations.learn import LearnOperation, LearntModel, learn_in_project
+from processing.operations.map_steps import UndoOperation, undo_step
 from processing.operations.run import RunOperation, run_operation
-from processing.operations.undo import UndoOperation, undo_step
 from processing.project.importing.import_request import ImportRequest
 from processing.project.own_models import newest_model
 from processing.project.project import Project

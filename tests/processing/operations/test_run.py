@@ -16,8 +16,8 @@ from processing.core.text import Text
 from processing.map.feature import Status
 from processing.operations.import_files import ImportOperation, import_files
 from processing.operations.inputs import OperationInputs, inputs_of_paths
+from processing.operations.map_steps import UndoOperation, undo_step
 from processing.operations.run import RunOperation, run_operation
-from processing.operations.undo import UndoOperation, undo_step
 from processing.project.importing.import_request import ImportRequest
 from processing.project.project import Project
 from processing.recording.drive import Drive

@@ -18,6 +18,7 @@ from processing.methods.earthwork.volumes.volume_parameters import VolumeParamet
 from processing.operations.export import ExportRequest
 from processing.operations.import_files import ImportOperation
 from processing.operations.inputs import OperationInputs
+from processing.operations.map_steps import NumberOperation, UndoOperation
 from processing.operations.operation_files import (
     operation_from_text,
     operation_text,
@@ -27,7 +28,6 @@ from processing.operations.operation_files import (
 from processing.operations.project_export import ExportOperation
 from processing.operations.run import RunOperation
 from processing.operations.score import ScoreOperation
-from processing.operations.undo import UndoOperation
 from processing.operations.volume import VolumeOperation
 from processing.operations.volume_sides import VolumeSide
 from processing.project.importing.import_request import ImportRequest
@@ -134,7 +134,8 @@ volumes = st.builds(
     st.sampled_from(["en", "ja"]),
 )
 undos = st.builds(UndoOperation, paths)
-operations = st.one_of(runs, imports, exports, scores, volumes, simulations, undos)
+numberings = st.builds(NumberOperation, paths)
+operations = st.one_of(runs, imports, exports, scores, volumes, simulations, undos, numberings)
 
 
 @given(operations, st.booleans())

@@ -23,9 +23,9 @@ from processing.methods.earthwork.volumes.volume_result import VolumeResult, Vol
 from processing.methods.ground.filters.cells import CellGrid
 from processing.operations.finished_runs import finish_run, with_photos
 from processing.operations.import_files import ImportOperation, import_files
+from processing.operations.map_steps import UndoneStep, UndoOperation, undo_step
 from processing.operations.project_volumes import MadeVolume, remove_volume, store_volume
 from processing.operations.store import store_prepared, store_run
-from processing.operations.undo import UndoneStep, UndoOperation, undo_step
 from processing.project.additions import bring_in, home_of, take_over
 from processing.project.importing.import_request import ImportRequest
 from processing.project.photos import photo_of
