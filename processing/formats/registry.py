@@ -173,6 +173,7 @@ _VECTOR_FORMATS = (
         writes={Content.FEATURES: f"{_VECTORS}.geopackage:write_geopackage_features"},
         layers=f"{_VECTORS}.boundary_files:layers_of_geopackage",
         map_title=Text("GIS (GeoPackage)", "GIS（GeoPackage）"),
+        writes_map=f"{_VECTORS}.geopackage:write_geopackage_map",
     ),
     Format(
         "geojson",

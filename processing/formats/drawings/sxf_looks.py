@@ -102,8 +102,13 @@ def line_type_of(kind: FeatureKind) -> int:
     return LINE_TYPES[_TYPES[kind.line_type]]
 
 
+def pen_mm_of(kind: FeatureKind) -> float:
+    """The width of a kind's pen on a map of level 500."""
+    return _PENS_MM.get(kind.dm_code, _PEN_MM)
+
+
 def width_of(kind: FeatureKind) -> int:
     """The code of the predefined width nearest to a kind's pen."""
-    pen = _PENS_MM.get(kind.dm_code, _PEN_MM)
+    pen = pen_mm_of(kind)
     nearest = min(WIDTHS_MM, key=lambda width: abs(width - pen))
     return WIDTHS_MM.index(nearest) + 1

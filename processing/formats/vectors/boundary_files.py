@@ -188,7 +188,9 @@ def _layers_of_geopackage(path: Path) -> tuple[dict[str, list[Any]], dict[str, s
         with warnings.catch_warnings():
             # Of GDAL, about what other programs left out of the file: what counts is what it reads.
             warnings.simplefilter("ignore", RuntimeWarning)
-            for name in pyogrio.list_layers(path)[:, 0]:
+            for name, shape_type in pyogrio.list_layers(path):
+                if shape_type is None:  # a table, such as that of styles
+                    continue
                 facts, _, shapes, _ = pyogrio.raw.read(path, layer=name, columns=[])
                 parts = shapely.get_parts(shapely.force_2d(shapely.from_wkb(shapes)))
                 areas = [part for part in _flatten_parts(parts) if not part.is_empty]

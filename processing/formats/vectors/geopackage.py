@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sqlite3
 import warnings
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -16,7 +17,8 @@ from processing.core.errors import NoSpace
 from processing.core.monitor import Monitor, SilentMonitor
 from processing.core.safe_write import write_safely
 from processing.core.text import Text
-from processing.formats.map_delivery import MapDelivery
+from processing.formats.map_delivery import MapDelivery, Position
+from processing.formats.vectors.layer_styles import StyledLayer, add_layer_styles
 from processing.map.catalogue import (
     RESERVED_ATTRIBUTES,
     AttributeField,
@@ -67,24 +69,34 @@ def write_geopackage(
     UserError
         What :func:`processing.core.safe_write.write_safely` raises; `Cancelled`.
     """
-    monitor = monitor or SilentMonitor()
+    with write_safely(path, never=never) as temporary:
+        _write_layers(temporary, features, catalogue, crs, monitor or SilentMonitor())
+
+
+def _write_layers(
+    path: Path, features: Iterable[Feature], catalogue: Catalogue, crs: str, monitor: Monitor
+) -> list[StyledLayer]:
+    """Write features, a layer for each kind; gives those of the catalogue's kinds."""
     layers: dict[tuple[str, Geometry], list[Feature]] = {}
     for feature in features:
         layers.setdefault((feature.kind, feature.geometry), []).append(feature)
-    with write_safely(path, never=never) as temporary:
-        for number, ((kind, geometry), members) in enumerate(layers.items()):
-            monitor.check()
-            monitor.report(number / len(layers))
-            is_usual = kind not in catalogue or catalogue[kind].geometry is geometry
-            layer = _Layer(
-                name=_storable(kind if is_usual else f"{kind}_{geometry.value}"),
-                title=catalogue[kind].name.ja if kind in catalogue else "",
-                geometry_type=GEOMETRY_TYPES[geometry],
-                fields=catalogue[kind].attributes if kind in catalogue else (),
-            )
-            _write_layer(temporary, layer, members, crs)
-        if not layers:  # a GeoPackage without any layer is none
-            _write_layer(temporary, _Layer("features", "", "Unknown", ()), (), crs)
+    styled: list[StyledLayer] = []
+    for number, ((kind, geometry), members) in enumerate(layers.items()):
+        monitor.check()
+        monitor.report(number / len(layers))
+        is_usual = kind not in catalogue or catalogue[kind].geometry is geometry
+        layer = _Layer(
+            name=_storable(kind if is_usual else f"{kind}_{geometry.value}"),
+            title=catalogue[kind].name.ja if kind in catalogue else "",
+            geometry_type=GEOMETRY_TYPES[geometry],
+            fields=catalogue[kind].attributes if kind in catalogue else (),
+        )
+        columns = _write_layer(path, layer, members, crs)
+        if kind in catalogue:
+            styled.append(StyledLayer(layer.name, catalogue[kind], geometry, columns))
+    if not layers:  # a GeoPackage without any layer is none
+        _write_layer(path, _Layer("features", "", "Unknown", ()), (), crs)
+    return styled
 
 
 def write_geopackage_features(
@@ -101,6 +113,23 @@ def write_geopackage_features(
     )
 
 
+def write_geopackage_map(delivery: MapDelivery, position: Position, monitor: Monitor) -> None:
+    """Write a map that is handed in, as :func:`write_geopackage`, with styles for QGIS.
+
+    Raises
+    ------
+    NoSpace, Cancelled
+    """
+    with write_safely(position(f"{delivery.name}.gpkg")) as temporary:
+        layers = _write_layers(
+            temporary, delivery.features, delivery.catalogue, delivery.crs, monitor
+        )
+        try:
+            add_layer_styles(temporary, layers)
+        except sqlite3.Error as error:
+            raise _make_refusal(temporary, error) from error
+
+
 @dataclass(frozen=True)
 class _Layer:
     """A layer of the file: its name, what it is called, its shape, its attributes."""
@@ -111,7 +140,10 @@ class _Layer:
     fields: tuple[AttributeField, ...]
 
 
-def _write_layer(path: Path, layer: _Layer, features: Sequence[Feature], crs: str) -> None:
+def _write_layer(
+    path: Path, layer: _Layer, features: Sequence[Feature], crs: str
+) -> tuple[str, ...]:
+    """Write a layer; gives the names of its columns."""
     import pyogrio.raw
     from pyogrio.errors import DataLayerError, DataSourceError
 
@@ -135,9 +167,10 @@ def _write_layer(path: Path, layer: _Layer, features: Sequence[Feature], crs: st
             )
         except (DataLayerError, DataSourceError) as error:
             raise _make_refusal(path, error) from error
+    return tuple(columns)
 
 
-def _make_refusal(path: Path, error: RuntimeError) -> NoSpace:
+def _make_refusal(path: Path, error: Exception) -> NoSpace:
     # Before its reason the library quotes pages of what it wanted to do.
     reason = " ".join(str(error).rsplit("failed: ", 1)[-1].split()).rstrip(".")
     return NoSpace(

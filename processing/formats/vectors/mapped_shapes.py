@@ -102,7 +102,9 @@ def read_geopackage_features(path: Path) -> MappedFile:
     features: list[MappedFeature] = []
     systems: set[str] = set()
     try:
-        for layer in pyogrio.list_layers(path)[:, 0]:
+        for layer, shape_type in pyogrio.list_layers(path):
+            if shape_type is None:  # a table, such as that of styles
+                continue
             reported, _, shapes, columns = pyogrio.raw.read(path, layer=layer)
             systems.add(reported["crs"] or "")
             rows = zip(shapes, *columns, strict=True)
