@@ -107,7 +107,8 @@ def export(
     OutOfRange
         No such format, option or reference system; a number or character that can't be written.
     Unsuitable
-        A feature with too few vertices, of a kind the catalogue lacks, or that a format can't hold.
+        A feature with too few vertices, of a kind the catalogue lacks, or that a format can't hold;
+        nothing that any of the formats has a place for.
     MissingInput, InUse, NoSpace, BadFile, Cancelled
         A format needs a reference system; what stands against writing. Nothing was written.
     """
@@ -186,7 +187,24 @@ def _write(
             copy = position(name)
             with report_as_user_error(picture):
                 shutil.copyfile(picture, copy)
+    if not paths and all(Content.FEATURES in one.writes for one in chosen):
+        raise _nothing_to_write(chosen)
     return tuple(paths)
+
+
+def _nothing_to_write(chosen: Sequence[Format]) -> Unsuitable:
+    names = [one.name for one in chosen]
+    return Unsuitable(
+        Text(
+            "The map has nothing that such a file can hold.",
+            "この形式で書き出せる地物がありません。",
+        ),
+        Text(", ".join(one.en for one in names), "、".join(one.ja for one in names)),
+        Text(
+            "Accept or draw features first; nothing was written.",
+            "先に地物を採用または作図してください。何も書き込まれていません。",
+        ),
+    )
 
 
 def _is_wanted(feature: Feature, request: ExportRequest) -> bool:

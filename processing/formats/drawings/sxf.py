@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from datetime import datetime
 from itertools import pairwise
 
 from processing.core.errors import Unsuitable
 from processing.core.monitor import Monitor
 from processing.core.text import Text
+from processing.formats.accepted_features import accepted_features
 from processing.formats.drawings.dxf_labels import LABEL_HEIGHT_M, Label, label_of
 from processing.formats.drawings.sxf_drawing import (
     PAPERS_MM,
@@ -53,6 +55,8 @@ _CHECK_EVERY = 64  # features
 def write_sxf_map(delivery: MapDelivery, position: Position, monitor: Monitor) -> None:
     """Write a map that is handed in as one sheet, in both forms; plan, without heights.
 
+    Candidates are left out, which is told.
+
     The smallest paper that holds it at 1:500, else A0 at the largest usual scale.
 
     Raises
@@ -65,11 +69,12 @@ def write_sxf_map(delivery: MapDelivery, position: Position, monitor: Monitor) -
     SXF level 2, feature and AP202 forms of version 3.0; CAD製図基準 for layers and margins.
     """
     texts = ShiftJisText()
-    drawing, origin = _sheet_of(delivery, texts)
-    for number, feature in enumerate(delivery.features):
+    features = accepted_features(delivery, Text("SXF drawing", "SXF"))
+    drawing, origin = _sheet_of(delivery, features, texts)
+    for number, feature in enumerate(features):
         if number % _CHECK_EVERY == 0:
             monitor.check()
-            monitor.report(number / len(delivery.features) / 2)
+            monitor.report(number / len(features) / 2)
         kind = delivery.catalogue[feature.kind]
         _draw(drawing, kind, feature, origin)
         label = label_of(kind, feature)
@@ -85,9 +90,11 @@ def write_sxf_map(delivery: MapDelivery, position: Position, monitor: Monitor) -
         delivery.tell(note)
 
 
-def _sheet_of(delivery: MapDelivery, texts: ShiftJisText) -> tuple[SxfDrawing, Place]:
+def _sheet_of(
+    delivery: MapDelivery, features: Sequence[Feature], texts: ShiftJisText
+) -> tuple[SxfDrawing, Place]:
     """An empty sheet for a map with its frame and title; the map's origin, m."""
-    xy = [vertex.xyz[:2] for feature in delivery.features for vertex in feature.vertices]
+    xy = [vertex.xyz[:2] for feature in features for vertex in feature.vertices]
     xy = xy or [(0.0, 0.0)]
     low = tuple(min(one[axis] for one in xy) for axis in (0, 1))
     size = tuple(max(one[axis] for one in xy) - low[axis] for axis in (0, 1))

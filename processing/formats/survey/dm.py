@@ -9,26 +9,34 @@ from __future__ import annotations
 from collections import Counter
 from datetime import datetime
 
-from processing.core.errors import Unsuitable
 from processing.core.monitor import Monitor
 from processing.core.text import Text
+from processing.formats.accepted_features import accepted_features
 from processing.formats.map_delivery import DmOptions, MapDelivery, Position
 from processing.formats.shift_jis import ShiftJisText
 from processing.formats.survey.dm_elements import elements_of
 from processing.formats.survey.dm_records import DmElement, DmFacts, sheet_records
 from processing.formats.survey.map_sheets import MapSheet, zone_for_sheets
 
+NAME = Text("extended DM", "拡張DM")
+_NO_SHEET = Text(
+    "No sheet of the extended DM was written: no accepted feature has a code there.",
+    "拡張DMの分類コードを持つ採用済みの地物がないため、図郭は作成されていません。",
+)
 _CHECK_EVERY = 64  # features
 
 
 def write_dm_map(delivery: MapDelivery, position: Position, monitor: Monitor) -> None:
-    """Write a map that is handed in as sheets; kinds without a code are left out and told.
+    """Write a map that is handed in as sheets; what it can't hold is left out and told.
+
+    Kinds without a code, and candidates, have no place in it; where nothing is left there is no
+    sheet.
 
     Raises
     ------
     Unsuitable
-        The reference system is no plane rectangular one of Japan; no feature has a code; an
-        element has too many vertices.
+        The reference system is no plane rectangular one of Japan; an element has too many
+        vertices.
     OutOfRange
         A place that no sheet of the zone has; a height of more digits than its field.
 
@@ -40,10 +48,11 @@ def write_dm_map(delivery: MapDelivery, position: Position, monitor: Monitor) ->
     texts = ShiftJisText()
     sheets: dict[MapSheet, list[DmElement]] = {}
     without: Counter[str] = Counter()
-    for number, feature in enumerate(delivery.features):
+    features = accepted_features(delivery, NAME)
+    for number, feature in enumerate(features):
         if number % _CHECK_EVERY == 0:
             monitor.check()
-            monitor.report(number / len(delivery.features))
+            monitor.report(number / len(features))
         kind = delivery.catalogue[feature.kind]
         if not kind.dm_code:
             without[kind.id] += 1
@@ -51,7 +60,7 @@ def write_dm_map(delivery: MapDelivery, position: Position, monitor: Monitor) ->
         for sheet, element in elements_of(zone, kind, feature, texts):
             sheets.setdefault(sheet, []).append(element)
     if not sheets:
-        raise _empty()
+        delivery.tell(_NO_SHEET)
     facts = _facts(delivery, texts)
     for sheet in sorted(sheets):
         monitor.check()
@@ -89,17 +98,3 @@ def _tell(delivery: MapDelivery, without: Counter[str], texts: ShiftJisText) -> 
         )
     for note in texts.notes:
         delivery.tell(note)
-
-
-def _empty() -> Unsuitable:
-    return Unsuitable(
-        Text(
-            "The map has no feature with a code of the extended DM, so there is no sheet.",
-            "拡張DMの分類コードを持つ地物がないため、図郭を作成できません。",
-        ),
-        Text("extended DM", "拡張DM"),
-        Text(
-            "Accept or draw features first; nothing was written.",
-            "先に地物を採用または作図してください。何も書き込まれていません。",
-        ),
-    )

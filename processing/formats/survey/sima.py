@@ -14,6 +14,7 @@ from pathlib import Path
 from processing.core.monitor import Monitor
 from processing.core.safe_write import write_safely
 from processing.core.text import Text
+from processing.formats.accepted_features import accepted_features
 from processing.formats.map_delivery import MapDelivery
 from processing.formats.shift_jis import ShiftJisText
 from processing.map.catalogue import FeatureKind, Geometry
@@ -34,7 +35,7 @@ _CHECK_EVERY = 256  # features
 def write_sima_features(
     path: Path, delivery: MapDelivery, monitor: Monitor, *, never: Iterable[Path] = ()
 ) -> None:
-    """Write a map's points, and its areas as parcels with a point at each corner.
+    """Write a map's accepted points, and its areas as parcels with a point at each corner.
 
     Corners at one place, to the millimetre, are one point. Names are the features' numbers or
     names, else the kind's with a number; no two are the same.
@@ -52,10 +53,11 @@ def write_sima_features(
     texts = ShiftJisText()
     table = _PointTable(texts)
     left_out: Counter[str] = Counter()
-    for number, feature in enumerate(delivery.features):
+    features = accepted_features(delivery, Text("SIMA file", "SIMA"))
+    for number, feature in enumerate(features):
         if number % _CHECK_EVERY == 0:
             monitor.check()
-            monitor.report(number / len(delivery.features))
+            monitor.report(number / len(features))
         kind = delivery.catalogue[feature.kind]
         match feature.geometry:
             case Geometry.POINT:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,7 @@ from processing.core.text import Text
 from processing.formats.survey.map_sheets import MapSheet, sheet_at
 from processing.map.catalogue import Catalogue, Geometry
 from processing.map.catalogue_file import read_catalogue
-from processing.map.feature import Feature, Position, Vertex
+from processing.map.feature import Feature, Position, Status, Vertex
 from processing.operations.export import ExportRequest, export
 from resources import path_of
 from tests.processing.formats.survey.dm_reader import ReadSheet, read_dm
@@ -194,3 +195,33 @@ def test_what_no_sheet_can_hold_is_refused_and_nothing_is_written(
             _written(tmp_path / "out", catalogue, *features, crs=crs)
         assert "\n" not in error.value.line("ja")
         assert not list((tmp_path / "out").glob("*"))
+
+
+def test_a_map_without_codes_leaves_other_formats_their_files(
+    tmp_path: Path, catalogue: Catalogue
+) -> None:
+    wire = _feature("wire", Geometry.LINE, _FOOT, (-7880.0, -36050.0, 18.0))
+    notes: list[Text] = []
+    request = ExportRequest(("dm", "geojson"), tmp_path)
+    paths = export((wire,), catalogue, _ZONE_9, request, tell=notes.append)
+    assert [path.suffix for path in paths] == [".geojson"]
+    assert [one.en for one in notes] == [
+        "No sheet of the extended DM was written: no accepted feature has a code there.",
+        "Not in the extended DM, which has no code for them: Wire (1).",
+    ]
+
+
+def test_candidates_are_in_no_format_that_can_not_mark_them(
+    tmp_path: Path, catalogue: Catalogue
+) -> None:
+    edge = _feature("road_edge", Geometry.LINE, _FOOT, (-7880.0, -36050.0, 12.0))
+    doubted = replace(edge, id="doubted", status=Status.CANDIDATE)
+    for format_ in ("dm", "sima", "sxf"):
+        contents = []
+        for number, features in enumerate(((edge,), (edge, doubted))):
+            folder, notes = tmp_path / f"{format_}{number}", list[Text]()
+            request = ExportRequest((format_,), folder, candidates=True)
+            paths = export(features, catalogue, _ZONE_9, request, tell=notes.append)
+            assert sum("candidates: 1 " in one.en for one in notes) == number
+            contents.append([path.stat().st_size for path in paths])
+        assert contents[0] == contents[1]
