@@ -128,6 +128,14 @@ def _add_working_commands(commands: _Commands[_Parser]) -> None:
     numbering = commands.add_parser("number", help="number what ledgers list along the routes")
     numbering.add_argument("project", type=Path, metavar="PROJECT")
     numbering.set_defaults(module="maps.number")
+    taking = commands.add_parser("map", help="take an existing map into a project")
+    taking.add_argument("project", type=Path, metavar="PROJECT")
+    taking.add_argument("file", type=Path, metavar="FILE")
+    taking.add_argument(
+        "--crs", default="", metavar="EPSG:n", help="where the file does not say it"
+    )
+    taking.add_argument("--kind", default="", metavar="KIND", help="of what says no known kind")
+    taking.set_defaults(module="maps.take")
     learning = commands.add_parser("learn", help="a model of classes from what was painted")
     learning.add_argument("project", type=Path, metavar="PROJECT")
     learning.add_argument("--json", action="store_true")

@@ -139,7 +139,11 @@ _VECTOR_FORMATS = (
         "dxf",
         Text.same("DXF"),
         (".dxf",),
-        reads={Content.AREAS: f"{_VECTORS}.boundary_files:areas_of_dxf", Content.LINES: _LINES},
+        reads={
+            Content.FEATURES: f"{_DRAWINGS}.drawn_features:read_dxf_features",
+            Content.AREAS: f"{_VECTORS}.boundary_files:areas_of_dxf",
+            Content.LINES: _LINES,
+        },
         writes={
             Content.FEATURES: f"{_DRAWINGS}.dxf:write_dxf_features",
             Content.DRAWING: BY_MAKER,
@@ -294,6 +298,7 @@ _SURVEY_FORMATS = (
         "sima",
         Text.same("SIMA"),
         (".sim",),
+        reads={Content.FEATURES: f"{_SURVEY}.sima_reading:read_sima_features"},
         writes={Content.FEATURES: f"{_SURVEY}.sima:write_sima_features"},
         map_title=Text("Points and parcels (SIMA)", "座標・区画（SIMA）"),
         has_attributes=False,

@@ -1,16 +1,21 @@
-"""Steps of a project's map: its ledgers numbered along the routes, the last step taken back."""
+"""Steps of a project's map: a delivered map taken in, ledgers numbered, the last step undone."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
-from processing.core.errors import UNCHANGED, MissingInput
+from processing.core.errors import UNCHANGED, MissingInput, OutOfRange
 from processing.core.monitor import Monitor
 from processing.core.text import Text
+from processing.formats.vectors.delivered_maps import features_of_map
+from processing.formats.vectors.mapped_shapes import read_mapped
+from processing.map.change import Change
+from processing.map.reference_system import reference_system
 from processing.map.routes.numbering import number_along_routes
 from processing.map.routes.route import routes_of
 from processing.operations.inputs import opened_project
+from processing.scoring.features.mapped_features import IN_DEGREES, MappedFile
 
 NO_CENTRE_LINE = Text(
     "Draw the road's centre line first and give it its route.",
@@ -25,6 +30,8 @@ NUMBERED = Text(
     "Number, route, station and side filled in for {count} features.",
     "{count}個の地物に整理番号・路線名・測点・左右を記入しました。",
 )
+_TAKE_LABEL = Text("Take in {count} features of {file}", "{file}から{count}個の地物を取り込み")
+_TAKEN = Text("{count} features taken in.", "{count}個の地物を取り込みました。")
 _UNDONE = Text("Undone: {label}", "元に戻しました: {label}")
 _NOTHING = Text("There is nothing to undo.", "元に戻す操作はありません。")
 
@@ -127,3 +134,102 @@ def undo_step(operation: UndoOperation, monitor: Monitor) -> UndoneStep:
         monitor.check()
         label = project.history.undo_label
         return UndoneStep(None if project.features.undo() is None else label)
+
+
+@dataclass(frozen=True)
+class TakeMapOperation:
+    """A map that was delivered before, to become features of a project.
+
+    Attributes
+    ----------
+    project : Path
+    path : Path
+        DXF, GeoPackage, GeoJSON or SIMA.
+    crs : str
+        ``EPSG:n`` of a file that doesn't say it; empty where it does.
+    of_kind : str
+        What things become that say no kind the catalogue knows; empty: they are left out.
+    """
+
+    project: Path
+    path: Path
+    crs: str = ""
+    of_kind: str = ""
+
+
+@dataclass(frozen=True)
+class TakenMap:
+    """How many features were added, and what has to be known about them."""
+
+    count: int
+    notes: tuple[Text, ...]
+
+    @property
+    def words(self) -> tuple[Text, ...]:
+        """A line for what was added, and one for each note."""
+        return (_TAKEN.filled(count=f"{self.count:,}"), *self.notes)
+
+
+def take_map(operation: TakeMapOperation, monitor: Monitor) -> TakenMap:
+    """Add the features of a delivered map to a project, as one step to be undone.
+
+    Raises
+    ------
+    MissingInput
+        Neither the file nor the operation says its reference system; the project has none.
+    OutOfRange
+        The file says another system than the operation; there is no such system or kind.
+    Unsuitable, BadFile, InUse, NoSpace, Cancelled
+        The project is as it was.
+    """
+    mapped = read_mapped(operation.path)
+    monitor.check()
+    with opened_project(operation.project, writing=True) as project:
+        mapped = replace(mapped, crs=_system_of(mapped, operation, project.crs))
+        read = features_of_map(
+            mapped,
+            project.catalogue,
+            crs=project.crs,
+            known=frozenset(one.id for one in project.features.all()),
+            kind=operation.of_kind,
+        )
+        monitor.check()
+        if read.features:
+            label = _TAKE_LABEL.filled(count=f"{len(read.features):,}", file=operation.path.name)
+            project.features.apply(label, Change(added=read.features))
+        return TakenMap(len(read.features), read.notes)
+
+
+def _system_of(mapped: MappedFile, operation: TakeMapOperation, own: str) -> str:
+    """The reference system of a map: as the file says, else as was given."""
+    given = reference_system(operation.crs) if operation.crs else ""
+    said = "" if mapped.crs == IN_DEGREES and given else mapped.crs
+    if said and given and said != given:
+        raise OutOfRange(
+            Text(
+                f"The file says {said}, not {given}.",
+                f"ファイルの座標参照系は{said}です（{given}ではありません）。",
+            ),
+            Text.same(str(operation.path)),
+            Text("Leave --crs out.", "--crsを省略してください。"),
+        )
+    if not own or not (said or given):
+        what = Text(
+            "The project has no reference system.", "プロジェクトの座標参照系が未設定です。"
+        )
+        if own:
+            what = Text(
+                "The file does not say its reference system.",
+                "ファイルに座標参照系の記載がありません。",
+            )
+        raise MissingInput(
+            what,
+            Text.same(str(operation.path if own else operation.project)),
+            Text(
+                "Give it with --crs, for instance --crs EPSG:6677. {unchanged}",
+                "--crs EPSG:6677のように指定してください。{unchanged}",
+            ).filled(unchanged=UNCHANGED)
+            if own
+            else Text("Set it in the project first.", "先にプロジェクトで設定してください。"),
+        )
+    return said or given

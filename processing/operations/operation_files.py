@@ -21,8 +21,10 @@ from processing.operations.import_files import ImportOperation, import_files
 from processing.operations.learn import LearnOperation, learn_in_project
 from processing.operations.map_steps import (
     NumberOperation,
+    TakeMapOperation,
     UndoOperation,
     number_features,
+    take_map,
     undo_step,
 )
 from processing.operations.project_export import ExportOperation, export_project
@@ -71,6 +73,7 @@ OPERATIONS: Kinds = {
         OperationKind("extract", ExtractOperation, extract),
         OperationKind("learn", LearnOperation, learn_in_project),
         OperationKind("number", NumberOperation, number_features),
+        OperationKind("take-map", TakeMapOperation, take_map),
         OperationKind("undo", UndoOperation, undo_step),
         OperationKind("export", ExportOperation, export_project),
         OperationKind("score", ScoreOperation, score_result),

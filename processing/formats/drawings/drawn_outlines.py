@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -50,21 +52,33 @@ def outlines_of_dxf(path: Path) -> DrawnOutlines:
     MissingInput, NoSpace, BadFile
         It can't be read, or is no DXF.
     """
+    found: dict[str, list[NDArray[np.float64]]] = {}
+    with opened_drawing(path) as drawing:
+        for entity in drawing.modelspace().query("LWPOLYLINE POLYLINE"):
+            outline = _outline(entity)
+            if outline is not None:
+                found.setdefault(entity.dxf.layer, []).append(outline)
+        return DrawnOutlines(found, system_of_drawing(drawing))
+
+
+@contextmanager
+def opened_drawing(path: Path) -> Iterator[Any]:  # an ezdxf drawing; ezdxf is not typed here
+    """A drawing to be read in the body.
+
+    Raises
+    ------
+    MissingInput, NoSpace, BadFile
+        It can't be read, or is no DXF; damage that only the body meets too.
+    """
     from ezdxf.filemanagement import readfile
     from ezdxf.lldxf.const import DXFError
 
     with report_as_user_error(path), path.open("rb"):
         pass  # the library takes a missing file for a damaged one
-    found: dict[str, list[NDArray[np.float64]]] = {}
     # What the library mends by itself is no line on a terminal.
     logging.getLogger("ezdxf").addHandler(_SILENT)
     try:
-        drawing = readfile(path)
-        for entity in drawing.modelspace().query("LWPOLYLINE POLYLINE"):
-            outline = _outline(entity)
-            if outline is not None:
-                found.setdefault(entity.dxf.layer, []).append(outline)
-        return DrawnOutlines(found, _system(drawing))
+        yield readfile(path)
     # Damage comes out of the library as whatever it stumbles over.
     except (
         DXFError,
@@ -80,13 +94,14 @@ def outlines_of_dxf(path: Path) -> DrawnOutlines:
             Text("The file is no DXF drawing, or is damaged.", "DXFではないか、壊れています。"),
             Text.same(str(path)),
             Text(
-                "Save the boundary as DXF once more, or give it as GeoJSON.",
-                "境界をDXFで保存し直すか、GeoJSONで指定してください。",
+                "Save the drawing as DXF once more, or give it as GeoJSON.",
+                "DXFで保存し直すか、GeoJSONで指定してください。",
             ),
         ) from error
 
 
-def _system(drawing: Any) -> str:  # an ezdxf drawing; ezdxf is not typed here
+def system_of_drawing(drawing: Any) -> str:  # as of opened_drawing
+    """``EPSG:n`` that a drawing of this program names; empty for others."""
     layer = drawing.layers.get("0")
     reported = [value for _, value in layer.get_xdata(APP_ID)] if layer.has_xdata(APP_ID) else []
     return next((str(value) for value in reported if str(value).startswith("EPSG:")), "")

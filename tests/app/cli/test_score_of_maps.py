@@ -125,7 +125,7 @@ def test_files_that_do_not_fit_are_refused_in_one_line(
     line = [("LineString", [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]], {"kind": "tree"})]
     wrong = write_map(tmp_path / "wrong.geojson", line)
     assert "a line, not a point" in refused(capsys, "trees", wrong, truth)
-    assert "GeoPackage, GeoJSON" in refused(capsys, "trees", tmp_path / "a.dxf", truth)
+    assert "GeoPackage, GeoJSON" in refused(capsys, "trees", tmp_path / "a.csv", truth)
     assert "no such file" in refused(capsys, "trees", tmp_path / "none.geojson", truth)
     (tmp_path / "text.geojson").write_text("not JSON", "utf-8")
     assert "no GeoJSON" in refused(capsys, "trees", truth, tmp_path / "text.geojson")

@@ -130,7 +130,8 @@ def test_files_of_other_kinds_are_refused(tmp_path: Path) -> None:
         ("a.gpkg", BadFile),
         ("none.gpkg", MissingInput),
         ("none.geojson", MissingInput),
-        ("a.dxf", OutOfRange),
+        ("a.dxf", MissingInput),
+        ("a.dm", OutOfRange),
         ("a.csv", OutOfRange),
     ]
     for name, error in expected:
