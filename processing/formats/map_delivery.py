@@ -13,6 +13,7 @@ from processing.core.parameters import (
     ParameterValue,
     choice,
     count,
+    file,
     fill_parameters,
     parameters_of,
     text,
@@ -114,6 +115,24 @@ class DmOptions:
     )
     dm_company: str = text(name=Text("Survey company (DM)", "測量会社名（DM）"))
     dm_approval: str = text(name=Text("Approval number (DM)", "公共測量の承認番号（DM）"))
+
+
+@dataclass(frozen=True)
+class QualityOptions:
+    """What can be chosen for the quality report."""
+
+    check_points: str = file(
+        name=Text("Check points (quality report)", "検証点（品質評価表）"),
+        explanation=Text(
+            "CSV with the columns id, easting_m, northing_m and, if known, height_m and kind.",
+            "id・easting_m・northing_m（必要に応じてheight_m・kind）の列をもつCSVです。",
+        ),
+    )
+    map_level: str = choice(
+        "500",
+        choices=tuple(ParameterChoice(one, Text.same(one)) for one in ("250", "500", "1000")),
+        name=Text("Map level of the check", "検証する地図情報レベル"),
+    )
 
 
 def tell_nobody(_note: Text) -> None:

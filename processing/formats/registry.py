@@ -12,6 +12,7 @@ from processing.formats.format_list import FormatList
 from processing.formats.map_delivery import (
     DmOptions,
     DxfOptions,
+    QualityOptions,
     ShapefileOptions,
     TableOptions,
     WorkbookOptions,
@@ -248,6 +249,7 @@ _OTHER_FORMATS = (
         (),
         map_title=Text("Quality report (PDF, HTML, JSON)", "品質評価表（PDF・HTML・JSON）"),
         writes_map="processing.formats.reports.quality.quality_report:write_quality_map",
+        options=QualityOptions,
         has_attributes=False,
     ),
     Format(

@@ -72,7 +72,8 @@ def test_what_a_map_can_be_written_as_can_be_chosen() -> None:
     for one in FORMATS.maps():
         assert one.writes_map or one.writes[Content.FEATURES]
     assert [option.id for option in FORMATS.map_options()] == [
-        "dxf_version", "digits", "encoding", "dm_accuracy", "dm_company", "dm_approval"
+        "dxf_version", "digits", "encoding", "dm_accuracy", "dm_company", "dm_approval",
+        "check_points", "map_level",
     ]  # fmt: skip
 
 

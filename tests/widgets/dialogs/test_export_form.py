@@ -45,6 +45,8 @@ def test_what_is_chosen_is_asked_for(qtbot: QtBot, tmp_path: Path) -> None:
         "dm_accuracy": 34,
         "dm_company": "",
         "dm_approval": "",
+        "check_points": "",
+        "map_level": "500",
         "tiny_decimals": 1,
     }
     assert request.options == expected

@@ -8,19 +8,25 @@ from pathlib import Path
 
 from processing.core.text import Language, Text
 from processing.formats.reports.quality.quality_rows import (
+    ACCURACY_COLUMNS,
     FINDING_COLUMNS,
     FINDINGS_TITLE,
     KIND_COLUMNS,
     KINDS_TITLE,
     NO_FINDINGS,
+    POINT_COLUMNS,
+    POINTS_TITLE,
     RULE_COLUMNS,
     RULES_TITLE,
     TITLE,
     QualityFacts,
+    accuracy_rows,
+    accuracy_title,
     finding_rows,
     in_language,
     is_number,
     kind_rows,
+    point_rows,
     rule_rows,
     summary_rows,
 )
@@ -44,6 +50,7 @@ def write_quality_html(path: Path, facts: QualityFacts, language: Language) -> N
         f"<title>{title}</title><style>{_STYLE}</style></head><body><h1>{title}</h1>",
         _table((), summary_rows(facts), language),
         _section(RULES_TITLE, RULE_COLUMNS, rule_rows(facts), language),
+        *_accuracy(facts, language),
         _section(KINDS_TITLE, KIND_COLUMNS, kind_rows(facts), language),
         _section(FINDINGS_TITLE, FINDING_COLUMNS, finding_rows(facts), language)
         if facts.check.findings
@@ -51,6 +58,13 @@ def write_quality_html(path: Path, facts: QualityFacts, language: Language) -> N
         f"<p><small>{escape(facts.software)}</small></p></body></html>\n",
     ]
     path.write_text("\n".join(parts), encoding="utf-8")
+
+
+def _accuracy(facts: QualityFacts, language: Language) -> Iterator[str]:
+    points = facts.points
+    if points is not None:
+        yield _section(accuracy_title(points), ACCURACY_COLUMNS, accuracy_rows(points), language)
+        yield _section(POINTS_TITLE, POINT_COLUMNS, point_rows(facts, points), language)
 
 
 def _section(

@@ -10,18 +10,24 @@ from processing.core.text import Language, Text
 from processing.formats.reports.pdf_page import A4_PORTRAIT, Paper, write_report_page
 from processing.formats.reports.pdf_table import Table, TableCell, TableRow
 from processing.formats.reports.quality.quality_rows import (
+    ACCURACY_COLUMNS,
     FINDING_COLUMNS,
     FINDINGS_TITLE,
     KIND_COLUMNS,
     KINDS_TITLE,
     NO_FINDINGS,
+    POINT_COLUMNS,
+    POINTS_TITLE,
     RULE_COLUMNS,
     RULES_TITLE,
     TITLE,
     QualityFacts,
+    accuracy_rows,
+    accuracy_title,
     finding_rows,
     is_number,
     kind_rows,
+    point_rows,
     rule_rows,
     summary_rows,
 )
@@ -31,6 +37,8 @@ _SIZE = 8.0
 _SUMMARY_MM = (70.0, 112.0)
 _RULES_MM = (48.0, 14.0, 20.0, 100.0)
 _KINDS_MM = (66.0, 24.0, 22.0, 26.0, 22.0, 22.0)
+_ACCURACY_MM = (62.0, 20.0, 26.0, 26.0, 24.0, 24.0)
+_POINTS_MM = (40.0, 52.0, 34.0, 28.0, 28.0)
 _FINDINGS_MM = (10.0, 42.0, 34.0, 31.0, 24.0, 24.0, 17.0)
 
 
@@ -53,6 +61,9 @@ def write_quality_pdf(
             paper, facts, KINDS_TITLE, _table(_KINDS_MM, KIND_COLUMNS, kind_rows(facts)), bottom
         )
         monitor.check()
+        if facts.points is not None:
+            rows = _table(_POINTS_MM, POINT_COLUMNS, point_rows(facts, facts.points))
+            _draw_over_pages(paper, facts, POINTS_TITLE, rows, bottom)
         if facts.check.findings:
             rows = _table(_FINDINGS_MM, FINDING_COLUMNS, finding_rows(facts))
             _draw_over_pages(paper, facts, FINDINGS_TITLE, rows, bottom)
@@ -73,6 +84,10 @@ def _draw_first_page(paper: Paper, facts: QualityFacts) -> None:
     y = _heading(paper, y, RULES_TITLE)
     table, rows = _table(_RULES_MM, RULE_COLUMNS, rule_rows(facts))
     y = table.draw(paper, y, rows) + _GAP_MM
+    if facts.points is not None:
+        y = _heading(paper, y, accuracy_title(facts.points))
+        table, rows = _table(_ACCURACY_MM, ACCURACY_COLUMNS, accuracy_rows(facts.points))
+        y = table.draw(paper, y, rows) + _GAP_MM
     if not facts.check.findings:
         paper.text(_MARGIN_MM, y + 3.0, NO_FINDINGS, 9.0)
 

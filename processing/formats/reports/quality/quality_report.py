@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import json
+import math
 from importlib.metadata import version
+from pathlib import Path
 from typing import Any
 
 from processing.core.monitor import Monitor
-from processing.formats.map_delivery import MapDelivery, Position
+from processing.formats.map_delivery import MapDelivery, Position, QualityOptions
+from processing.formats.reports.quality.check_point_file import read_check_points
 from processing.formats.reports.quality.quality_html import write_quality_html
 from processing.formats.reports.quality.quality_pdf import write_quality_pdf
 from processing.formats.reports.quality.quality_rows import QualityFacts
+from processing.map.quality.check_points import PointCheck, check_points
 from processing.map.quality.findings import RULES
 from processing.map.quality.map_check import MapCheck, check_map
 
@@ -20,16 +24,63 @@ def write_quality_map(delivery: MapDelivery, position: Position, monitor: Monito
 
     Raises
     ------
+    OutOfRange, MissingInput, BadFile
+        As :func:`read_check_points`.
     UserError
         What stands against writing; `Cancelled`.
     """
     check = check_map(delivery.every_feature, delivery.catalogue, monitor)
-    facts = QualityFacts(check, delivery.catalogue, delivery.crs, f"Zuka {version('zuka')}")
+    points = _checked_points(delivery)
+    facts = QualityFacts(check, delivery.catalogue, delivery.crs, f"Zuka {version('zuka')}", points)
     language = delivery.language or "en"
     write_quality_pdf(position("qa.pdf"), facts, language, monitor)
     write_quality_html(position("qa.html"), facts, language)
-    words = json.dumps(_numbers(check, delivery.crs), ensure_ascii=False, indent=1)
+    words = json.dumps(
+        {**_numbers(check, delivery.crs), **_accuracy(points)}, ensure_ascii=False, indent=1
+    )
     position("qa.json").write_text(words + "\n", encoding="utf-8")
+
+
+def _checked_points(delivery: MapDelivery) -> PointCheck | None:
+    options = delivery.options_of(QualityOptions)
+    if not options.check_points:
+        return None
+    points = read_check_points(Path(options.check_points), delivery.catalogue)
+    return check_points(points, delivery.every_feature, int(options.map_level))
+
+
+def _accuracy(points: PointCheck | None) -> dict[str, Any]:
+    if points is None:
+        return {}
+    return {
+        "check_points": {
+            "level": points.level,
+            "missing": [one.point.id for one in points.missing],
+            **{
+                name: {
+                    "count": one.count,
+                    "rmse_m": _rounded(one.rmse_m),
+                    "max_m": _rounded(one.most_m),
+                    "limit_m": one.limit_m,
+                    "passes": one.passes,
+                }
+                for name, one in (("plan", points.plan), ("height", points.height))
+            },
+            "points": [
+                {
+                    "id": one.point.id,
+                    "feature": one.feature or None,
+                    "plan_m": _rounded(one.plan_m),
+                    "height_m": _rounded(one.height_m),
+                }
+                for one in points.points
+            ],
+        }
+    }
+
+
+def _rounded(metres: float) -> float | None:
+    return None if math.isnan(metres) else round(metres, 4)
 
 
 def _numbers(check: MapCheck, crs: str) -> dict[str, Any]:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
 
 from processing.core.text import Language, Text
 from processing.map.catalogue import Catalogue
+from processing.map.quality.check_points import PointCheck
 from processing.map.quality.findings import RULES, Finding
 from processing.map.quality.map_check import MapCheck
 
@@ -35,6 +37,25 @@ FINDING_COLUMNS = (
     Text("Northing (m)", "北距 X (m)"),
     Text("Height (m)", "標高 (m)"),
 )
+ACCURACY_COLUMNS = (
+    Text("Accuracy", "精度"),
+    Text("Points", "点数"),
+    Text("RMSE (m)", "RMSE (m)"),
+    Text("Largest (m)", "最大 (m)"),
+    Text("Limit (m)", "制限値 (m)"),
+    Text("Verdict", "判定"),
+)
+POINT_COLUMNS = (
+    Text("Check point", "検証点"),
+    Text("Kind", "種別"),
+    Text("Feature", "地物"),
+    Text("In plan (m)", "水平較差 (m)"),
+    Text("Height (m)", "標高較差 (m)"),
+)
+POINTS_TITLE = Text("Check points", "検証点")
+_PLAN, _HEIGHT = Text("In plan", "水平位置"), Text("Height", "標高")
+_NOT_FOUND = Text("no vertex near", "該当なし")
+_NOT_CHECKED = Text("not checked", "未検証")
 RULES_TITLE = Text("Rules", "点検項目")
 KINDS_TITLE = Text("Kinds", "種別ごとの数量")
 FINDINGS_TITLE = Text("Findings", "指摘箇所")
@@ -64,12 +85,15 @@ class QualityFacts:
         ``EPSG:n``; empty where it is not known.
     software : str
         Name and version of the program.
+    points : PointCheck or None
+        None where no check points were given.
     """
 
     check: MapCheck
     catalogue: Catalogue
     crs: str
     software: str
+    points: PointCheck | None = None
 
     def kind_name(self, kind: str) -> Text:
         """What a kind is called."""
@@ -93,6 +117,42 @@ def rule_rows(facts: QualityFacts) -> Iterator[tuple[Text, Text, Text, Text]]:
         broken = FAILED if rule.is_error else LOOK
         remedy = rule.remedy if count else Text.same("")
         yield rule.name, Text.same(f"{count:,}"), broken if count else PASSED, remedy
+
+
+def accuracy_title(points: PointCheck) -> Text:
+    """What stands above the accuracy: the level, and points that were not found."""
+    title = Text(
+        "Accuracy at check points, map level {level} (作業規程の準則 第80条)",
+        "検証点による精度（地図情報レベル{level}、作業規程の準則 第80条）",
+    ).filled(level=points.level)
+    if not points.missing:
+        return title
+    missing = Text("{title}; {count} not found on the map", "{title}　図面にない検証点: {count}点")
+    return missing.filled(title=title, count=len(points.missing))
+
+
+def accuracy_rows(points: PointCheck) -> Iterator[tuple[Text, ...]]:
+    """In plan and of heights: number, RMSE, largest, limit, verdict."""
+    for name, one in ((_PLAN, points.plan), (_HEIGHT, points.height)):
+        verdict = PASSED if one.passes else FAILED
+        yield (
+            name,
+            Text.same(f"{one.count:,}"),
+            *(_metres(value) for value in (one.rmse_m, one.most_m, one.limit_m)),
+            verdict if one.count else _NOT_CHECKED,
+        )
+
+
+def point_rows(facts: QualityFacts, points: PointCheck) -> Iterator[tuple[Text, ...]]:
+    """Every check point: id, kind, feature, differences."""
+    for one in points.points:
+        kind = facts.kind_name(one.point.kind) if one.point.kind else Text.same("")
+        feature = Text.same(f"#{one.feature[:8]}") if one.feature else _NOT_FOUND
+        yield Text.same(one.point.id), kind, feature, _metres(one.plan_m), _metres(one.height_m)
+
+
+def _metres(value: float) -> Text:
+    return Text.same("–" if math.isnan(value) else f"{value:.3f}")
 
 
 def kind_rows(facts: QualityFacts) -> Iterator[tuple[Text, ...]]:
