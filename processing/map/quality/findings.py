@@ -19,6 +19,7 @@ RuleId = Literal[
     "too_small",
     "unmeasured",
     "number_missing",
+    "ledger_missing",
     "undecided",
 ]
 
@@ -84,6 +85,14 @@ RULES: Mapping[RuleId, Rule] = {
         Text(
             "Choose the number: before, the sign has no code.",
             "標識番号を選んでください。それまで分類コードが付きません。",
+        ),
+        is_error=False,
+    ),
+    "ledger_missing": Rule(
+        Text("Ledger without number or route", "整理番号・路線名なし"),
+        Text(
+            "Draw the centre line with its route, then number along it.",
+            "路線名を記入した道路中心線を描き、路線に沿って番号を付けてください。",
         ),
         is_error=False,
     ),

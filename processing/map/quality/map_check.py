@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import chain, groupby
 
 from processing.core.monitor import Monitor, SilentMonitor
 from processing.core.text import Text
-from processing.map.catalogue import Catalogue
+from processing.map.catalogue import Catalogue, FeatureKind, Geometry
 from processing.map.feature import Feature, Status
 from processing.map.quality.findings import RULES, Finding, RuleId
 from processing.map.quality.topology import topology_findings
+from processing.map.routes.numbering import NUMBER, ROUTE
 from processing.map.sign_numbers import FIELD, is_kind_of_signs
 
 _UNMEASURED = 0.5
@@ -37,6 +39,21 @@ class KindCount:
     candidates: int
     rejected: int
     by_tools: int
+
+    @property
+    def precision(self) -> float:
+        """Of what tools found and a person judged, the share accepted; NaN without any."""
+        judged = self.by_tools + self.rejected
+        return self.by_tools / judged if judged else math.nan
+
+    @property
+    def recall(self) -> float:
+        """Of what was accepted, the share that tools found: the rest was drawn by hand.
+
+        NaN where tools found none and none was rejected: nobody looked for the kind by tools.
+        """
+        was_sought = self.by_tools + self.rejected > 0 and self.accepted > 0
+        return self.by_tools / self.accepted if was_sought else math.nan
 
 
 @dataclass(frozen=True)
@@ -101,6 +118,7 @@ def check_map(
             topology_findings(accepted),
             _unmeasured(accepted),
             _unnumbered(accepted) if is_kind_of_signs(kind) else (),
+            _not_in_ledgers(accepted, kind),
             _undecided(members),
         )
         findings.extend(found)
@@ -124,6 +142,20 @@ def _unnumbered(features: Sequence[Feature]) -> Iterator[Finding]:
     for one in features:
         if one.attributes.get(FIELD) in (None, ""):
             yield Finding("number_missing", (one.id,), one.kind, one.vertices[0].xyz)
+
+
+def _not_in_ledgers(features: Sequence[Feature], kind: FeatureKind) -> Iterator[Finding]:
+    """Things that ledgers list one by one, and that say no number or route.
+
+    They stand at a place, or reach from station to station; edges and centre lines are no such
+    things although they can say a route.
+    """
+    is_thing = kind.geometry is Geometry.POINT or kind.attribute("start_station") is not None
+    if not is_thing or None in (kind.attribute(NUMBER), kind.attribute(ROUTE)):
+        return
+    for one in features:
+        if any(one.attributes.get(name) in (None, "") for name in (NUMBER, ROUTE)):
+            yield Finding("ledger_missing", (one.id,), one.kind, one.vertices[0].xyz)
 
 
 def _undecided(features: Sequence[Feature]) -> Iterator[Finding]:

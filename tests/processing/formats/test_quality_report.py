@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -10,7 +11,7 @@ import pytest
 from processing.core.text import Language
 from processing.map.catalogue import Geometry
 from processing.map.catalogue_file import read_catalogue
-from processing.map.feature import Feature, Position, Status, Vertex
+from processing.map.feature import Feature, Position, Provenance, Status, Vertex
 from processing.operations.export import ExportRequest, export
 from resources import path_of
 from tests.pages import plain, words_of
@@ -75,3 +76,30 @@ def test_words_of_a_map_are_no_markup(tmp_path: Path) -> None:
     page = _written(tmp_path, odd)[".html"].read_text(encoding="utf-8")
     assert "&lt;b&gt;&amp;" in page
     assert "<b>" not in page
+
+
+def test_precision_and_recall_are_those_of_the_review(tmp_path: Path) -> None:
+    by_tool = Provenance("curbs", 1, {}, 0.9)
+    lines = [_line(f"f{at}", (0.0, 9.0 * at, 5.0), (5.0, 9.0 * at, 5.0)) for at in range(4)]
+    found = [replace(one, provenance=by_tool) for one in lines]
+    found[3] = replace(found[3], status=Status.REJECTED)
+    missed = _line("missed", (0.0, 90.0, 5.0), (5.0, 90.0, 5.0))
+    files = _written(tmp_path, *found, missed)
+    (kind,) = json.loads(files[".json"].read_text(encoding="utf-8"))["kinds"]
+    assert (kind["precision"], kind["recall"]) == (0.75, 0.75)
+    assert "75.0%" in plain(files[".html"].read_text(encoding="utf-8"))
+    by_hand = _written(tmp_path / "hand", missed)
+    (kind,) = json.loads(by_hand[".json"].read_text(encoding="utf-8"))["kinds"]
+    assert (kind["precision"], kind["recall"]) == (None, None)
+
+
+def test_what_a_ledger_lists_without_number_or_route_is_a_place_to_look_at(tmp_path: Path) -> None:
+    tree = Feature("t", "street_tree", Geometry.POINT, (Vertex((0.0, 0.0, 0.0)),), {"number": "1"})
+    whole = replace(tree, id="u", vertices=(Vertex((9.0, 0.0, 0.0)),),
+                    attributes={"number": "2", "route": "市道1号線"})  # fmt: skip
+    files = _written(tmp_path, tree, whole)
+    numbers = json.loads(files[".json"].read_text(encoding="utf-8"))
+    assert [(one["rule"], one["features"]) for one in numbers["findings"]] == [
+        ("ledger_missing", ["t"])
+    ]
+    assert numbers["errors"] == 0

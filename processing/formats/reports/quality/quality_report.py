@@ -79,8 +79,8 @@ def _accuracy(points: PointCheck | None) -> dict[str, Any]:
     }
 
 
-def _rounded(metres: float) -> float | None:
-    return None if math.isnan(metres) else round(metres, 4)
+def _rounded(value: float) -> float | None:
+    return None if math.isnan(value) else round(value, 4)
 
 
 def _numbers(check: MapCheck, crs: str) -> dict[str, Any]:
@@ -99,6 +99,8 @@ def _numbers(check: MapCheck, crs: str) -> dict[str, Any]:
                 "by_tools": one.by_tools,
                 "candidates": one.candidates,
                 "rejected": one.rejected,
+                "precision": _rounded(one.precision),
+                "recall": _rounded(one.recall),
             }
             for one in check.kinds
         ],

@@ -27,6 +27,8 @@ KIND_COLUMNS = (
     Text("Found by tools", "うち自動抽出"),
     Text("Undecided", "未確認"),
     Text("Rejected", "却下"),
+    Text("Precision", "適合率"),
+    Text("Recall", "再現率"),
 )
 FINDING_COLUMNS = (
     Text("No.", "番号"),
@@ -72,7 +74,7 @@ _ERRORS = Text("Errors", "不適合の件数")
 _LOOKS = Text("To be looked at", "要確認の件数")
 
 
-_NUMBER = re.compile(r"-?[\d,]+(\.\d+)?")
+_NUMBER = re.compile(r"-?[\d,]+(\.\d+)?%?")
 
 
 @dataclass(frozen=True)
@@ -151,12 +153,19 @@ def point_rows(facts: QualityFacts, points: PointCheck) -> Iterator[tuple[Text, 
         yield Text.same(one.point.id), kind, feature, _metres(one.plan_m), _metres(one.height_m)
 
 
+def _share(value: float) -> Text:
+    return Text.same("–" if math.isnan(value) else f"{value:.1%}")
+
+
 def _metres(value: float) -> Text:
     return Text.same("–" if math.isnan(value) else f"{value:.3f}")
 
 
 def kind_rows(facts: QualityFacts) -> Iterator[tuple[Text, ...]]:
-    """Every kind on the map: name, official code or that there is none, counts."""
+    """Every kind on the map: name, official code or that there is none, counts, precision, recall.
+
+    By review: what was rejected tools found wrongly, what was drawn by hand they missed.
+    """
     for one in facts.check.kinds:
         code = facts.catalogue[one.kind].dm_code
         counts = (one.accepted, one.by_tools, one.candidates, one.rejected)
@@ -164,6 +173,7 @@ def kind_rows(facts: QualityFacts) -> Iterator[tuple[Text, ...]]:
             facts.kind_name(one.kind),
             Text.same(code) if code else NO_CODE,
             *(Text.same(f"{count:,}") for count in counts),
+            *(_share(value) for value in (one.precision, one.recall)),
         )
 
 

@@ -43,7 +43,8 @@ def _area(*local: tuple[float, ...], kind: str = "gutter_lid") -> Feature:
 
 
 def _point(*local: tuple[float, ...], kind: str = "street_tree", **own: str) -> Feature:
-    return Feature(f"f{next(_IDS)}", kind, Geometry.POINT, _places(*local), own)
+    listed = {"number": "1", "route": "市道1号線", **own}
+    return Feature(f"f{next(_IDS)}", kind, Geometry.POINT, _places(*local), listed)
 
 
 def _local(position: Position) -> tuple[float, float]:
@@ -137,10 +138,11 @@ def test_signs_without_number_undecided_and_unmeasured_things_are_told(
     )
     tool = Provenance("trees", 1, {}, 0.7, "r1")
     place = _places((0, 0))
+    listed = {"number": "1", "route": "市道1号線"}
     found = check_map(
         [
             Feature("a", "street_tree", Geometry.POINT, place, {}, Status.CANDIDATE, tool),
-            Feature("b", "street_tree", Geometry.POINT, place, {}, Status.ACCEPTED, tool),
+            Feature("b", "street_tree", Geometry.POINT, place, listed, Status.ACCEPTED, tool),
             Feature("c", "street_tree", Geometry.POINT, place, {}, Status.REJECTED, tool),
             Feature("d", "curb_upper", Geometry.LINE,
                     tuple(Vertex(one.xyz, is_occluded=True) for one in _places((0, 9), (3, 9)))),
