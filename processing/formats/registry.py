@@ -289,6 +289,7 @@ _SURVEY_FORMATS = (
         "dm",
         Text("Extended DM", "拡張DM"),
         (".dm",),
+        reads={Content.FEATURES: f"{_SURVEY}.dm_reading:read_dm_features"},
         writes={Content.FEATURES: BY_MAKER},
         map_title=Text("Map sheets (extended DM)", "図郭（拡張DM）"),
         writes_map=f"{_SURVEY}.dm:write_dm_map",

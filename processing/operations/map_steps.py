@@ -144,7 +144,7 @@ class TakeMapOperation:
     ----------
     project : Path
     path : Path
-        DXF, GeoPackage, GeoJSON or SIMA.
+        DXF, GeoPackage, GeoJSON, SIMA or extended DM.
     crs : str
         ``EPSG:n`` of a file that doesn't say it; empty where it does.
     of_kind : str

@@ -120,11 +120,35 @@ def test_a_sima_file_becomes_points_and_parcels_of_the_kind_that_is_given(
     assert stakes[1].vertices[0].is_occluded
 
 
+def test_a_sheet_of_the_extended_dm_is_known_by_its_codes_and_its_zone(
+    tmp_path: Path, project: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with closing(Project.open(project)) as opened:
+        catalogue = opened.catalogue
+    hole = _feature("manhole_sewer", Geometry.POINT, (9.0, 3.0), diameter_m=0.6)
+    features = (
+        *_MAP[:2], hole, _feature("rain_inlet", Geometry.AREA, (0.0, 0.0), (1.0, 0.0), (1.0, 1.0))
+    )  # fmt: skip
+    (path,) = export(features, catalogue, _CRS, ExportRequest(("dm",), tmp_path / "out"))
+    assert _taken(capsys, project, path)[:2] == (DONE, "4 features taken in.\n")
+    found = {one.kind: one for one in _features(project)}
+    assert set(found) == {one.kind for one in features}
+    for one in features:
+        for vertex, was in zip(found[one.kind].vertices, one.vertices, strict=True):
+            assert vertex.xyz[:2] == pytest.approx(was.xyz[:2], abs=0.002)
+    assert found["road_edge"].vertices[1].xyz[2] == pytest.approx(5.125)
+    whole = path.read_bytes()
+    path.write_bytes(whole[: len(whole) - 86])
+    assert _taken(capsys, project, path)[0] == BAD_INPUT
+
+
 @pytest.mark.parametrize(
     ("name", "content", "words"),
     [
         ("a.sim", "G00,01,x,\r\nA01,1,K1,abc,2,\r\n", "line 2"),
         ("b.sim", "hello\r\n", "line 1"),
+        ("a.dm", "M 09LD2800\r\nshort\r\n", "record 2"),
+        ("b.dm", "hello\r\n", "record 1"),
         ("c.dxf", "no drawing", "no DXF"),
         ("d.gpkg", "no database", "no GeoPackage"),
         ("e.pdf", "", "read from"),
