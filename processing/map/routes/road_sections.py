@@ -37,7 +37,7 @@ COUNTED: Mapping[str, frozenset[str]] = {
 }
 """What is counted, by class code; kinds that have none by their id."""
 
-_PIECE_M = 0.05
+_PIECE_M = 0.1
 """Lines are shared out in pieces of this length, so that a section's end is met to half of it."""
 
 _LEAST_SECTION_M = 0.005  # a rest below what stations are written in is none
@@ -201,8 +201,7 @@ class _Line:
         return np.stack([foot, foot + normal * REACH_M])
 
     def _feet(self, along: Floats) -> Floats:
-        feet: Floats = shapely.get_coordinates(shapely.line_interpolate_point(self.shape, along))
-        return feet
+        return _places_along(shapely.get_coordinates(self.shape), along)
 
     def _directions(self, along: Floats) -> Floats:
         length = self.shape.length
@@ -367,8 +366,14 @@ def _pieces(feature: Feature) -> tuple[Floats, float]:
         return middle, 0.0
     count = max(1, math.ceil(shape.length / _PIECE_M))
     along = (np.arange(count) + 0.5) * (shape.length / count)
-    middles: Floats = shapely.get_coordinates(shapely.line_interpolate_point(shape, along))
-    return middles, shape.length / count
+    return _places_along(shapely.get_coordinates(shape), along), shape.length / count
+
+
+def _places_along(xy: Floats, along: Floats) -> Floats:
+    """Places on a line (k, 2) at lengths from its start: (n, 2)."""
+    # A library's function would walk along the line anew for each of them.
+    reached = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(xy, axis=0).T))])
+    return np.stack([np.interp(along, reached, xy[:, axis]) for axis in (0, 1)], axis=1)
 
 
 def _shape(feature: Feature) -> shapely.Geometry | None:

@@ -73,6 +73,7 @@ def test_numbers_are_numbers_with_the_decimals_of_csv_and_texts_are_texts(tmp_pa
     assert page.print_title_rows == "$1:$1"
     assert page.auto_filter.ref.startswith("A1:")
     assert page.page_setup.fitToWidth == 1
+    assert page.print_options.gridLines
     assert page.sheet_properties.pageSetUpPr.fitToPage
 
 
