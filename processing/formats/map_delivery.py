@@ -15,6 +15,7 @@ from processing.core.parameters import (
     count,
     file,
     fill_parameters,
+    length,
     parameters_of,
     text,
 )
@@ -132,6 +133,68 @@ class QualityOptions:
         "500",
         choices=tuple(ParameterChoice(one, Text.same(one)) for one in ("250", "500", "1000")),
         name=Text("Map level of the check", "検証する地図情報レベル"),
+    )
+
+
+# Any: as the declarations of processing.core.parameters.
+def _same_choices(default: str, names: tuple[str, ...], name: Text) -> Any:
+    """Words that are called alike in every language."""
+    choices = tuple(ParameterChoice(one, Text.same(one)) for one in names)
+    return choice(default, choices=choices, name=name)
+
+
+@dataclass(frozen=True)
+class SheetOptions:
+    """What can be chosen for drawing sheets, and what their title blocks say."""
+
+    sheet_scale: str = choice(
+        "500",
+        choices=tuple(
+            ParameterChoice(one, Text.same(f"1:{one}")) for one in ("250", "500", "1000")
+        ),
+        name=Text("Scale of the sheets", "図面の縮尺"),
+    )
+    sheet_division: str = choice(
+        "grid",
+        choices=(
+            ParameterChoice("grid", Text("Plain grid", "任意の格子")),
+            ParameterChoice("map", Text("Grid of the public survey", "国土基本図の図郭")),
+            ParameterChoice("route", Text("Along the route", "路線に沿って")),
+        ),
+        name=Text("Division into sheets", "図面の分割"),
+        explanation=Text(
+            "A sheet of the public survey's grid takes the paper A0; a route is a centre line.",
+            "国土基本図の図郭にはA0が必要です。路線には中心線を使います。",
+        ),
+    )
+    sheet_paper: str = _same_choices(
+        "A1", ("A0", "A1", "A2", "A3"), Text("Paper of the sheets", "図面の用紙")
+    )
+    sheet_overlap: float = length(
+        10.0,
+        low=0.0,
+        high=100.0,
+        name=Text("Overlap along the route", "路線方向の重複"),
+        explanation=Text(
+            "Of a sheet and the next; the match line is in its middle.",
+            "隣り合う図面の重複です。接合線はその中央に引きます。",
+        ),
+    )
+    sheet_route: str = text(
+        name=Text("Route of the sheets", "図面の路線名"),
+        explanation=Text("Empty: every route.", "空欄のときは全路線です。"),
+    )
+    sheet_title: str = text(
+        name=Text("Drawing name", "図面名"),
+        explanation=Text("Empty: the project's name.", "空欄のときはプロジェクト名です。"),
+    )
+    sheet_client: str = text(name=Text("Client (sheets)", "計画機関名（図面）"))
+    sheet_maker: str = text(name=Text("Maker (sheets)", "作業機関名（図面）"))
+    sheet_surveyor: str = text(name=Text("Surveyor (sheets)", "測量者（図面）"))
+    sheet_date: str = text(name=Text("Date (sheets)", "年月日（図面）"))
+    sheet_heights: str = text(
+        name=Text("Zero of heights (sheets)", "高さの基準（図面）"),
+        explanation=Text("As T.P., JGD2024.", "例: T.P.（測地成果2024）"),
     )
 
 

@@ -14,6 +14,7 @@ from processing.formats.map_delivery import (
     DxfOptions,
     QualityOptions,
     ShapefileOptions,
+    SheetOptions,
     TableOptions,
     WorkbookOptions,
 )
@@ -313,6 +314,15 @@ _SURVEY_FORMATS = (
         writes={Content.DRAWING: BY_MAKER},
         map_title=Text("Drawing (SXF)", "図面（SXF）"),
         writes_map=f"{_DRAWINGS}.sxf:write_sxf_map",
+        has_attributes=False,
+    ),
+    Format(
+        "sheets",
+        Text("Drawing sheets", "図面（図郭割り）"),
+        (),
+        map_title=Text("Drawing sheets (DXF, PDF)", "図面（図郭割り、DXF・PDF）"),
+        writes_map="processing.formats.sheets.sheet_files:write_sheets_map",
+        options=SheetOptions,
         has_attributes=False,
     ),
 )

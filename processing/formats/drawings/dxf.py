@@ -65,10 +65,10 @@ def write_dxf(
     ----------
     features : iterable of Feature
         Rejected ones are left out; candidates are drawn on a layer of their own.
-    version : {"R12", "R2000", "R2007", "R2018"}
-        AC1009, AC1015, AC1021 or AC1032.
+    version : {"R12", "R2000", "R2007", "R2010", "R2018"}
+        AC1009, AC1015, AC1021, AC1024 or AC1032.
     encoding : {"utf-8", "cp932"}
-        What was asked for; the version decides: R2007 and R2018 are UTF-8, R12 and R2000 cp932.
+        What was asked for; the version decides: R2007 and later are UTF-8, R12 and R2000 cp932.
         What cp932 lacks is written as ``\U+XXXX``, which CAD programs read.
     language : {"en", "ja"} or None
         Of the choices in the attributes of blocks; None for the words that are stored.
@@ -89,7 +89,7 @@ def write_dxf(
     """
     check_one_of(encoding, ENCODINGS.values())
     monitor = monitor or SilentMonitor()
-    drawing = _Drawing(catalogue, version, crs, language)
+    drawing = MapDrawing(catalogue, version, crs, language)
     for number, feature in enumerate(features):
         if number % _CHECK_EVERY == 0:
             monitor.check()
@@ -126,12 +126,54 @@ class _Looks:
     own: Mapping[str, Any]  # attributes of DXF in which the kind differs from its layer
 
 
-class _Drawing:
-    """A drawing being filled."""
+@dataclass(frozen=True)
+class DrawnSize:
+    """How large a drawing's symbols and patterns are, and whether it has words.
+
+    Attributes
+    ----------
+    scale : int
+        At which symbols and patterns have the size on paper that they have at 1:500 in the
+        catalogue.
+    has_labels : bool
+        Whether names and numbers are written beside features.
+    """
+
+    scale: int = 500
+    has_labels: bool = True
+
+    @property
+    def factor(self) -> float:
+        """Of symbols and patterns."""
+        return self.scale / 500
+
+
+class MapDrawing:
+    """A drawing of a map being filled.
+
+    Parameters
+    ----------
+    catalogue : Catalogue
+    version, crs, language
+        As of :func:`write_dxf`.
+    size : DrawnSize
+        That of level 500, with labels, where nothing else is said.
+
+    Attributes
+    ----------
+    document : DxfDocument
+    """
 
     def __init__(
-        self, catalogue: Catalogue, version: DxfVersion, crs: str, language: Language | None
+        self,
+        catalogue: Catalogue,
+        version: DxfVersion,
+        crs: str,
+        language: Language | None,
+        *,
+        size: DrawnSize = DrawnSize(),  # noqa: B008 (a frozen value)
     ) -> None:
+        self._size = size
         self._catalogue = catalogue
         self._language = language
         self.document = DxfDocument(version)
@@ -139,7 +181,7 @@ class _Drawing:
         self._lowest = [math.inf] * 3
         self._highest = [-math.inf] * 3
         header = self._doc.header
-        header["$LTSCALE"] = 1.0
+        header["$LTSCALE"] = size.factor
         header["$LUNITS"] = 2
         header["$LUPREC"] = 3
         self.document.tell_system(crs)
@@ -165,7 +207,8 @@ class _Drawing:
         data = self._extended_data(feature)
         for entity in self._entities(kind, feature, positions, looks):
             entity.set_xdata(APP_ID, data)
-        self._add_label(kind, feature, looks)
+        if self._size.has_labels:
+            self._add_label(kind, feature, looks)
         for axis in range(3):
             values = [position[axis] for position in positions]
             self._lowest[axis] = min(self._lowest[axis], *values)
@@ -192,6 +235,8 @@ class _Drawing:
         alike = (one for one in self._catalogue if one.symbol == kind.symbol)
         define_attributes(block, {one.id: one for each in alike for one in each.attributes})
         turned = {**attributes, "rotation": symbol_rotation_deg(feature)}
+        if self._size.factor != 1.0:
+            turned |= dict.fromkeys(("xscale", "yscale", "zscale"), self._size.factor)
         place = feature.vertices[0].xyz
         insert = self._space.add_blockref(block.name, place, dxfattribs=turned)
         add_attributes(insert, block_values(kind, feature, self._language), self.document.encoding)

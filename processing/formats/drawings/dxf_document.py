@@ -1,6 +1,6 @@
 """How every drawing here begins and ends: version and code page, text style, extent, bytes.
 
-R2007 and R2018 are UTF-8 by definition; R12 and R2000 have a code page, which is cp932 here, as the
+R2007 and later are UTF-8 by definition; R12 and R2000 have a code page, which is cp932 here, as the
 CAD programs of Japanese offices expect.
 """
 
@@ -18,12 +18,13 @@ from processing.core.monitor import Monitor, SilentMonitor
 from processing.core.text import Text
 from processing.formats.drawings.dxf_text import dxf_text, label_text
 
-DxfVersion = Literal["R12", "R2000", "R2007", "R2018"]
+DxfVersion = Literal["R12", "R2000", "R2007", "R2010", "R2018"]
 
 ENCODINGS: Mapping[DxfVersion, str] = {
     "R12": "cp932",
     "R2000": "cp932",
     "R2007": "utf-8",
+    "R2010": "utf-8",
     "R2018": "utf-8",
 }
 """By version."""
@@ -31,7 +32,7 @@ ENCODINGS: Mapping[DxfVersion, str] = {
 PlanVersion = Literal["R2000", "R2007", "R2018"]
 """Those that have fills and light polylines."""
 
-_TRUE_COLOURS: frozenset[DxfVersion] = frozenset({"R2007", "R2018"})
+_TRUE_COLOURS: frozenset[DxfVersion] = frozenset({"R2007", "R2010", "R2018"})
 
 APP_ID = "ZUKA"
 """Application id of the extended data."""
@@ -47,8 +48,8 @@ class DxfDocument:
 
     Parameters
     ----------
-    version : {"R12", "R2000", "R2007", "R2018"}
-        AC1009, AC1015, AC1021 or AC1032.
+    version : {"R12", "R2000", "R2007", "R2010", "R2018"}
+        AC1009, AC1015, AC1021, AC1024 or AC1032.
 
     Attributes
     ----------

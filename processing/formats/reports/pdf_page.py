@@ -146,6 +146,50 @@ class Paper:
         self._canvas.drawCentredString(0, -0.5 * _CAPITAL * size, drawable(words))
         self._canvas.restoreState()
 
+    def slanted_text(
+        self,
+        place: tuple[float, float],
+        words: str,
+        size: float,
+        angle_deg: float,
+        align: Align = "left",
+        *,
+        colour: Rgb = BLACK,
+    ) -> None:
+        """Set one line at an angle, counter-clockwise, its middle in height at the place."""
+        draw = {
+            "left": self._canvas.drawString,
+            "centre": self._canvas.drawCentredString,
+            "right": self._canvas.drawRightString,
+        }[align]
+        self._canvas.saveState()
+        x, y = place
+        self._canvas.translate(x * POINTS_OF_MM, (self.height_mm - y) * POINTS_OF_MM)
+        self._canvas.rotate(angle_deg)
+        self._canvas.setFont(FONT, size)
+        self._canvas.setFillColorRGB(*(part / 255 for part in colour))
+        draw(0, -0.5 * _CAPITAL * size, drawable(words))
+        self._canvas.restoreState()
+
+    def circle(
+        self,
+        centre: tuple[float, float],
+        radius: float,
+        width_mm: float = THIN_MM,
+        colour: Rgb = BLACK,
+    ) -> None:
+        """Draw a circle."""
+        self._canvas.setStrokeColorRGB(*(part / 255 for part in colour))
+        self._canvas.setLineWidth(width_mm * POINTS_OF_MM)
+        x, y = centre
+        self._canvas.circle(
+            x * POINTS_OF_MM, (self.height_mm - y) * POINTS_OF_MM, radius * POINTS_OF_MM
+        )
+
+    def print_true_to_scale(self) -> None:
+        """Ask viewers to print it at its own size, unless told otherwise."""
+        self._canvas.setViewerPreference("PrintScaling", "None")
+
     def line(
         self,
         positions: Iterable[tuple[float, float]],

@@ -1,0 +1,205 @@
+"""The column beside the map: north arrow, scale bar, legend, key map, title block."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from processing.core.text import Language, Text
+from processing.formats.sheets.drawing_sheet import DrawingSheet
+from processing.formats.sheets.map_looks import map_pen, symbol_on_paper
+from processing.formats.sheets.paper_shapes import (
+    GREY,
+    RULE_LAYER,
+    WORDS_LAYER,
+    Pen,
+    PaperLine,
+    PaperPlace,
+    PaperShape,
+    PaperWords,
+    box_line,
+    words_in_box,
+    words_width,
+)
+from processing.formats.sheets.sheet_layout import SheetLayout
+from processing.map.catalogue import FeatureKind, Geometry
+
+_PAD_MM = 5.0
+_NORTH_MM, _BAR_MM, _HEAD_MM = 30.0, 20.0, 7.0
+_KEY_SHARE = 0.6  # height of the key map, of the column's width
+_ROW_MM, _LEGEND_MM = 8.0, 6.0
+_SAMPLE_MM = 12.0
+_LABEL_SHARE = 0.3
+_BARS_M = (500, 200, 100, 50, 20, 10, 5)
+_THICK, _THIN = Pen(RULE_LAYER, width_mm=0.35), Pen(RULE_LAYER, width_mm=0.13)
+_WORDS = Pen(WORDS_LAYER)
+
+
+@dataclass(frozen=True)
+class ColumnContent:
+    """What a sheet's column says.
+
+    Attributes
+    ----------
+    sheets : sequence of DrawingSheet
+        All of the job, of which `number`, from 1, is this one.
+    kinds : sequence of FeatureKind
+        Those on this sheet.
+    title_block : mapping of Text to str
+        Rows from above; empty values stay empty.
+    """
+
+    sheets: Sequence[DrawingSheet]
+    number: int
+    kinds: Sequence[FeatureKind]
+    title_block: Mapping[Text, str]
+    language: Language
+
+    @property
+    def sheet(self) -> DrawingSheet:
+        """This one."""
+        return self.sheets[self.number - 1]
+
+
+def column_shapes(content: ColumnContent, layout: SheetLayout) -> Iterator[PaperShape]:
+    """Everything in the column: north arrow above, title block below."""
+    (x, y), (width, height) = layout.column_low, layout.column_size
+    top = y + height
+    yield from _north(content.sheet, (x + width / 2, top - _NORTH_MM / 2))
+    yield from _scale_bar(content.sheet, (x, top - _NORTH_MM - _BAR_MM), width)
+    block = _ROW_MM * len(content.title_block)
+    yield from _title_block(content, (x, y), width)
+    key = width * _KEY_SHARE
+    yield from _key_map(content, (x, y + block), (width, key))
+    legend = top - _NORTH_MM - _BAR_MM
+    yield from _legend(content, (x, y + block + key), (width, legend - y - block - key))
+
+
+def _north(sheet: DrawingSheet, middle: PaperPlace) -> Iterator[PaperShape]:
+    """An arrow to grid north; its right half filled."""
+    turn = math.radians(-sheet.turned_deg)
+
+    def at(x: float, y: float) -> PaperPlace:
+        return (
+            middle[0] + x * math.cos(turn) - y * math.sin(turn),
+            middle[1] + x * math.sin(turn) + y * math.cos(turn),
+        )
+
+    tip, left, right, notch = at(0, 8), at(-3, -8), at(3, -8), at(0, -5)
+    yield PaperLine(_THIN, (tip, left, notch, tip))
+    yield PaperLine(_THIN, (tip, right, notch, tip), is_filled=True)
+    yield PaperWords(_WORDS, "N", at(0, 11), 4.0, "CENTER", -sheet.turned_deg)
+
+
+def _scale_bar(sheet: DrawingSheet, low: PaperPlace, width: float) -> Iterator[PaperShape]:
+    """Five parts, filled in turn, with metres above and the scale below."""
+    most = width - 8 * _PAD_MM
+    metres = next(one for one in _BARS_M if one * 1000 / sheet.scale <= most)
+    part = metres / 5 * 1000 / sheet.scale
+    x, y = low[0] + (width - 5 * part) / 2, low[1] + _BAR_MM / 2
+    for number in range(5):
+        place = (x + number * part, y)
+        yield box_line(_THIN, place, (part, 2.0))
+        if number % 2 == 0:
+            yield box_line(_THIN, place, (part, 2.0), is_filled=True)
+    for number in range(6):
+        words = f"{metres / 5 * number:g}" + (" m" if number == 5 else "")
+        place = (x + number * part, y + 4.0)
+        yield PaperWords(_WORDS, words, place, 2.0, "CENTER")
+    place = (low[0] + width / 2, y - 4.0)
+    yield PaperWords(_WORDS, f"S = 1:{sheet.scale}", place, 3.0, "CENTER")
+
+
+def _head(words: Text, content: ColumnContent, low: PaperPlace, size: PaperPlace) -> Iterator[PaperShape]:
+    """A box of the column with its heading."""
+    yield box_line(_THICK, low, size)
+    place = (low[0] + size[0] / 2, low[1] + size[1] - _HEAD_MM / 2)
+    yield PaperWords(_WORDS, words.in_language(content.language), place, 3.5, "CENTER")
+
+
+def _legend(content: ColumnContent, low: PaperPlace, size: PaperPlace) -> Iterator[PaperShape]:
+    """A sample and the name of each kind, in two columns where one is too short."""
+    yield from _head(Text("Legend", "凡例"), content, low, size)
+    room = size[1] - _HEAD_MM - 2.0
+    columns = 1 if len(content.kinds) * _LEGEND_MM <= room else 2
+    rows = max(1, math.ceil(len(content.kinds) / columns))
+    step = min(_LEGEND_MM, room / rows)
+    width = size[0] / columns
+    for number, kind in enumerate(content.kinds):
+        column, row = divmod(number, rows)
+        x = low[0] + column * width + _PAD_MM / 2
+        y = low[1] + size[1] - _HEAD_MM - (row + 0.5) * step
+        yield from _sample(kind, (x, y), step)
+        name = kind.name.in_language(content.language)
+        words = f"{kind.dm_code}　{name}" if kind.dm_code else name
+        left = (x + _SAMPLE_MM + 2.0, y - step / 2)
+        letters = min(2.5, step * 0.6)
+        yield from words_in_box(words, left, (width - _SAMPLE_MM - 2.0 - _PAD_MM, step), letters)
+
+
+def _sample(kind: FeatureKind, place: PaperPlace, step: float) -> Iterator[PaperShape]:
+    pen, (x, y) = map_pen(kind), place
+    match kind.geometry:
+        case Geometry.POINT:
+            yield from symbol_on_paper(kind, pen, (x + _SAMPLE_MM / 2, y))
+        case Geometry.LINE:
+            yield PaperLine(pen, (place, (x + _SAMPLE_MM, y)))
+        case Geometry.AREA:
+            tall = step * 0.6
+            yield box_line(pen, (x + 2.0, y - tall / 2), (_SAMPLE_MM - 4.0, tall))
+
+
+def _key_map(content: ColumnContent, low: PaperPlace, size: PaperPlace) -> Iterator[PaperShape]:
+    """This sheet, grey, among its neighbours, with their numbers."""
+    yield from _head(Text("Key map", "索引図"), content, low, size)
+    own = content.sheet
+    reach = 2.0 * max(own.size_m)
+    near = [
+        (number, one)
+        for number, one in enumerate(content.sheets, 1)
+        if math.dist(one.centre, own.centre) <= reach * 1.01
+    ]
+    rings = [np.array(one.window.exterior.coords) for _, one in near]
+    every = np.concatenate(rings)
+    lowest, highest = every.min(axis=0), every.max(axis=0)
+    room = (size[0] - 2 * _PAD_MM, size[1] - _HEAD_MM - _PAD_MM)
+    ratio = min(room[0] / (highest[0] - lowest[0]), room[1] / (highest[1] - lowest[1]))
+    ratio = min(ratio, 0.4 * room[0] / max(own.size_m))
+    middle = np.array([low[0] + size[0] / 2, low[1] + (size[1] - _HEAD_MM + 2.0) / 2])
+
+    def placed(ring: np.ndarray) -> tuple[PaperPlace, ...]:
+        moved = (ring - (lowest + highest) / 2) * ratio + middle
+        return tuple((x, y) for x, y in moved.tolist())
+
+    for (number, _), ring in zip(near, rings, strict=True):
+        if number == content.number:
+            yield PaperLine(Pen(RULE_LAYER, GREY), placed(ring), is_filled=True)
+    letters = max(1.5, min(3.5, 0.4 * min(own.size_m) * ratio))
+    for (number, one), ring in zip(near, rings, strict=True):
+        yield PaperLine(_THICK if number == content.number else _THIN, placed(ring))
+        place = placed(np.array([one.centre]))[0]
+        has_name = words_width(one.name, letters * 0.5) < own.size_m[0] * ratio * 0.95
+        has_name &= min(own.size_m) * ratio > 3.2 * letters and one.name != str(number)
+        up = letters * 0.6 if has_name else 0.0
+        yield PaperWords(_WORDS, str(number), (place[0], place[1] + up), letters, "CENTER")
+        if has_name:
+            below = (place[0], place[1] - letters * 0.6)
+            yield PaperWords(_WORDS, one.name, below, letters * 0.5, "CENTER")
+
+
+def _title_block(content: ColumnContent, low: PaperPlace, width: float) -> Iterator[PaperShape]:
+    rows = list(content.title_block.items())
+    yield box_line(_THICK, low, (width, _ROW_MM * len(rows)))
+    label = width * _LABEL_SHARE
+    line = low[0] + label
+    yield PaperLine(_THIN, ((line, low[1]), (line, low[1] + _ROW_MM * len(rows))))
+    for number, (name, value) in enumerate(reversed(rows)):
+        y = low[1] + number * _ROW_MM
+        if number:
+            yield PaperLine(_THIN, ((low[0], y), (low[0] + width, y)))
+        words = name.in_language(content.language)
+        yield from words_in_box(words, (low[0] + 1.0, y), (label - 2.0, _ROW_MM), 2.5, align="CENTER")
+        yield from words_in_box(value, (line + 2.0, y), (width - label - 4.0, _ROW_MM), 3.0)

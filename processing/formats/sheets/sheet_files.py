@@ -1,0 +1,159 @@
+"""The map as drawing sheets: ``sheets/*.dxf`` and ``sheets.pdf``."""
+
+from __future__ import annotations
+
+import csv
+import io
+from collections.abc import Mapping, Sequence
+
+from processing.core.errors import Unsuitable
+from processing.core.monitor import Monitor
+from processing.core.text import Language, Text
+from processing.formats.map_delivery import MapDelivery, Position, SheetOptions
+from processing.formats.sheets.drawing_sheet import DrawingSheet
+from processing.formats.sheets.grid_division import MAP_WINDOW_MM, map_grid, plain_grid
+from processing.formats.sheets.map_looks import map_shapes
+from processing.formats.sheets.route_strips import route_strips
+from processing.formats.sheets.sheet_clips import SheetClips
+from processing.formats.sheets.sheet_column import ColumnContent, column_shapes
+from processing.formats.sheets.sheet_frame import frame_shapes
+from processing.formats.sheets.sheet_layout import SheetLayout, layout_of
+from processing.formats.sheets.sheet_words import UnplacedLabel, label_sheet
+from processing.formats.sheets.sheets_dxf import DrawnSheet, write_flat_dxf, write_layouts_dxf
+from processing.formats.sheets.sheets_pdf import write_sheets_pdf
+from processing.formats.surfaces.landxml_systems import zone_of_system
+from processing.map.feature import Feature
+from processing.map.routes.route import routes_of
+
+
+def write_sheets_map(delivery: MapDelivery, position: Position, monitor: Monitor) -> None:
+    """Write ``sheets.pdf``, a drawing with a layout a sheet, and a flat drawing for each sheet.
+
+    Words without room are in ``sheets/unplaced_labels.csv``, and are told.
+
+    Raises
+    ------
+    Unsuitable, OutOfRange
+        A map without features; a division that the map or its reference system doesn't allow.
+    """
+    options = delivery.options_of(SheetOptions)
+    if not delivery.features:
+        raise Unsuitable(
+            Text("The map has no features to draw.", "図面にする地物がありません。"),
+            Text("drawing sheets", "図面"),
+            Text(
+                "Accept features first, or export candidates as well; nothing was written.",
+                "地物を確定するか、未確認の候補も書き出してください。何も書き込まれていません。",
+            ),
+        )
+    clips = SheetClips(delivery.features)
+    by_map = options.sheet_division == "map"
+    layout = layout_of(options.sheet_paper, MAP_WINDOW_MM if by_map else None)
+    sheets = _divided(delivery, clips, options, layout)
+    shown = [clips.within(sheet.window) for sheet in sheets]
+    language: Language = delivery.language or "ja"
+    drawn, pages, unplaced = [], [], []
+    for number, (sheet, features) in enumerate(zip(sheets, shown, strict=True), 1):
+        monitor.check()
+        monitor.report(number / len(sheets) / 2)
+        used = {feature.kind for feature in features}
+        kinds = [kind for kind in delivery.catalogue if kind.id in used]
+        words = label_sheet(number, features, delivery.catalogue, sheet, layout)
+        block = _title_block(delivery, options, sheet, (number, len(sheets)))
+        content = ColumnContent(sheets, number, kinds, block, language)
+        around = (
+            *frame_shapes(sheet, layout, language), *column_shapes(content, layout), *words.placed
+        )  # fmt: skip
+        drawn.append(DrawnSheet(sheet, around))
+        pages.append((*map_shapes(features, delivery.catalogue, sheet, layout), *around))
+        unplaced += words.unplaced
+    title = options.sheet_title or delivery.name
+    write_sheets_pdf(position("sheets.pdf"), pages, layout.paper, language, title)
+    whole = position(f"sheets/{delivery.name}_layouts.dxf")
+    write_layouts_dxf(whole, delivery, drawn, layout, monitor)
+    for number, (one, features) in enumerate(zip(drawn, shown, strict=True), 1):
+        monitor.report(0.5 + number / len(sheets) / 2)
+        path = position(f"sheets/{delivery.name}_{number:03d}.dxf")
+        write_flat_dxf(path, delivery, features, one, layout, monitor)
+    _tell_unplaced(delivery, position, unplaced)
+    _tell_missing(delivery, shown)
+
+
+def _divided(
+    delivery: MapDelivery, clips: SheetClips, options: SheetOptions, layout: SheetLayout
+) -> list[DrawingSheet]:
+    scale = int(options.sheet_scale)
+    if options.sheet_division == "map":
+        return map_grid(clips.shapes, scale, delivery.crs)
+    if options.sheet_division == "grid":
+        return plain_grid(clips.shapes, scale, layout.window_size)
+    routes = [
+        route
+        for route in routes_of(delivery.features, delivery.catalogue)
+        if options.sheet_route in ("", route.name)
+    ]
+    return route_strips(routes, scale, layout.window_size, options.sheet_overlap)
+
+
+def _title_block(
+    delivery: MapDelivery, options: SheetOptions, sheet: DrawingSheet, number: tuple[int, int]
+) -> Mapping[Text, str]:
+    return {
+        Text("Drawing", "図面名"): options.sheet_title or delivery.name,
+        Text("Sheet", "図面番号"): f"{number[0]} / {number[1]}",
+        Text("Part", "図郭・区間"): sheet.name,
+        Text("Scale", "縮尺"): f"1:{sheet.scale}",
+        Text("Reference system", "座標系"): _system(delivery),
+        Text("Heights", "高さの基準"): options.sheet_heights,
+        Text("Date", "年月日"): options.sheet_date,
+        Text("Client", "計画機関"): options.sheet_client,
+        Text("Maker", "作業機関"): options.sheet_maker,
+        Text("Surveyor", "測量者"): options.sheet_surveyor,
+    }
+
+
+def _system(delivery: MapDelivery) -> str:
+    language: Language = delivery.language or "ja"
+    if not delivery.crs:
+        return Text("not known", "不明").in_language(language)
+    zone = zone_of_system(delivery.crs)
+    if not zone:
+        return delivery.crs
+    words = Text("Plane rectangular, zone {zone} ({crs})", "平面直角座標系 第{zone}系（{crs}）")
+    return words.filled(zone=zone, crs=delivery.crs).in_language(language)
+
+
+def _tell_unplaced(
+    delivery: MapDelivery, position: Position, unplaced: Sequence[UnplacedLabel]
+) -> None:
+    if not unplaced:
+        return
+    table = io.StringIO()
+    writer = csv.writer(table, lineterminator="\r\n")
+    writer.writerow(["sheet", "feature", "kind", "words", "easting_m", "northing_m"])
+    for one in unplaced:
+        easting, northing = (f"{value:.3f}" for value in one.place)
+        words = f"'{one.words}" if one.words[:1] in "=+-@" else one.words
+        writer.writerow([one.sheet, one.feature.id, one.feature.kind, words, easting, northing])
+    position("sheets/unplaced_labels.csv").write_bytes(table.getvalue().encode("utf-8-sig"))
+    delivery.tell(
+        Text(
+            f"{len(unplaced)} labels have no room on their sheets;"
+            " sheets/unplaced_labels.csv lists them.",
+            f"{len(unplaced)}件の文字は図面に入りませんでした。"
+            "sheets/unplaced_labels.csv に一覧があります。",
+        )
+    )
+
+
+def _tell_missing(delivery: MapDelivery, shown: Sequence[Sequence[Feature]]) -> None:
+    on_sheets = {feature.id for features in shown for feature in features}
+    missing = [one.id for one in delivery.features if one.id not in on_sheets]
+    if missing:
+        first = ", ".join(missing[:3])
+        delivery.tell(
+            Text(
+                f"{len(missing)} features lie off the sheets, among them {first}.",
+                f"{len(missing)}件の地物が図面の範囲外です（例: {first}）。",
+            )
+        )

@@ -1,0 +1,176 @@
+"""Drawing sheets are read back: true to scale, whole, and clean."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import ezdxf.filemanagement
+import numpy as np
+import pypdfium2
+import pytest
+import shapely
+
+from processing.core.errors import Unsuitable, UserError
+from processing.core.text import Text
+from processing.formats.sheets.drawing_sheet import DrawingSheet
+from processing.formats.sheets.grid_division import map_grid, plain_grid
+from processing.formats.sheets.map_looks import map_shapes
+from processing.formats.sheets.paper_shapes import PaperLine
+from processing.formats.sheets.sheet_clips import SheetClips
+from processing.formats.sheets.sheet_layout import layout_of
+from processing.map.catalogue import Catalogue, Geometry
+from processing.map.catalogue_file import read_catalogue
+from processing.map.feature import Feature, Position, Vertex
+from processing.operations.export import ExportRequest, export
+from resources import path_of
+
+_EAST, _NORTH = -8000.0, -36200.0
+
+
+@pytest.fixture(scope="module")
+def catalogue() -> Catalogue:
+    return read_catalogue(path_of("catalogue/level500.toml"))
+
+
+def _feature(id_: str, kind: str, geometry: Geometry, *places: Position, **own: Any) -> Feature:
+    vertices = (Vertex((_EAST + x, _NORTH + y, z)) for x, y, z in places)
+    return Feature(id_, kind, geometry, tuple(vertices), own)
+
+
+def _street() -> tuple[Feature, ...]:
+    """600 m of road in a bend, with a house and trees."""
+    bend = [(t, 60.0 + 40.0 * np.sin(t / 120.0), 10.0) for t in np.arange(0.0, 601.0, 10.0)]
+    edges = [tuple((x, y + off, z) for x, y, z in bend) for off in (-4.0, 0.0, 4.0)]
+    trees = [
+        _feature(f"tree-{n}", "street_tree", Geometry.POINT, (x, y + 6, z), number=f"{n}")
+        for n, (x, y, z) in enumerate(bend)
+    ]
+    house = ((20.0, 80.0, 10.0), (40.0, 80.0, 10.0), (40.0, 95.0, 10.0), (20.0, 95.0, 10.0))
+    return (
+        _feature("edge-1", "road_edge", Geometry.LINE, *edges[0]),
+        _feature("centre", "centre_line", Geometry.LINE, *edges[1], name="市道1号線"),
+        _feature("edge-2", "road_edge", Geometry.LINE, *edges[2]),
+        _feature("fifty", "road_edge", Geometry.LINE, (100.0, 20.0, 5.0), (150.0, 20.0, 5.0)),
+        _feature("house", "building", Geometry.AREA, *house, name="見本市役所"),
+        *trees,
+    )
+
+
+def _written(
+    folder: Path, catalogue: Catalogue, *features: Feature, **options: Any
+) -> tuple[tuple[Path, ...], list[Text]]:
+    notes: list[Text] = []
+    request = ExportRequest(("sheets",), folder, options=options)
+    return export(features, catalogue, "EPSG:6677", request, tell=notes.append), notes
+
+
+@pytest.mark.parametrize("division", ["grid", "map", "route"])
+def test_every_division_is_written_clean_and_whole(
+    tmp_path: Path, catalogue: Catalogue, division: str
+) -> None:
+    paths, notes = _written(
+        tmp_path, catalogue, *_street(), sheet_division=division, sheet_paper="A0",
+        sheet_surveyor="測量 太郎",
+    )  # fmt: skip
+    assert [note.en for note in notes if "off the sheets" in note.en] == []
+    ids: set[str] = set()
+    drawings = [path for path in paths if path.suffix == ".dxf"]
+    assert len(drawings) > 2
+    for path in drawings:
+        doc = ezdxf.filemanagement.readfile(path)
+        audit = doc.audit()
+        assert [one.message for one in (*audit.errors, *audit.fixes)] == []
+        for entity in doc.modelspace():
+            if entity.has_xdata("ZUKA"):
+                ids.add(entity.get_xdata("ZUKA")[1].value)
+        if not path.stem.endswith("_layouts"):
+            flat = doc.dxfversion
+            assert flat == "AC1009"
+    assert ids == {feature.id for feature in _street()}
+    pdf = pypdfium2.PdfDocument(tmp_path / "sheets.pdf")
+    assert len(pdf) == len(drawings) - 1
+    words = pdf[0].get_textpage().get_text_bounded()
+    for expected in ("凡例", "測量 太郎", "第9系", f"1 / {len(pdf)}"):
+        assert expected in words
+
+
+def test_fifty_metres_are_a_hundred_millimetres(tmp_path: Path, catalogue: Catalogue) -> None:
+    paths, _ = _written(tmp_path, catalogue, *_street())
+    pdf = pypdfium2.PdfDocument(tmp_path / "sheets.pdf")
+    assert np.array(pdf[0].get_size()) * 25.4 / 72 == pytest.approx([841.0, 594.0], abs=0.01)
+    spans = []
+    for page in pdf:
+        for one in page.get_objects():
+            left, bottom, right, top = one.get_bounds()
+            if top - bottom < 3.0:
+                spans.append((right - left) * 25.4 / 72)
+    # Within the width of the pen, which a span contains at both ends.
+    assert min(abs(span - 100.0) for span in spans) < 0.4
+    doc = ezdxf.filemanagement.readfile(next(p for p in paths if p.stem.endswith("_layouts")))
+    for name in doc.layouts.names()[1:]:
+        for view in doc.layouts.get(name).query("VIEWPORT"):
+            if view.dxf.id != 1:
+                assert view.get_scale() == pytest.approx(1000 / 500)
+
+
+def test_a_line_on_paper_has_its_length_at_every_scale_and_angle(catalogue: Catalogue) -> None:
+    layout = layout_of("A1")
+    fifty = _street()[3]
+    for scale, turned in ((250, 0.0), (500, 33.0), (1000, 211.0)):
+        middle = (_EAST + 125.0, _NORTH + 20.0)
+        size = tuple(side * scale / 1000 for side in layout.window_size)
+        sheet = DrawingSheet("", middle, (size[0], size[1]), scale, turned)
+        (line,) = map_shapes([fifty], catalogue, sheet, layout)
+        assert isinstance(line, PaperLine)
+        assert np.hypot(*np.diff(line.places, axis=0)[0]) == pytest.approx(50_000 / scale)
+        back = sheet.on_ground(line.places, layout)
+        assert back == pytest.approx(np.array([v.xyz[:2] for v in fifty.vertices]), abs=1e-9)
+
+
+def test_the_sheets_of_a_grid_cover_the_map() -> None:
+    shapes = SheetClips(_street()).shapes
+    for sheets in (
+        plain_grid(shapes, 250, (250.0, 250.0)),
+        plain_grid(shapes, 500, (600.0, 500.0)),
+        map_grid(shapes, 250, "EPSG:6677"),
+        map_grid(shapes, 500, "EPSG:6677"),
+        map_grid(shapes, 1000, "EPSG:6677"),
+    ):
+        whole = shapely.union_all([sheet.window for sheet in sheets]).buffer(1e-6)
+        assert all(whole.covers(shape) for shape in shapes)
+        assert len({sheet.name for sheet in sheets}) == len(sheets)
+
+
+def test_words_do_not_cover_each_other(tmp_path: Path, catalogue: Catalogue) -> None:
+    crowd = [
+        _feature(f"t{n}", "street_tree", Geometry.POINT, (n * 0.2, 0.0, 1.0), number=f"番号{n}")
+        for n in range(40)
+    ]
+    paths, notes = _written(tmp_path, catalogue, *crowd)
+    (table,) = (path for path in paths if path.suffix == ".csv")
+    listed = table.read_text("utf-8-sig").splitlines()[1:]
+    doc = ezdxf.filemanagement.readfile(next(p for p in paths if p.stem.endswith("_001")))
+    written = [text for text in doc.modelspace().query("TEXT") if "番号" in text.dxf.text]
+    written = [text for text in written if text.dxf.layer.endswith("_文字")]
+    assert len(written) + len(listed) == 40
+    assert written
+    assert listed
+    assert any("no room" in note.en for note in notes)
+
+
+def test_bad_input_is_refused_in_one_sentence(tmp_path: Path, catalogue: Catalogue) -> None:
+    with pytest.raises(Unsuitable, match="no features"):
+        _written(tmp_path, catalogue)
+    with pytest.raises(Unsuitable, match="no such route"):
+        _written(tmp_path, catalogue, *_street(), sheet_division="route", sheet_route="none")
+    with pytest.raises(Unsuitable, match="no room on the paper"):
+        _written(tmp_path, catalogue, *_street(), sheet_division="map", sheet_paper="A3")
+    far = _feature("far", "road_edge", Geometry.LINE, (0.0, 0.0, 0.0), (9e6, 9e6, 0.0))
+    with pytest.raises(Unsuitable, match="more than"):
+        _written(tmp_path, catalogue, far)
+    assert list(tmp_path.iterdir()) == []
+    (tmp_path / "sheets").write_text("a file where the folder should be")
+    with pytest.raises(UserError):
+        _written(tmp_path, catalogue, *_street())
+    assert [path.name for path in tmp_path.iterdir()] == ["sheets"]
