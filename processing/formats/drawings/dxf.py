@@ -171,7 +171,7 @@ class MapDrawing:
         crs: str,
         language: Language | None,
         *,
-        size: DrawnSize = DrawnSize(),  # noqa: B008 (a frozen value)
+        size: DrawnSize = DrawnSize(),
     ) -> None:
         self._size = size
         self._catalogue = catalogue

@@ -124,9 +124,7 @@ def _candidates(label: SheetLabel) -> Iterator[LabelPlace]:
             yield from _inside(label.shape, (width, height))
 
 
-def _around(
-    place: PaperPlace, reach: float, size: tuple[float, float]
-) -> Iterator[LabelPlace]:
+def _around(place: PaperPlace, reach: float, size: tuple[float, float]) -> Iterator[LabelPlace]:
     """Right, left, above, below, then the corners; then the same farther away."""
     ways = ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (-1, 1), (1, -1), (-1, -1))
     for ring in _RINGS_MM:

@@ -12,11 +12,11 @@ from processing.formats.drawings.sxf_looks import pen_mm_of
 from processing.formats.drawings.symbol_shapes import symbol_rotation_deg, symbol_shapes
 from processing.formats.sheets.drawing_sheet import DrawingSheet
 from processing.formats.sheets.paper_shapes import (
-    Pen,
     PaperCircle,
     PaperLine,
     PaperPlace,
     PaperShape,
+    Pen,
 )
 from processing.formats.sheets.sheet_layout import SheetLayout
 from processing.map.catalogue import LINE_TYPES, Catalogue, FeatureKind, Geometry

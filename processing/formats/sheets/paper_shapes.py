@@ -88,9 +88,7 @@ def words_width(words: str, height: float) -> float:
     return width_of(words, type_points(height))
 
 
-def box_line(
-    pen: Pen, low: PaperPlace, size: PaperPlace, *, is_filled: bool = False
-) -> PaperLine:
+def box_line(pen: Pen, low: PaperPlace, size: PaperPlace, *, is_filled: bool = False) -> PaperLine:
     """A rectangle from its lower left corner."""
     (x, y), (width, height) = low, size
     around = ((x, y), (x + width, y), (x + width, y + height), (x, y + height), (x, y))
@@ -107,7 +105,9 @@ def words_in_box(
     for share in _SHRINKS:
         shrunk = height * share
         lines = break_lines(words, type_points(shrunk), width)
-        if len(lines) * leading_mm(type_points(shrunk)) <= max(room, leading_mm(type_points(height))):
+        if len(lines) * leading_mm(type_points(shrunk)) <= max(
+            room, leading_mm(type_points(height))
+        ):
             break
     else:
         most = max(1, int(room / leading_mm(type_points(shrunk))))

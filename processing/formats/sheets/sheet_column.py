@@ -15,11 +15,11 @@ from processing.formats.sheets.paper_shapes import (
     GREY,
     RULE_LAYER,
     WORDS_LAYER,
-    Pen,
     PaperLine,
     PaperPlace,
     PaperShape,
     PaperWords,
+    Pen,
     box_line,
     words_in_box,
     words_width,
@@ -113,7 +113,9 @@ def _scale_bar(sheet: DrawingSheet, low: PaperPlace, width: float) -> Iterator[P
     yield PaperWords(_WORDS, f"S = 1:{sheet.scale}", place, 3.0, "CENTER")
 
 
-def _head(words: Text, content: ColumnContent, low: PaperPlace, size: PaperPlace) -> Iterator[PaperShape]:
+def _head(
+    words: Text, content: ColumnContent, low: PaperPlace, size: PaperPlace
+) -> Iterator[PaperShape]:
     """A box of the column with its heading."""
     yield box_line(_THICK, low, size)
     place = (low[0] + size[0] / 2, low[1] + size[1] - _HEAD_MM / 2)
@@ -201,5 +203,7 @@ def _title_block(content: ColumnContent, low: PaperPlace, width: float) -> Itera
         if number:
             yield PaperLine(_THIN, ((low[0], y), (low[0] + width, y)))
         words = name.in_language(content.language)
-        yield from words_in_box(words, (low[0] + 1.0, y), (label - 2.0, _ROW_MM), 2.5, align="CENTER")
+        yield from words_in_box(
+            words, (low[0] + 1.0, y), (label - 2.0, _ROW_MM), 2.5, align="CENTER"
+        )
         yield from words_in_box(value, (line + 2.0, y), (width - label - 4.0, _ROW_MM), 3.0)

@@ -14,11 +14,11 @@ from processing.formats.sheets.paper_shapes import (
     FRAME_LAYER,
     RULE_LAYER,
     WORDS_LAYER,
-    Pen,
     PaperLine,
     PaperPlace,
     PaperShape,
     PaperWords,
+    Pen,
     box_line,
     words_width,
 )
@@ -69,7 +69,9 @@ def _grid(sheet: DrawingSheet, layout: SheetLayout) -> Iterator[PaperShape]:
     taken: list[shapely.Geometry] = []
     for is_easting, values in ((True, eastings), (False, northings)):
         for value in values:
-            ends = ((value, south), (value, north)) if is_easting else ((west, value), (east, value))
+            ends = (
+                ((value, south), (value, north)) if is_easting else ((west, value), (east, value))
+            )
             inside = shapely.LineString(ends).intersection(window)
             if inside.geom_type == "LineString" and inside.length > arm:
                 words = f"{'Y' if is_easting else 'X'}={value:+.0f}"
@@ -129,9 +131,11 @@ def _match(
     yield PaperLine(_MATCH_PEN, ((start[0], start[1]), (end[0], end[1])))
     low, high = (start, end) if start[1] <= end[1] else (end, start)
     way = (high - low) / np.hypot(*(high - low))
-    words = Text(
-        "Match line {station}, sheet {to}", "接合線 {station}　図面{to}に続く"
-    ).filled(station=match.station, to=match.to).in_language(language)
+    words = (
+        Text("Match line {station}, sheet {to}", "接合線 {station}　図面{to}に続く")
+        .filled(station=match.station, to=match.to)
+        .in_language(language)
+    )
     reach = words_width(words, 2.5) / 2 + 4.0
     # On the side of the other sheet, where the map is that sheet's.
     side = np.array([-way[1], way[0]])

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from processing.formats.drawings.dxf_labels import label_of
 from processing.formats.drawings.dxf import LABEL_SUFFIX
+from processing.formats.drawings.dxf_labels import label_of
 from processing.formats.sheets.drawing_sheet import DrawingSheet
 from processing.formats.sheets.label_places import SheetLabel, place_labels
 from processing.formats.sheets.map_looks import map_pen, symbol_reach_mm
-from processing.formats.sheets.paper_shapes import Pen, PaperWords
+from processing.formats.sheets.paper_shapes import PaperWords, Pen
 from processing.formats.sheets.sheet_layout import SheetLayout
 from processing.map.catalogue import Catalogue, FeatureKind, Geometry
 from processing.map.feature import Feature
@@ -70,7 +70,9 @@ def label_sheet(
         label = label_of(catalogue[features[at].kind], features[at])
         if label is not None:
             chosen.append(at)
-            labels.append(_label(features[at], catalogue[features[at].kind], label.words, shapes[at]))
+            labels.append(
+                _label(features[at], catalogue[features[at].kind], label.words, shapes[at])
+            )
     (x, y), (width, height) = layout.window_low, layout.window_size
     symbols = [
         shape.buffer(symbol_reach_mm(catalogue[feature.kind]), quad_segs=4)
@@ -96,9 +98,7 @@ def label_sheet(
     return SheetLabels(tuple(placed), tuple(unplaced))
 
 
-def _label(
-    feature: Feature, kind: FeatureKind, words: str, shape: shapely.Geometry
-) -> SheetLabel:
+def _label(feature: Feature, kind: FeatureKind, words: str, shape: shapely.Geometry) -> SheetLabel:
     begins = (code for code in _HEIGHTS_MM if kind.dm_code.startswith(code))
     height = next((_HEIGHTS_MM[code] for code in begins), _HEIGHT_MM)
     reach = symbol_reach_mm(kind) if feature.geometry is Geometry.POINT else 0.0

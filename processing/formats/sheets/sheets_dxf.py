@@ -21,12 +21,12 @@ from processing.formats.map_delivery import MapDelivery
 from processing.formats.sheets.drawing_sheet import DrawingSheet
 from processing.formats.sheets.paper_shapes import (
     FRAME_LAYER,
-    Pen,
     PaperCircle,
     PaperLine,
     PaperPlace,
     PaperShape,
     PaperWords,
+    Pen,
 )
 from processing.formats.sheets.sheet_layout import SheetLayout
 from processing.map.feature import Feature
@@ -110,9 +110,7 @@ def _map_drawing(
     monitor: Monitor,
 ) -> MapDrawing:
     size = DrawnSize(scale, has_labels=False)
-    drawing = MapDrawing(
-        delivery.catalogue, version, delivery.crs, delivery.language, size=size
-    )
+    drawing = MapDrawing(delivery.catalogue, version, delivery.crs, delivery.language, size=size)
     for feature in features:
         monitor.check()
         drawing.add(feature)
@@ -121,7 +119,9 @@ def _map_drawing(
 
 
 def _set_weights(drawing: MapDrawing, delivery: MapDelivery) -> None:
-    pens: Mapping[str, float] = {kind.layer: pen_mm_of(kind) for kind in reversed(delivery.catalogue.kinds)}
+    pens: Mapping[str, float] = {
+        kind.layer: pen_mm_of(kind) for kind in reversed(delivery.catalogue.kinds)
+    }
     for layer in drawing.document.doc.layers:
         if layer.dxf.name in pens:
             layer.dxf.lineweight = _weight(pens[layer.dxf.name])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Any
 
@@ -40,7 +41,7 @@ def _feature(id_: str, kind: str, geometry: Geometry, *places: Position, **own: 
 
 def _street() -> tuple[Feature, ...]:
     """600 m of road in a bend, with a house and trees."""
-    bend = [(t, 60.0 + 40.0 * np.sin(t / 120.0), 10.0) for t in np.arange(0.0, 601.0, 10.0)]
+    bend = [(t, 60.0 + 40.0 * math.sin(t / 120.0), 10.0) for t in map(float, range(0, 601, 10))]
     edges = [tuple((x, y + off, z) for x, y, z in bend) for off in (-4.0, 0.0, 4.0)]
     trees = [
         _feature(f"tree-{n}", "street_tree", Geometry.POINT, (x, y + 6, z), number=f"{n}")
@@ -49,7 +50,7 @@ def _street() -> tuple[Feature, ...]:
     house = ((20.0, 80.0, 10.0), (40.0, 80.0, 10.0), (40.0, 95.0, 10.0), (20.0, 95.0, 10.0))
     return (
         _feature("edge-1", "road_edge", Geometry.LINE, *edges[0]),
-        _feature("centre", "centre_line", Geometry.LINE, *edges[1], name="市道1号線"),
+        _feature("centre", "road_center", Geometry.LINE, *edges[1], name="市道1号線"),
         _feature("edge-2", "road_edge", Geometry.LINE, *edges[2]),
         _feature("fifty", "road_edge", Geometry.LINE, (100.0, 20.0, 5.0), (150.0, 20.0, 5.0)),
         _feature("house", "building", Geometry.AREA, *house, name="見本市役所"),
@@ -83,7 +84,7 @@ def test_every_division_is_written_clean_and_whole(
         assert [one.message for one in (*audit.errors, *audit.fixes)] == []
         for entity in doc.modelspace():
             if entity.has_xdata("ZUKA"):
-                ids.add(entity.get_xdata("ZUKA")[1].value)
+                ids.add(entity.get_xdata("ZUKA")[0].value)
         if not path.stem.endswith("_layouts"):
             flat = doc.dxfversion
             assert flat == "AC1009"
