@@ -27,15 +27,26 @@ LEVEL_SCALE = 500
 
 _MM_OF_M = 1000.0 / LEVEL_SCALE
 _POINT_MM = 0.5
+_LUMA = (0.299, 0.587, 0.114)  # ITU-R BT.601
+_LIGHTEST = 150.0
 
 
 def map_pen(kind: FeatureKind, *, is_candidate: bool = False) -> Pen:
     """Layer, colour, pen and dashes of a kind's lines."""
     value = int(kind.colour[1:], 16)
-    rgb = (value >> 16, value >> 8 & 255, value & 255)
+    rgb = _legible((value >> 16, value >> 8 & 255, value & 255))
     dashes = tuple(abs(part) * _MM_OF_M for part in LINE_TYPES.get(kind.line_type, ()))
     layer = kind.layer + (CANDIDATE_SUFFIX if is_candidate else "")
     return Pen(layer, rgb, pen_mm_of(kind), dashes)
+
+
+def _legible(rgb: tuple[int, int, int]) -> tuple[int, int, int]:
+    """A colour dark enough for thin lines on white paper: yellow of a screen is not."""
+    luma = sum(part * share for part, share in zip(rgb, _LUMA, strict=True))
+    if luma <= _LIGHTEST:
+        return rgb
+    red, green, blue = (int(part * _LIGHTEST / luma) for part in rgb)
+    return red, green, blue
 
 
 def map_shapes(

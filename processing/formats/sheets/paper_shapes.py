@@ -105,13 +105,12 @@ def words_in_box(
     for share in _SHRINKS:
         shrunk = height * share
         lines = break_lines(words, type_points(shrunk), width)
-        if len(lines) * leading_mm(type_points(shrunk)) <= max(
-            room, leading_mm(type_points(height))
-        ):
+        most = max(room, leading_mm(type_points(height)))
+        if len(lines) * leading_mm(type_points(shrunk)) <= most:
             break
     else:
-        most = max(1, int(room / leading_mm(type_points(shrunk))))
-        lines = [*lines[: most - 1], lines[most - 1][:-1] + "…"]
+        count = max(1, int(room / leading_mm(type_points(shrunk))))
+        lines = [*lines[: count - 1], lines[count - 1][:-1] + "…"]
     step = leading_mm(type_points(shrunk))
     x = low[0] + {"LEFT": 0.0, "CENTER": width / 2, "RIGHT": width}[align]
     top = low[1] + room / 2 + (len(lines) - 1) / 2 * step

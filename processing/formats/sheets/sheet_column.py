@@ -60,7 +60,7 @@ class ColumnContent:
 
     @property
     def sheet(self) -> DrawingSheet:
-        """This one."""
+        """The one whose column it is."""
         return self.sheets[self.number - 1]
 
 
@@ -155,7 +155,7 @@ def _sample(kind: FeatureKind, place: PaperPlace, step: float) -> Iterator[Paper
 
 
 def _key_map(content: ColumnContent, low: PaperPlace, size: PaperPlace) -> Iterator[PaperShape]:
-    """This sheet, grey, among its neighbours, with their numbers."""
+    """The sheet, grey, among its neighbours, with their numbers."""
     yield from _head(Text("Key map", "索引図"), content, low, size)
     own = content.sheet
     reach = 2.0 * max(own.size_m)

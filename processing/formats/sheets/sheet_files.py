@@ -52,7 +52,8 @@ def write_sheets_map(delivery: MapDelivery, position: Position, monitor: Monitor
     sheets = _divided(delivery, clips, options, layout)
     shown = [clips.within(sheet.window) for sheet in sheets]
     language: Language = delivery.language or "ja"
-    drawn, pages, unplaced = [], [], []
+    drawn, pages = [], []
+    unplaced: list[UnplacedLabel] = []
     for number, (sheet, features) in enumerate(zip(sheets, shown, strict=True), 1):
         monitor.check()
         monitor.report(number / len(sheets) / 2)

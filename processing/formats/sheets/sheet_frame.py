@@ -54,10 +54,7 @@ def _grid(sheet: DrawingSheet, layout: SheetLayout) -> Iterator[PaperShape]:
     step = GRID_MM * sheet.scale / 1000
     window = sheet.window
     west, south, east, north = window.bounds
-    eastings, northings = (
-        [number * step for number in range(math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9) + 1)]
-        for low, high in ((west, east), (south, north))
-    )  # fmt: skip
+    eastings, northings = _multiples(west, east, step), _multiples(south, north, step)
     shapely.prepare(window)
     arm = _ARM_MM * sheet.scale / 1000
     for x in eastings:
@@ -76,6 +73,11 @@ def _grid(sheet: DrawingSheet, layout: SheetLayout) -> Iterator[PaperShape]:
             if inside.geom_type == "LineString" and inside.length > arm:
                 words = f"{'Y' if is_easting else 'X'}={value:+.0f}"
                 yield from _ends(sheet, layout, inside, words, taken)
+
+
+def _multiples(low: float, high: float, step: float) -> list[float]:
+    first, last = math.ceil(low / step - 1e-9), math.floor(high / step + 1e-9)
+    return [number * step for number in range(first, last + 1)]
 
 
 def _line(sheet: DrawingSheet, layout: SheetLayout, line: shapely.Geometry) -> PaperLine:

@@ -67,33 +67,39 @@ def label_sheet(
             longest[feature.id] = at
     chosen, labels = [], []
     for at in longest.values():
-        label = label_of(catalogue[features[at].kind], features[at])
+        kind = catalogue[features[at].kind]
+        label = label_of(kind, features[at])
         if label is not None:
             chosen.append(at)
-            labels.append(
-                _label(features[at], catalogue[features[at].kind], label.words, shapes[at])
-            )
+            labels.append(_label(features[at], kind, label.words, shapes[at]))
     (x, y), (width, height) = layout.window_low, layout.window_size
     symbols = [
         shape.buffer(symbol_reach_mm(catalogue[feature.kind]), quad_segs=4)
         for feature, shape in zip(features, shapes, strict=True)
         if shape.geom_type == "Point"
     ]
-    lines = [shapely.boundary(one) if one.geom_type == "Polygon" else one
-             for one in shapes if one.geom_type != "Point"]  # fmt: skip
+    lines = [
+        shapely.boundary(one) if one.geom_type == "Polygon" else one
+        for one in shapes
+        if one.geom_type != "Point"
+    ]
+    lines += [
+        shapely.LineString(sheet.on_paper(np.array([one.start, one.end]), layout))
+        for one in sheet.matches
+    ]
     window = shapely.box(x, y, x + width, y + height)
     places = place_labels(labels, window, lines, symbols)
     placed, unplaced = [], []
-    for at, label, place in zip(chosen, labels, places, strict=True):
+    for at, wanted, place in zip(chosen, labels, places, strict=True):
         feature = features[at]
         if place is None:
             east, north, _ = feature.vertices[0].xyz
-            unplaced.append(UnplacedLabel(number, feature, label.words, (east, north)))
+            unplaced.append(UnplacedLabel(number, feature, wanted.words, (east, north)))
             continue
         pen = map_pen(catalogue[feature.kind])
         words = Pen(pen.layer + LABEL_SUFFIX, pen.colour)
         placed.append(PaperWords(
-            words, label.words, place.middle, label.height, "CENTER", place.angle_deg
+            words, wanted.words, place.middle, wanted.height, "CENTER", place.angle_deg
         ))  # fmt: skip
     return SheetLabels(tuple(placed), tuple(unplaced))
 

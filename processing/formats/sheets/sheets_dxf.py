@@ -119,9 +119,8 @@ def _map_drawing(
 
 
 def _set_weights(drawing: MapDrawing, delivery: MapDelivery) -> None:
-    pens: Mapping[str, float] = {
-        kind.layer: pen_mm_of(kind) for kind in reversed(delivery.catalogue.kinds)
-    }
+    kinds = reversed(delivery.catalogue.kinds)
+    pens: Mapping[str, float] = {kind.layer: pen_mm_of(kind) for kind in kinds}
     for layer in drawing.document.doc.layers:
         if layer.dxf.name in pens:
             layer.dxf.lineweight = _weight(pens[layer.dxf.name])

@@ -47,6 +47,17 @@ def test_what_is_chosen_is_asked_for(qtbot: QtBot, tmp_path: Path) -> None:
         "dm_approval": "",
         "check_points": "",
         "map_level": "500",
+        "sheet_scale": "500",
+        "sheet_division": "grid",
+        "sheet_paper": "A1",
+        "sheet_overlap": 10.0,
+        "sheet_route": "",
+        "sheet_title": "",
+        "sheet_client": "",
+        "sheet_maker": "",
+        "sheet_surveyor": "",
+        "sheet_date": "",
+        "sheet_heights": "",
         "tiny_decimals": 1,
     }
     assert request.options == expected
