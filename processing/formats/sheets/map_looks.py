@@ -37,7 +37,7 @@ def map_pen(kind: FeatureKind, *, is_candidate: bool = False) -> Pen:
     rgb = _legible((value >> 16, value >> 8 & 255, value & 255))
     dashes = tuple(abs(part) * _MM_OF_M for part in LINE_TYPES.get(kind.line_type, ()))
     layer = kind.layer + (CANDIDATE_SUFFIX if is_candidate else "")
-    return Pen(layer, rgb, pen_mm_of(kind), dashes)
+    return Pen(layer, rgb, pen_mm_of(kind), dashes, kind.line_type)
 
 
 def _legible(rgb: tuple[int, int, int]) -> tuple[int, int, int]:

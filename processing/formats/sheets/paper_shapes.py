@@ -27,12 +27,21 @@ _SHRINKS = (1.0, 0.85, 0.7, 0.6, 0.5, 0.4, 0.3)
 
 @dataclass(frozen=True)
 class Pen:
-    """Layer, colour, width and dashes of a line; dash and gap in mm."""
+    """Layer, colour, width and dashes of a line.
+
+    Attributes
+    ----------
+    dash_mm : tuple of float
+        Dash and gap in turn; empty for a full line.
+    line_type : str
+        The same as a key of :data:`processing.map.catalogue.LINE_TYPES`.
+    """
 
     layer: str
     colour: Rgb = BLACK
     width_mm: float = 0.15
     dash_mm: tuple[float, ...] = ()
+    line_type: str = "continuous"
 
 
 @dataclass(frozen=True)

@@ -71,7 +71,7 @@ def _of_route(
     sheets = []
     for start, end in stretches:
         centre, turned = _window(stations, start, end)
-        name = f"{station_words(route.start_m + start)}–{station_words(route.start_m + end)}"
+        name = f"{station_words(route.start_m + start)}～{station_words(route.start_m + end)}"
         sheets.append(DrawingSheet(f"{route.name} {name}".strip(), centre, size, scale, turned))
     for at in range(len(sheets) - 1):
         station = (stretches[at][1] + stretches[at + 1][0]) / 2

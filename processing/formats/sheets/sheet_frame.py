@@ -34,7 +34,7 @@ _AWAY_MM = 2.2
 """Middle of a coordinate's letters from the window's edge."""
 _FRAME_PEN, _WINDOW_PEN = Pen(FRAME_LAYER, width_mm=0.7), Pen(FRAME_LAYER, width_mm=0.35)
 _CROSS_PEN = Pen(RULE_LAYER, width_mm=0.13)
-_MATCH_PEN = Pen(RULE_LAYER, (200, 0, 0), 0.35, (8.0, 1.5, 1.0, 1.5))
+_MATCH_PEN = Pen(RULE_LAYER, (200, 0, 0), 0.35, (4.0, 1.0, 0.5, 1.0), "dash_dot")
 
 
 def frame_shapes(

@@ -72,7 +72,7 @@ def write_layouts_dxf(
         view.dxf.view_target_point = (*one.sheet.centre, 0.0)
         view.dxf.view_twist_angle = -one.sheet.turned_deg
         for shape in one.shapes:
-            _draw(drawing, space, shape, _Placing(lambda places: places, 1.0, 0.0))
+            _draw(drawing, space, shape, _Placing(lambda places: places, 1.0, 0.0, 1000 / scale))
     doc.layouts.delete("Layout1")
     _set_weights(drawing, delivery)
     drawing.document.write(path, monitor)
@@ -132,15 +132,16 @@ def _weight(width_mm: float) -> int:
 
 @dataclass(frozen=True)
 class _Placing:
-    """How paper lies in a space: places, millimetres, direction."""
+    """How paper lies in a space: places, millimetres, direction, scale of patterns."""
 
     place: Any  # a function of places
     unit: float
     turned_deg: float
+    pattern: float = 1.0
 
 
 def _draw(drawing: MapDrawing, space: Any, shape: PaperShape, placing: _Placing) -> None:
-    attributes = _attributes(drawing, shape.pen)
+    attributes = _attributes(drawing, shape.pen, placing)
     match shape:
         case PaperLine():
             places = placing.place(shape.places)
@@ -189,7 +190,7 @@ def _write(
     text.set_placement(place, align=TextEntityAlignment[f"MIDDLE_{shape.align}"])
 
 
-def _attributes(drawing: MapDrawing, pen: Pen) -> dict[str, Any]:
+def _attributes(drawing: MapDrawing, pen: Pen, placing: _Placing) -> dict[str, Any]:
     from ezdxf.colors import rgb2int
 
     document = drawing.document
@@ -197,6 +198,10 @@ def _attributes(drawing: MapDrawing, pen: Pen) -> dict[str, Any]:
         document.require_encodable(pen.layer)
         document.doc.layers.add(pen.layer, color=_BLACK_ACI)
     attributes: dict[str, Any] = {"layer": pen.layer}
+    if pen.dash_mm:
+        attributes["linetype"] = pen.line_type.upper()
+        if drawing.document.has_light_polylines:  # R12 has the drawing's own scale alone
+            attributes["ltscale"] = placing.pattern
     is_black = pen.colour == (0, 0, 0)
     if document.has_true_colours:
         if not is_black:

@@ -18,7 +18,11 @@ ALONG = np.array([0.0, 1.0])
 
 def dull(centre: tuple[float, float, float], facing_deg: float = 0.0, shine: float = 0.3) -> Plate:
     one = plate(BOARD, centre, facing_deg)
-    return replace(one, evidence=EVIDENCE._replace(bright=0.0, shine=shine, both_seen=False))
+    return replace(
+        one,
+        evidence=EVIDENCE._replace(bright=0.0, shine=shine, both_seen=False),
+        pieces=np.arange(4),
+    )
 
 
 def test_sides_of_a_board_are_each_others_other_side() -> None:
