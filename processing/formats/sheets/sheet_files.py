@@ -75,7 +75,7 @@ def write_sheets_map(delivery: MapDelivery, position: Position, monitor: Monitor
     for number, (one, features) in enumerate(zip(drawn, shown, strict=True), 1):
         monitor.report(0.5 + number / len(sheets) / 2)
         path = position(f"sheets/{delivery.name}_{number:03d}.dxf")
-        write_flat_dxf(path, delivery, features, one, layout, monitor)
+        write_flat_dxf(path, delivery, features, one, layout, monitor=monitor)
     _tell_unplaced(delivery, position, unplaced)
     _tell_missing(delivery, shown)
 

@@ -84,6 +84,7 @@ def write_flat_dxf(
     features: Sequence[Feature],
     drawn: DrawnSheet,
     layout: SheetLayout,
+    *,
     monitor: Monitor,
 ) -> None:
     """Write one sheet with the features cut at its window (R12, cp932)."""

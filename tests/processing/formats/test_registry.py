@@ -73,10 +73,9 @@ def test_what_a_map_can_be_written_as_can_be_chosen() -> None:
         assert one.writes_map or one.writes[Content.FEATURES]
     assert [option.id for option in FORMATS.map_options()] == [
         "dxf_version", "digits", "encoding", "dm_accuracy", "dm_company", "dm_approval",
-        "check_points", "map_level",
         "sheet_scale", "sheet_division", "sheet_paper", "sheet_overlap", "sheet_route",
         "sheet_title", "sheet_client", "sheet_maker", "sheet_surveyor", "sheet_date",
-        "sheet_heights",
+        "sheet_heights", "check_points", "map_level",
     ]  # fmt: skip
 
 
