@@ -6,6 +6,7 @@ CAD programs of Japanese offices expect.
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Iterable, Mapping
 from io import TextIOWrapper
 from pathlib import Path
@@ -39,6 +40,7 @@ APP_ID = "ZUKA"
 
 _STYLE, _FONT, _FONT_FAMILY = "JAPANESE", "msgothic.ttc", "MS Gothic"
 _CHECK_WRITES = 4096
+_SILENT = logging.NullHandler()
 
 DxfPoint = tuple[float, ...]
 
@@ -73,6 +75,8 @@ class DxfDocument:
         from ezdxf.filemanagement import new
 
         check_one_of(version, ENCODINGS)
+        # That R12 carries no units is no line on a terminal.
+        logging.getLogger("ezdxf").addHandler(_SILENT)
         self.has_true_colours = version in _TRUE_COLOURS
         self.has_light_polylines = version != "R12"
         self.encoding = ENCODINGS[version]

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from processing.core.monitor import Monitor
-from processing.formats.drawings.dxf import DrawnSize, MapDrawing
+from processing.formats.drawings.dxf import LABEL_SUFFIX, DrawnSize, MapDrawing
 from processing.formats.drawings.dxf_document import DxfVersion
 from processing.formats.drawings.dxf_text import label_text
 from processing.formats.drawings.sxf_looks import pen_mm_of
@@ -197,7 +197,10 @@ def _attributes(drawing: MapDrawing, pen: Pen, placing: _Placing) -> dict[str, A
     document = drawing.document
     if pen.layer not in document.doc.layers:
         document.require_encodable(pen.layer)
-        document.doc.layers.add(pen.layer, color=_BLACK_ACI)
+        base = pen.layer.removesuffix(LABEL_SUFFIX)
+        has_base = base in document.doc.layers
+        aci = document.doc.layers.get(base).color if has_base else _BLACK_ACI
+        document.doc.layers.add(pen.layer, color=aci)
     attributes: dict[str, Any] = {"layer": pen.layer}
     if pen.dash_mm:
         attributes["linetype"] = pen.line_type.upper()
@@ -208,6 +211,6 @@ def _attributes(drawing: MapDrawing, pen: Pen, placing: _Placing) -> dict[str, A
         if not is_black:
             attributes["true_color"] = rgb2int(pen.colour)
         attributes["lineweight"] = _weight(pen.width_mm)
-    elif not is_black:
+    elif not is_black and pen.layer.startswith(FRAME_LAYER):
         attributes["color"] = 1 if pen.colour[0] > 180 and pen.colour[1] < 100 else 8
     return attributes
