@@ -13,9 +13,11 @@ from PySide6.QtWidgets import (
     QDialogButtonBox,
     QFileDialog,
     QFormLayout,
+    QFrame,
     QHBoxLayout,
     QLineEdit,
     QPushButton,
+    QScrollArea,
     QVBoxLayout,
     QWidget,
 )
@@ -112,10 +114,16 @@ class ExportForm(QDialog):
             row.field.setToolTip(option.explanation.in_language(language))
             form.addRow(option.name.in_language(language), row)
         form.addRow("", self._candidates)
+        body = QWidget(self)
+        body.setLayout(form)
+        scroll = QScrollArea(self)  # the options of all formats are higher than small screens
+        scroll.setFrameShape(QFrame.Shape.NoFrame)
+        scroll.setWidgetResizable(True)
+        scroll.setWidget(body)
         layout = QVBoxLayout(self)
-        layout.addLayout(form)
+        layout.addWidget(scroll)
         layout.addWidget(self._buttons)
-        self.resize(480, 260)
+        self.resize(540, 640)
 
     def _on_boxes_toggled(self) -> None:
         self._export.setEnabled(any(box.isChecked() for box in self._boxes.values()))
