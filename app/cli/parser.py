@@ -145,7 +145,12 @@ def _add_working_commands(commands: _Commands[_Parser]) -> None:
     _add_inputs(studying)
     studying.add_argument("--truth", action="append", required=True, type=Path, metavar="T")
     studying.add_argument(
-        "--vary", action="append", required=True, metavar="NAME=FROM:TO:STEPS", help="once or twice"
+        "--vary",
+        action="extend",
+        nargs="+",
+        required=True,
+        metavar="NAME=FROM:TO:STEPS",
+        help="once or twice",
     )
     studying.add_argument("--set", action="append", default=[], metavar="NAME=VALUE")
     studying.add_argument("--output", type=Path, required=True, metavar="OUT.csv")
@@ -158,7 +163,7 @@ def _add_working_commands(commands: _Commands[_Parser]) -> None:
     picturing.set_defaults(module="image")
     exporting = commands.add_parser("export", help="write a project's map to files")
     exporting.add_argument("project", type=Path, metavar="PROJECT")
-    exporting.add_argument("--format", action="append", required=True, metavar="F")
+    exporting.add_argument("--format", action="extend", nargs="+", required=True, metavar="F")
     exporting.add_argument("--out", type=Path, required=True, metavar="DIR")
     for option in FORMATS.map_options():
         exporting.add_argument(

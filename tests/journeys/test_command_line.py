@@ -88,7 +88,7 @@ def test_a_tool_gives_the_points_of_the_file_in_their_order_with_its_columns(tmp
 
 
 def test_an_empty_map_is_exported_as_whole_files(project, tmp_path):
-    formats = ("--format", "dxf", "--format", "csv", "--format", "gpkg", "--format", "geojson")
+    formats = ("--format", "dxf", "csv", "--format", "gpkg", "geojson")
     done = zuka("export", project, *formats, "--out", tmp_path / "out")
     assert done.returncode == 0, done.stderr
     for path in done.stdout.split("\n")[:-1]:
