@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import ezdxf
 import laspy
@@ -13,6 +14,11 @@ import pyogrio.raw
 import shapely
 
 from processing.formats.format import Content
+from processing.map.catalogue import Geometry
+from processing.map.catalogue_file import read_catalogue
+from processing.map.feature import Feature, Vertex
+from processing.operations.export import ExportRequest, export
+from resources import path_of
 from tests.app.volume_command import CORNER, SIDE_M, write_design
 from tests.delivered_files import make_las, ply_bytes, sbet_bytes, trajectory_rows, trajectory_text
 from tests.structured_scans import ptx_text, sphere_scan, write_e57
@@ -133,6 +139,25 @@ def _package_of_curbs(path: Path) -> None:
     )
 
 
+def _exported_map(format_id: str, kinds: tuple[str, ...] = ("curb_upper", "curb_lower")) -> Writer:
+    """A map as ``zuka export`` writes it: lines of 10 m, and points for trees."""
+
+    def write(path: Path) -> None:
+        features = [
+            Feature(kind, kind, Geometry.LINE, (Vertex((0.0, 0.0, up)), Vertex((10.0, 0.0, up))))
+            if kind.startswith("curb")
+            else Feature(kind, kind, Geometry.POINT, (Vertex((3.0, 4.0, up)),))
+            for kind, up in zip(kinds, (0.15, 0.0), strict=False)
+        ]
+        catalogue = read_catalogue(path_of("catalogue/level500.toml"))
+        with TemporaryDirectory() as folder:
+            request = ExportRequest((format_id,), Path(folder) / "map")
+            (written,) = export(features, catalogue, "EPSG:6677", request)
+            path.write_bytes(written.read_bytes())
+
+    return write
+
+
 _OF_AREA, _OF_LINE = _geojson("Polygon", _AREA), _geojson("LineString", _LINE)
 
 SMALL_FILES: dict[tuple[Content, str], Writer] = {
@@ -157,6 +182,9 @@ SMALL_FILES: dict[tuple[Content, str], Writer] = {
     (Content.FEATURES, "geojson"): _map_of_curbs,
     (Content.FEATURES, "json"): _map_of_curbs,
     (Content.FEATURES, "gpkg"): _package_of_curbs,
+    (Content.FEATURES, "dxf"): _exported_map("dxf"),
+    (Content.FEATURES, "dm"): _exported_map("dm", ("street_tree",)),
+    (Content.FEATURES, "sima"): _exported_map("sima", ("street_tree",)),
     (Content.AREAS, "geojson"): _OF_AREA,
     (Content.AREAS, "json"): _OF_AREA,
     (Content.AREAS, "gpkg"): _gpkg("Polygon", _AREA),

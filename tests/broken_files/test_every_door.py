@@ -86,7 +86,8 @@ def _command(content: Content, path: Path, beside: Path) -> list[object]:
     if content is Content.IMAGES:
         return ["import", out, points, "--images", path]
     if content is Content.FEATURES:
-        return ["score", "curbs", path, path]
+        # SIMA has no lines, the extended DM doesn't say which edge of a curb one is.
+        return ["score", "trees" if path.suffix in (".sim", ".dm") else "curbs", path, path]
     if content is Content.CLASSES:
         return ["score", "noise", points, path]
     volume = ["run", "volume", "--output", out.with_suffix(".json"), "--set", "grid_m=0.5"]
