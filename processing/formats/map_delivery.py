@@ -25,6 +25,7 @@ from processing.formats.format import MAP
 if TYPE_CHECKING:  # the command line asks for the options alone
     from processing.map.catalogue import Catalogue
     from processing.map.feature import Feature
+    from processing.recording.drive import Drive
 
 OptionsT = TypeVar("OptionsT")
 Position = Callable[[str], Path]
@@ -143,16 +144,49 @@ def _same_choices(default: str, names: tuple[str, ...], name: Text) -> Any:
     return choice(default, choices=choices, name=name)
 
 
+# Any: as the declarations of processing.core.parameters.
+def _scales(default: str, names: tuple[str, ...], name: Text) -> Any:
+    """Denominators of scales."""
+    choices = tuple(ParameterChoice(one, Text.same(f"1:{one}")) for one in names)
+    return choice(default, choices=choices, name=name)
+
+
+# Any: as the declarations of processing.core.parameters.
+def _paper() -> Any:
+    name = Text("Paper of the sheets", "図面の用紙")
+    return _same_choices("A1", ("A0", "A1", "A2", "A3"), name)
+
+
+# Any: as the declarations of processing.core.parameters.
+def _sheet_route() -> Any:
+    return text(
+        name=Text("Route of the sheets", "図面の路線名"),
+        explanation=Text("Empty: every route.", "空欄のときは全路線です。"),
+    )
+
+
+# Any: as the declarations of processing.core.parameters.
+def _sheet_title() -> Any:
+    return text(
+        name=Text("Drawing name", "図面名"),
+        explanation=Text("Empty: the project's name.", "空欄のときはプロジェクト名です。"),
+    )
+
+
+# Any: as the declarations of processing.core.parameters.
+def _sheet_heights() -> Any:
+    return text(
+        name=Text("Zero of heights (sheets)", "高さの基準（図面）"),
+        explanation=Text("As T.P., JGD2024.", "例: T.P.（測地成果2024）"),
+    )
+
+
 @dataclass(frozen=True)
 class SheetOptions:
     """What can be chosen for drawing sheets, and what their title blocks say."""
 
-    sheet_scale: str = choice(
-        "500",
-        choices=tuple(
-            ParameterChoice(one, Text.same(f"1:{one}")) for one in ("250", "500", "1000")
-        ),
-        name=Text("Scale of the sheets", "図面の縮尺"),
+    sheet_scale: str = _scales(
+        "500", ("250", "500", "1000"), Text("Scale of the sheets", "図面の縮尺")
     )
     sheet_division: str = choice(
         "grid",
@@ -167,9 +201,7 @@ class SheetOptions:
             "国土基本図の図郭にはA0が必要です。路線には中心線を使います。",
         ),
     )
-    sheet_paper: str = _same_choices(
-        "A1", ("A0", "A1", "A2", "A3"), Text("Paper of the sheets", "図面の用紙")
-    )
+    sheet_paper: str = _paper()
     sheet_overlap: float = length(
         10.0,
         low=0.0,
@@ -180,22 +212,66 @@ class SheetOptions:
             "隣り合う図面の重複です。接合線はその中央に引きます。",
         ),
     )
-    sheet_route: str = text(
-        name=Text("Route of the sheets", "図面の路線名"),
-        explanation=Text("Empty: every route.", "空欄のときは全路線です。"),
-    )
-    sheet_title: str = text(
-        name=Text("Drawing name", "図面名"),
-        explanation=Text("Empty: the project's name.", "空欄のときはプロジェクト名です。"),
-    )
+    sheet_route: str = _sheet_route()
+    sheet_title: str = _sheet_title()
     sheet_client: str = text(name=Text("Client (sheets)", "計画機関名（図面）"))
     sheet_maker: str = text(name=Text("Maker (sheets)", "作業機関名（図面）"))
     sheet_surveyor: str = text(name=Text("Surveyor (sheets)", "測量者（図面）"))
     sheet_date: str = text(name=Text("Date (sheets)", "年月日（図面）"))
-    sheet_heights: str = text(
-        name=Text("Zero of heights (sheets)", "高さの基準（図面）"),
-        explanation=Text("As T.P., JGD2024.", "例: T.P.（測地成果2024）"),
+    sheet_heights: str = _sheet_heights()
+
+
+@dataclass(frozen=True)
+class SectionOptions:
+    """What can be chosen for sections along a route, and what their title blocks say."""
+
+    section_scale: str = _scales(
+        "100", ("50", "100", "200", "500"), Text("Scale of cross sections", "横断図の縮尺（横）")
     )
+    section_height_scale: str = _scales(
+        "100", ("50", "100", "200", "500"), Text("Scale of their heights", "横断図の縮尺（縦）")
+    )
+    profile_scale: str = _scales(
+        "500",
+        ("250", "500", "1000", "2500"),
+        Text("Scale of the longitudinal section", "縦断図の縮尺（横）"),
+    )
+    profile_height_scale: str = _scales(
+        "100", ("50", "100", "200", "500"), Text("Scale of its heights", "縦断図の縮尺（縦）")
+    )
+    section_pitch: float = length(
+        20.0, low=1.0, high=1000.0, name=Text("From section to section", "横断図の間隔")
+    )
+    section_stations: str = text(
+        name=Text("Further stations", "追加する測点"),
+        explanation=Text(
+            "As 35.2 or No.1+15.20, with commas between.",
+            "例: 35.2、No.1+15.20（カンマ区切り）",
+        ),
+    )
+    section_reach: float = length(
+        10.0, low=1.0, high=100.0, name=Text("Reach to either side", "横断図の片側の幅")
+    )
+    section_depth: float = length(
+        0.5,
+        low=0.05,
+        high=5.0,
+        name=Text("Depth of a section", "断面の奥行き"),
+        explanation=Text(
+            "Points so near together are drawn as the ground.",
+            "この範囲の点から地盤線を求めます。",
+        ),
+    )
+    sheet_paper: str = _paper()
+    sheet_route: str = _sheet_route()
+    sheet_title: str = _sheet_title()
+    sheet_client: str = text(name=Text("Client (sheets)", "計画機関名（図面）"))
+    sheet_maker: str = text(name=Text("Maker (sheets)", "作業機関名（図面）"))
+    sheet_surveyor: str = text(name=Text("Surveyor (sheets)", "測量者（図面）"))
+    sheet_date: str = text(name=Text("Date (sheets)", "年月日（図面）"))
+    sheet_heights: str = _sheet_heights()
+    encoding: str = _encoding()
+    digits: int = _digits()
 
 
 def tell_nobody(_note: Text) -> None:
@@ -220,6 +296,8 @@ class MapDelivery:
         Of headers of tables; None for their ids.
     options : mapping of str to value
         What was chosen, by the ids of :meth:`FormatList.map_options`; defaults for the rest.
+    drives : tuple of Drive
+        In which sections are cut.
     write_points : callable
         Writes the points of the drives with their labels.
     every_feature : tuple of Feature
@@ -237,6 +315,7 @@ class MapDelivery:
     language: Language | None = None
     options: Mapping[str, ParameterValue] = field(default_factory=dict)
     write_points: Callable[[Position, Monitor], None] = _no_points
+    drives: tuple[Drive, ...] = ()
     every_feature: tuple[Feature, ...] = ()
     name: str = MAP
     tell: Callable[[Text], None] = tell_nobody

@@ -13,6 +13,7 @@ from processing.formats.map_delivery import (
     DmOptions,
     DxfOptions,
     QualityOptions,
+    SectionOptions,
     ShapefileOptions,
     SheetOptions,
     TableOptions,
@@ -323,6 +324,17 @@ _SURVEY_FORMATS = (
         map_title=Text("Drawing sheets (DXF, PDF)", "図面（図郭割り、DXF・PDF）"),
         writes_map="processing.formats.sheets.sheet_files:write_sheets_map",
         options=SheetOptions,
+        has_attributes=False,
+    ),
+    Format(
+        "sections",
+        Text("Sections along routes", "路線の縦断・横断図"),
+        (),
+        map_title=Text(
+            "Longitudinal and cross sections (DXF, PDF, CSV)", "縦断・横断図（DXF・PDF・CSV）"
+        ),
+        writes_map="processing.formats.sections.section_files:write_sections_map",
+        options=SectionOptions,
         has_attributes=False,
     ),
 )

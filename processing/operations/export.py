@@ -123,7 +123,7 @@ def export(
     delivery = MapDelivery(
         wanted, catalogue, crs, request.language, request.options,
         write_points=partial(write_labelled_points, drives), every_feature=every,
-        name=MAP if project is None else project.stem, tell=tell,
+        name=MAP if project is None else project.stem, drives=drives, tell=tell,
     )  # fmt: skip
     return _write(delivery, chosen, request, monitor, pictures)
 

@@ -32,7 +32,7 @@ from processing.formats.drawings.dxf_labels import LABEL_HEIGHT_M, label_of
 from processing.formats.drawings.dxf_text import dxf_strings, dxf_text
 from processing.formats.drawings.symbol_shapes import symbol_rotation_deg
 from processing.formats.map_delivery import DxfOptions, MapDelivery
-from processing.map.catalogue import LINE_TYPES, Catalogue, FeatureKind, Geometry
+from processing.map.catalogue import Catalogue, FeatureKind, Geometry
 from processing.map.feature import AttributeValue, Feature, Position, Status
 from processing.map.solids import solid_of, thickness_of
 
@@ -185,10 +185,7 @@ class MapDrawing:
         header["$LUNITS"] = 2
         header["$LUPREC"] = 3
         self.document.tell_system(crs)
-        for name, pattern in LINE_TYPES.items():
-            if pattern:
-                total = sum(abs(length) for length in pattern)
-                self._doc.linetypes.add(name.upper(), pattern=[total, *pattern], description=name)
+        self.document.add_line_types()
 
     def add(self, feature: Feature) -> None:
         """Draw a feature."""

@@ -18,6 +18,7 @@ from processing.core.errors import OutOfRange, Unsuitable, use_one_of
 from processing.core.monitor import Monitor, SilentMonitor
 from processing.core.text import Text
 from processing.formats.drawings.dxf_text import dxf_text, label_text
+from processing.map.catalogue import LINE_TYPES
 
 DxfVersion = Literal["R12", "R2000", "R2007", "R2010", "R2018"]
 
@@ -115,6 +116,13 @@ class DxfDocument:
         layer = self.doc.layers.add(name, color=aci)
         if rgb is not None and self.has_true_colours:
             layer.rgb = rgb
+
+    def add_line_types(self) -> None:
+        """Add the patterns of the catalogue, in metres on the ground at 1:500."""
+        for name, pattern in LINE_TYPES.items():
+            if pattern:
+                total = sum(abs(length) for length in pattern)
+                self.doc.linetypes.add(name.upper(), pattern=[total, *pattern], description=name)
 
     def require_encodable(self, layer: str) -> None:
         """Refuse a layer's name that the version's bytes can't hold.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -31,11 +31,28 @@ _PAD_MM = 5.0
 _NORTH_MM, _BAR_MM, _HEAD_MM = 30.0, 20.0, 7.0
 _KEY_SHARE = 0.6  # height of the key map, of the column's width
 _ROW_MM, _LEGEND_MM = 8.0, 6.0
+_LEAST_ROW_MM, _LEAST_COLUMN_MM = 4.0, 45.0
+"""Of the legend: letters of 2.4 mm, and room for a sample and some ten of them."""
 _SAMPLE_MM = 12.0
 _LABEL_SHARE = 0.3
-_BARS_M = (500, 200, 100, 50, 20, 10, 5)
+_BARS_M = (500, 200, 100, 50, 20, 10, 5, 2, 1)
 _THICK, _THIN = Pen(RULE_LAYER, width_mm=0.35), Pen(RULE_LAYER, width_mm=0.13)
 _WORDS = Pen(WORDS_LAYER)
+
+
+@dataclass(frozen=True)
+class LegendRow:
+    """A row of the legend.
+
+    Attributes
+    ----------
+    words : str
+    sample : callable
+        Gives the shapes of a sample from its left end, and the row's height.
+    """
+
+    words: str
+    sample: Callable[[PaperPlace, float], Iterable[PaperShape]]
 
 
 @dataclass(frozen=True)
@@ -69,13 +86,30 @@ def column_shapes(content: ColumnContent, layout: SheetLayout) -> Iterator[Paper
     (x, y), (width, height) = layout.column_low, layout.column_size
     top = y + height
     yield from _north(content.sheet, (x + width / 2, top - _NORTH_MM / 2))
-    yield from _scale_bar(content.sheet, (x, top - _NORTH_MM - _BAR_MM), width)
+    yield from scale_bar(content.sheet.scale, (x, top - _NORTH_MM - _BAR_MM), width)
     block = _ROW_MM * len(content.title_block)
-    yield from _title_block(content, (x, y), width)
+    yield from title_rows(content.title_block, content.language, (x, y), width)
     key = width * _KEY_SHARE
     yield from _key_map(content, (x, y + block), (width, key))
     legend = top - _NORTH_MM - _BAR_MM
-    yield from _legend(content, (x, y + block + key), (width, legend - y - block - key))
+    size = (width, legend - y - block - key)
+    rows = [_legend_row(kind, content.language) for kind in content.kinds]
+    yield from legend_box(rows, content.language, (x, y + block + key), size)
+
+
+def plain_column(
+    rows: Sequence[LegendRow],
+    block: Mapping[Text, str],
+    scale: int,
+    language: Language,
+    layout: SheetLayout,
+) -> Iterator[PaperShape]:
+    """The column of a sheet without a map: scale bar, legend and title block."""
+    (x, y), (width, height) = layout.column_low, layout.column_size
+    yield from scale_bar(scale, (x, y + height - _BAR_MM), width)
+    yield from title_rows(block, language, (x, y), width)
+    low = y + _ROW_MM * len(block)
+    yield from legend_box(rows, language, (x, low), (width, y + height - _BAR_MM - low))
 
 
 def _north(sheet: DrawingSheet, middle: PaperPlace) -> Iterator[PaperShape]:
@@ -94,11 +128,11 @@ def _north(sheet: DrawingSheet, middle: PaperPlace) -> Iterator[PaperShape]:
     yield PaperWords(_WORDS, "N", at(0, 11), 4.0, "CENTER", -sheet.turned_deg)
 
 
-def _scale_bar(sheet: DrawingSheet, low: PaperPlace, width: float) -> Iterator[PaperShape]:
+def scale_bar(scale: int, low: PaperPlace, width: float) -> Iterator[PaperShape]:
     """Five parts, filled in turn, with metres above and the scale below."""
     most = width - 8 * _PAD_MM
-    metres = next(one for one in _BARS_M if one * 1000 / sheet.scale <= most)
-    part = metres / 5 * 1000 / sheet.scale
+    metres = next(one for one in _BARS_M if one * 1000 / scale <= most)
+    part = metres / 5 * 1000 / scale
     x, y = low[0] + (width - 5 * part) / 2, low[1] + _BAR_MM / 2
     for number in range(5):
         place = (x + number * part, y)
@@ -110,36 +144,55 @@ def _scale_bar(sheet: DrawingSheet, low: PaperPlace, width: float) -> Iterator[P
         place = (x + number * part, y + 4.0)
         yield PaperWords(_WORDS, words, place, 2.0, "CENTER")
     place = (low[0] + width / 2, y - 4.0)
-    yield PaperWords(_WORDS, f"S = 1:{sheet.scale}", place, 3.0, "CENTER")
+    yield PaperWords(_WORDS, f"S = 1:{scale}", place, 3.0, "CENTER")
 
 
 def _head(
-    words: Text, content: ColumnContent, low: PaperPlace, size: PaperPlace
+    words: Text, language: Language, low: PaperPlace, size: PaperPlace
 ) -> Iterator[PaperShape]:
     """A box of the column with its heading."""
     yield box_line(_THICK, low, size)
     place = (low[0] + size[0] / 2, low[1] + size[1] - _HEAD_MM / 2)
-    yield PaperWords(_WORDS, words.in_language(content.language), place, 3.5, "CENTER")
+    yield PaperWords(_WORDS, words.in_language(language), place, 3.5, "CENTER")
 
 
-def _legend(content: ColumnContent, low: PaperPlace, size: PaperPlace) -> Iterator[PaperShape]:
-    """A sample and the name of each kind, in two columns where one is too short."""
-    yield from _head(Text("Legend", "凡例"), content, low, size)
+def _legend_row(kind: FeatureKind, language: Language) -> LegendRow:
+    name = kind.name.in_language(language)
+    words = f"{kind.dm_code}　{name}" if kind.dm_code else name
+    return LegendRow(words, lambda place, step: _sample(kind, place, step))
+
+
+def legend_box(
+    rows: Sequence[LegendRow], language: Language, low: PaperPlace, size: PaperPlace
+) -> Iterator[PaperShape]:
+    """A sample and a name in each row, in as few columns as can be read.
+
+    What has no room even so is counted in the last row.
+    """
+    yield from _head(Text("Legend", "凡例"), language, low, size)
     room = size[1] - _HEAD_MM - 2.0
-    columns = 1 if len(content.kinds) * _LEGEND_MM <= room else 2
-    rows = max(1, math.ceil(len(content.kinds) / columns))
-    step = min(_LEGEND_MM, room / rows)
+    most = max(1, int(room / _LEAST_ROW_MM))
+    columns = max(1, min(math.ceil(len(rows) / most), int(size[0] / _LEAST_COLUMN_MM)))
+    if columns == 1 and len(rows) * _LEGEND_MM > room:
+        columns = 2
+    left_out = max(0, len(rows) - columns * most + 1) if len(rows) > columns * most else 0
+    shown = list(rows[: len(rows) - left_out])
+    if left_out:
+        words = Text(f"and {left_out} more kinds", f"ほか{left_out}種別")
+        shown.append(LegendRow(words.in_language(language), lambda _place, _step: ()))
+    deep = max(1, math.ceil(len(shown) / columns))
+    step = min(_LEGEND_MM, room / deep)
     width = size[0] / columns
-    for number, kind in enumerate(content.kinds):
-        column, row = divmod(number, rows)
+    for number, row in enumerate(shown):
+        column, line = divmod(number, deep)
         x = low[0] + column * width + _PAD_MM / 2
-        y = low[1] + size[1] - _HEAD_MM - (row + 0.5) * step
-        yield from _sample(kind, (x, y), step)
-        name = kind.name.in_language(content.language)
-        words = f"{kind.dm_code}　{name}" if kind.dm_code else name
+        y = low[1] + size[1] - _HEAD_MM - (line + 0.5) * step
+        yield from row.sample((x, y), step)
         left = (x + _SAMPLE_MM + 2.0, y - step / 2)
         letters = min(2.5, step * 0.6)
-        yield from words_in_box(words, left, (width - _SAMPLE_MM - 2.0 - _PAD_MM, step), letters)
+        yield from words_in_box(
+            row.words, left, (width - _SAMPLE_MM - 2.0 - _PAD_MM, step), letters
+        )
 
 
 def _sample(kind: FeatureKind, place: PaperPlace, step: float) -> Iterator[PaperShape]:
@@ -156,7 +209,7 @@ def _sample(kind: FeatureKind, place: PaperPlace, step: float) -> Iterator[Paper
 
 def _key_map(content: ColumnContent, low: PaperPlace, size: PaperPlace) -> Iterator[PaperShape]:
     """The sheet, grey, among its neighbours, with their numbers."""
-    yield from _head(Text("Key map", "索引図"), content, low, size)
+    yield from _head(Text("Key map", "索引図"), content.language, low, size)
     own = content.sheet
     reach = 2.0 * max(own.size_m)
     near = [
@@ -192,8 +245,11 @@ def _key_map(content: ColumnContent, low: PaperPlace, size: PaperPlace) -> Itera
             yield PaperWords(_WORDS, one.name, below, letters * 0.5, "CENTER")
 
 
-def _title_block(content: ColumnContent, low: PaperPlace, width: float) -> Iterator[PaperShape]:
-    rows = list(content.title_block.items())
+def title_rows(
+    block: Mapping[Text, str], language: Language, low: PaperPlace, width: float
+) -> Iterator[PaperShape]:
+    """The rows of a title block, ruled."""
+    rows = list(block.items())
     yield box_line(_THICK, low, (width, _ROW_MM * len(rows)))
     label = width * _LABEL_SHARE
     line = low[0] + label
@@ -202,7 +258,7 @@ def _title_block(content: ColumnContent, low: PaperPlace, width: float) -> Itera
         y = low[1] + number * _ROW_MM
         if number:
             yield PaperLine(_THIN, ((low[0], y), (low[0] + width, y)))
-        words = name.in_language(content.language)
+        words = name.in_language(language)
         yield from words_in_box(
             words, (low[0] + 1.0, y), (label - 2.0, _ROW_MM), 2.5, align="CENTER"
         )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from processing.core.errors import Unsuitable
 from processing.core.monitor import Monitor
@@ -21,7 +21,7 @@ from processing.formats.sheets.sheet_layout import SheetLayout, layout_of
 from processing.formats.sheets.sheet_words import UnplacedLabel, label_sheet
 from processing.formats.sheets.sheets_dxf import DrawnSheet, write_flat_dxf, write_layouts_dxf
 from processing.formats.sheets.sheets_pdf import write_sheets_pdf
-from processing.formats.surfaces.landxml_systems import zone_of_system
+from processing.formats.sheets.title_block import SheetPart, title_block
 from processing.map.feature import Feature
 from processing.map.routes.route import routes_of
 
@@ -60,7 +60,8 @@ def write_sheets_map(delivery: MapDelivery, position: Position, monitor: Monitor
         used = {feature.kind for feature in features}
         kinds = [kind for kind in delivery.catalogue if kind.id in used]
         words = label_sheet(number, features, delivery.catalogue, sheet, layout)
-        block = _title_block(delivery, options, sheet, (number, len(sheets)))
+        part = SheetPart(sheet.name, f"1:{sheet.scale}", number, len(sheets))
+        block = title_block(delivery, options, part)
         content = ColumnContent(sheets, number, kinds, block, language)
         around = (
             *frame_shapes(sheet, layout, language), *column_shapes(content, layout), *words.placed
@@ -94,34 +95,6 @@ def _divided(
         if options.sheet_route in ("", route.name)
     ]
     return route_strips(routes, scale, layout.window_size, options.sheet_overlap)
-
-
-def _title_block(
-    delivery: MapDelivery, options: SheetOptions, sheet: DrawingSheet, number: tuple[int, int]
-) -> Mapping[Text, str]:
-    return {
-        Text("Drawing", "図面名"): options.sheet_title or delivery.name,
-        Text("Sheet", "図面番号"): f"{number[0]} / {number[1]}",
-        Text("Part", "図郭・区間"): sheet.name,
-        Text("Scale", "縮尺"): f"1:{sheet.scale}",
-        Text("Reference system", "座標系"): _system(delivery),
-        Text("Heights", "高さの基準"): options.sheet_heights,
-        Text("Date", "年月日"): options.sheet_date,
-        Text("Client", "計画機関"): options.sheet_client,
-        Text("Maker", "作業機関"): options.sheet_maker,
-        Text("Surveyor", "測量者"): options.sheet_surveyor,
-    }
-
-
-def _system(delivery: MapDelivery) -> str:
-    language: Language = delivery.language or "ja"
-    if not delivery.crs:
-        return Text("not known", "不明").in_language(language)
-    zone = zone_of_system(delivery.crs)
-    if not zone:
-        return delivery.crs
-    words = Text("Plane rectangular, zone {zone} ({crs})", "平面直角座標系 第{zone}系（{crs}）")
-    return words.filled(zone=zone, crs=delivery.crs).in_language(language)
 
 
 def _tell_unplaced(

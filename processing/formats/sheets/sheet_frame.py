@@ -41,12 +41,17 @@ def frame_shapes(
     sheet: DrawingSheet, layout: SheetLayout, language: Language
 ) -> Iterator[PaperShape]:
     """The frame around everything and all that has its place on the map."""
-    yield box_line(_FRAME_PEN, layout.frame_low, layout.frame_size)
-    yield box_line(_WINDOW_PEN, layout.window_low, layout.window_size)
-    yield box_line(_WINDOW_PEN, layout.column_low, layout.column_size)
+    yield from border_shapes(layout)
     yield from _grid(sheet, layout)
     for match in sheet.matches:
         yield from _match(sheet, layout, language, match)
+
+
+def border_shapes(layout: SheetLayout) -> Iterator[PaperShape]:
+    """The frames around everything, the window and the column beside it."""
+    yield box_line(_FRAME_PEN, layout.frame_low, layout.frame_size)
+    yield box_line(_WINDOW_PEN, layout.window_low, layout.window_size)
+    yield box_line(_WINDOW_PEN, layout.column_low, layout.column_size)
 
 
 def _grid(sheet: DrawingSheet, layout: SheetLayout) -> Iterator[PaperShape]:

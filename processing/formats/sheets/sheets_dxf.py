@@ -10,31 +10,23 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from processing.core.monitor import Monitor
-from processing.formats.drawings.dxf import LABEL_SUFFIX, DrawnSize, MapDrawing
+from processing.formats.drawings.dxf import DrawnSize, MapDrawing
 from processing.formats.drawings.dxf_document import DxfVersion
-from processing.formats.drawings.dxf_text import label_text
 from processing.formats.drawings.sxf_looks import pen_mm_of
 from processing.formats.map_delivery import MapDelivery
 from processing.formats.sheets.drawing_sheet import DrawingSheet
-from processing.formats.sheets.paper_shapes import (
-    FRAME_LAYER,
-    PaperCircle,
-    PaperLine,
-    PaperPlace,
-    PaperShape,
-    PaperWords,
-    Pen,
+from processing.formats.sheets.dxf_shapes import (
+    ON_PAPER,
+    VIEWPORT_LAYER,
+    Placing,
+    draw_shape,
+    weight_of,
 )
+from processing.formats.sheets.paper_shapes import PaperPlace, PaperShape
 from processing.formats.sheets.sheet_layout import SheetLayout
 from processing.map.feature import Feature
-
-_VIEWPORT_LAYER = f"{FRAME_LAYER}-VPRT"
-_WEIGHTS = (0, 5, 9, 13, 15, 18, 20, 25, 30, 35, 40, 50, 53, 60, 70, 80, 90, 100)
-"""Line widths that drawings know, hundredths of a millimetre (DXF reference, group 370)."""
-_BLACK_ACI = 7
 
 
 @dataclass(frozen=True)
@@ -56,7 +48,7 @@ def write_layouts_dxf(
     drawing = _map_drawing(delivery, delivery.features, sheets[0].sheet.scale, "R2010", monitor)
     doc = drawing.document.doc
     doc.header["$PSLTSCALE"] = 0  # patterns are metres on the ground
-    doc.layers.add(_VIEWPORT_LAYER, plot=False)
+    doc.layers.add(VIEWPORT_LAYER, plot=False)
     for number, one in enumerate(sheets, 1):
         monitor.check()
         space = doc.layouts.new(f"{number:03d}")
@@ -68,11 +60,11 @@ def write_layouts_dxf(
             view_center_point=(0, 0),
             view_height=height * scale / 1000,
         )
-        view.dxf.layer = _VIEWPORT_LAYER
+        view.dxf.layer = VIEWPORT_LAYER
         view.dxf.view_target_point = (*one.sheet.centre, 0.0)
         view.dxf.view_twist_angle = -one.sheet.turned_deg
         for shape in one.shapes:
-            _draw(drawing, space, shape, _Placing(lambda places: places, 1.0, 0.0, 1000 / scale))
+            draw_shape(drawing.document, space, shape, ON_PAPER.with_pattern(1000 / scale))
     doc.layouts.delete("Layout1")
     _set_weights(drawing, delivery)
     drawing.document.write(path, monitor)
@@ -94,9 +86,9 @@ def write_flat_dxf(
     def on_ground(places: Sequence[PaperPlace]) -> Sequence[PaperPlace]:
         return [(x, y) for x, y in sheet.on_ground(places, layout).tolist()]
 
-    placing = _Placing(on_ground, sheet.scale / 1000, sheet.turned_deg)
+    placing = Placing(on_ground, sheet.scale / 1000, sheet.turned_deg)
     for shape in drawn.shapes:
-        _draw(drawing, drawing.document.space, shape, placing)
+        draw_shape(drawing.document, drawing.document.space, shape, placing)
     corners = on_ground([(0.0, 0.0), (layout.paper[0], 0.0), layout.paper, (0.0, layout.paper[1])])
     xs, ys = zip(*corners, strict=True)
     drawing.document.show((min(xs), min(ys)), (max(xs), max(ys)))
@@ -124,93 +116,4 @@ def _set_weights(drawing: MapDrawing, delivery: MapDelivery) -> None:
     pens: Mapping[str, float] = {kind.layer: pen_mm_of(kind) for kind in kinds}
     for layer in drawing.document.doc.layers:
         if layer.dxf.name in pens:
-            layer.dxf.lineweight = _weight(pens[layer.dxf.name])
-
-
-def _weight(width_mm: float) -> int:
-    return min(_WEIGHTS, key=lambda weight: abs(weight - width_mm * 100))
-
-
-@dataclass(frozen=True)
-class _Placing:
-    """How paper lies in a space: places, millimetres, direction, scale of patterns."""
-
-    place: Any  # a function of places
-    unit: float
-    turned_deg: float
-    pattern: float = 1.0
-
-
-def _draw(drawing: MapDrawing, space: Any, shape: PaperShape, placing: _Placing) -> None:
-    attributes = _attributes(drawing, shape.pen, placing)
-    match shape:
-        case PaperLine():
-            places = placing.place(shape.places)
-            if shape.is_filled:
-                _fill(space, places, attributes)
-            elif drawing.document.has_light_polylines:
-                space.add_lwpolyline(places, dxfattribs=attributes)
-            else:
-                space.add_polyline2d(places, dxfattribs=attributes)
-        case PaperCircle():
-            (centre,) = placing.place([shape.centre])
-            space.add_circle(centre, shape.radius * placing.unit, dxfattribs=attributes)
-        case PaperWords():
-            _write(drawing, space, shape, placing, attributes)
-
-
-def _fill(space: Any, places: Sequence[PaperPlace], attributes: Mapping[str, Any]) -> None:
-    """Fill a triangle or a rectangle, as every version can."""
-    corners = list(places[:-1] if places[0] == places[-1] else places)
-    last, before = corners[-1], corners[-2]
-    # The corners of a solid go zigzag.
-    ordered = [*corners[:2], last, before] if len(corners) == 4 else corners
-    space.add_solid(ordered, dxfattribs=dict(attributes))
-
-
-def _write(
-    drawing: MapDrawing,
-    space: Any,
-    shape: PaperWords,
-    placing: _Placing,
-    attributes: Mapping[str, Any],
-) -> None:
-    from ezdxf.enums import TextEntityAlignment
-
-    written = label_text(shape.words, drawing.document.encoding)
-    if not written:
-        return
-    (place,) = placing.place([shape.place])
-    looks = {
-        **attributes,
-        "style": "JAPANESE",
-        "height": shape.height * placing.unit,
-        "rotation": (shape.angle_deg + placing.turned_deg) % 360.0,
-    }
-    text = space.add_text(written, dxfattribs=looks)
-    text.set_placement(place, align=TextEntityAlignment[f"MIDDLE_{shape.align}"])
-
-
-def _attributes(drawing: MapDrawing, pen: Pen, placing: _Placing) -> dict[str, Any]:
-    from ezdxf.colors import rgb2int
-
-    document = drawing.document
-    if pen.layer not in document.doc.layers:
-        document.require_encodable(pen.layer)
-        base = pen.layer.removesuffix(LABEL_SUFFIX)
-        has_base = base in document.doc.layers
-        aci = document.doc.layers.get(base).color if has_base else _BLACK_ACI
-        document.doc.layers.add(pen.layer, color=aci)
-    attributes: dict[str, Any] = {"layer": pen.layer}
-    if pen.dash_mm:
-        attributes["linetype"] = pen.line_type.upper()
-        if drawing.document.has_light_polylines:  # R12 has the drawing's own scale alone
-            attributes["ltscale"] = placing.pattern
-    is_black = pen.colour == (0, 0, 0)
-    if document.has_true_colours:
-        if not is_black:
-            attributes["true_color"] = rgb2int(pen.colour)
-        attributes["lineweight"] = _weight(pen.width_mm)
-    elif not is_black and pen.layer.startswith(FRAME_LAYER):
-        attributes["color"] = 1 if pen.colour[0] > 180 and pen.colour[1] < 100 else 8
-    return attributes
+            layer.dxf.lineweight = weight_of(pens[layer.dxf.name])

@@ -1,0 +1,1 @@
+"""Longitudinal and cross sections of routes, as drawings and tables."""
