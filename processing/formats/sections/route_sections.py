@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 
@@ -29,6 +29,9 @@ _LINE_M = 0.01
 
 _STRAIGHT_M = 0.1
 """The centre line may leave the chords by this, along which its ground is cut."""
+
+_NARROW_M, _STANDS_OUT_M = 1.0, 0.3
+"""What stands out by so much and is narrower is a trunk, a post or a fence, not ground."""
 
 _CHORD_M = 20.0
 _LEAST_M = 0.01
@@ -127,7 +130,7 @@ class SectionSource:
         """The section across a route at a station, as one sees it who looks along the route."""
         stations = _stations_of(route)
         cut = stations.cut_at(station_m - route.start_m, self.depth_m, reach_m)
-        ground = tuple(_simplified(part) for part in profile_of(cut, self.drives).ground)
+        ground = _cleared(profile_of(cut, self.drives).ground)
         section = RouteSection(route, stations, ground, (), station_m)
         crossed = (
             replace(one, height_m=_height_of(one, section.ground_at(one.along_m)))
@@ -158,7 +161,7 @@ class SectionSource:
                 middle = route.start_m + (first + last) / 2
                 parts.append(part * [scale, 1.0] + [middle, 0.0])
             found += [replace(one, along_m=station(one.along_m)) for one in self._crossed(cut)]
-        ground = tuple(_simplified(part) for part in _joined(parts))
+        ground = _cleared(_joined(parts))
         section = RouteSection(route, stations, ground, ())
         crossed = {
             (one.feature.id, round(one.along_m, 2)): replace(
@@ -254,10 +257,31 @@ def _joined(parts: Sequence[Floats]) -> list[Floats]:
     return joined
 
 
-def _simplified(part: Floats) -> Floats:
-    line = shapely.simplify(shapely.LineString(part), _LINE_M)
-    simplified: Floats = shapely.get_coordinates(line)
-    return simplified
+def _cleared(parts: Sequence[Floats]) -> tuple[Floats, ...]:
+    """Ground lines without what is too narrow for ground, and without vertices they don't need."""
+    if not parts:
+        return ()
+    every = np.concatenate(parts)
+    low = _over_window(every[:, 0], every[:, 1], np.min)
+    opened = _over_window(every[:, 0], low, np.max)
+    is_ground = every[:, 1] <= opened + _STANDS_OUT_M
+    ends = np.cumsum([len(part) for part in parts])[:-1]
+    kept = (
+        part[those]
+        for part, those in zip(parts, np.split(is_ground, ends), strict=True)
+        if those.sum() > 1
+    )
+    return tuple(
+        shapely.get_coordinates(shapely.simplify(shapely.LineString(part), _LINE_M))
+        for part in kept
+    )
+
+
+def _over_window(along: Floats, values: Floats, of: Callable[[Floats], float]) -> Floats:
+    """Least or greatest of the values around each place."""
+    starts = np.searchsorted(along, along - _NARROW_M / 2, "left").tolist()
+    ends = np.searchsorted(along, along + _NARROW_M / 2, "right").tolist()
+    return np.array([of(values[start:end]) for start, end in zip(starts, ends, strict=True)])
 
 
 def _height_of(crossed: CrossedFeature, ground_m: float | None) -> float:

@@ -39,7 +39,7 @@ _STAFF_PEN = Pen(AXIS_LAYER, width_mm=0.18)
 LEFT_MM, RIGHT_MM = 26.0, 6.0
 """Beside a section: names of rows and the staff on the left."""
 
-_VALUE_ROW_MM, _WORD_ROW_MM, _KINK_MM = 12.0, 7.0, 4.0
+_VALUE_ROW_MM, _WORD_ROW_MM, _STATION_ROW_MM, _KINK_MM = 12.0, 7.0, 16.0, 4.0
 _WORDS_MM, _APART_MM, _TITLE_MM = 2.0, 2.8, 3.5
 _CLEAR_MM = 4.0
 _STEPS_M = (0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0)
@@ -154,7 +154,7 @@ def profile_block(
     stations : sequence of float
         Those with values, on the stretch.
     """
-    rows_mm = 2 * _WORD_ROW_MM + 3 * _VALUE_ROW_MM + _KINK_MM
+    rows_mm = _WORD_ROW_MM + 3 * _VALUE_ROW_MM + _STATION_ROW_MM + _KINK_MM
     frame = _frame_of(section, ends, scale, rows_mm)
     xs = spread_apart([frame.x(one) for one in stations], _APART_MM, LEFT_MM + 1, frame.right)
     heights = [section.ground_at(one) for one in stations]
@@ -167,7 +167,7 @@ def profile_block(
     ]
     named = (
         (Text("Height", "地盤高"), _VALUE_ROW_MM), (Text("Distance", "追加距離"), _VALUE_ROW_MM),
-        (Text("Step", "単距離"), _VALUE_ROW_MM), (Text("Station", "測点"), _VALUE_ROW_MM + 3.0),
+        (Text("Step", "単距離"), _VALUE_ROW_MM), (Text("Station", "測点"), _STATION_ROW_MM),
     )  # fmt: skip
     rows = [
         _Row(name, tall, tuple(zip(xs, values, strict=True)))

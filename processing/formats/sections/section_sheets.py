@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from processing.core.errors import Unsuitable
@@ -75,7 +75,8 @@ def cross_sheets(
         _Placed(cross_block(one, reach_m, scale, language), one, (one.station_m or 0.0,) * 2)
         for one in sections
     ]
-    return _filled(Text("Cross sections", "横断図"), placed, scale, layout)
+    # As road offices lay them out: the first one is lowest.
+    return _filled(Text("Cross sections", "横断図"), placed, scale, layout, lambda y, _: y)
 
 
 def profile_sheets(
@@ -109,11 +110,21 @@ def profile_sheets(
             last -= 1
         placed.append(_Placed(block, part, ends))
         first = last
-    return _filled(Text("Longitudinal section", "縦断図"), placed, scale, layout)
+    return _filled(
+        Text("Longitudinal section", "縦断図"),
+        placed,
+        scale,
+        layout,
+        lambda y, tall: height - y - tall,
+    )
 
 
 def _filled(
-    title: Text, placed: Sequence[_Placed], scale: SectionScale, layout: SheetLayout
+    title: Text,
+    placed: Sequence[_Placed],
+    scale: SectionScale,
+    layout: SheetLayout,
+    low_of: Callable[[float, float], float],
 ) -> list[SectionSheet]:
     (left, low), (width, height) = layout.window_low, layout.window_size
     sheets: list[list[_Placed]] = []
@@ -130,7 +141,7 @@ def _filled(
             shapes.append([])
             check_sheet_count(len(sheets))
             x, y, column = _EDGE_MM, _EDGE_MM, 0.0
-        shapes[-1] += one.block.moved(left + x, low + y)
+        shapes[-1] += one.block.moved(left + x, low + low_of(y, tall))
         sheets[-1].append(one)
         y += tall + _BETWEEN_MM
         column = max(column, wide)

@@ -311,6 +311,7 @@ def test_every_format_has_a_title_in_both_languages() -> None:
         "sima",
         "sxf",
         "sheets",
+        "sections",
         "las",
         "qa",
     )
