@@ -328,6 +328,18 @@ class Document(QObject):
 
         return self._job_results.start(project, title, work, take)
 
+    def make_pages(self, request: ExportRequest, then: Callable[[], None]) -> str:
+        """Write sheets to be printed in the background, then call; gives the job's id."""
+        project = self._need_project()
+        title, work = Text("Print", "印刷"), export_of(project, request)
+
+        def take(written: WrittenFiles) -> None:
+            for note in written.notes:
+                self.reported.emit(note)
+            then()
+
+        return self._job_results.start(project, title, work, take)
+
     def _need_project(self) -> Project:
         if self._project is None:
             message = "no project is open"

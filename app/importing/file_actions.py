@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QFileDialog
 from app.catalogue.catalogue_update import adopt_catalogue
 from app.importing.column_request import with_columns
 from app.importing.drive_actions import DriveActions
+from app.importing.sheet_printing import SheetPrinting
 from app.importing.source_watch import SourceWatch
 from app.importing.trajectory_offer import TrajectoryOffer
 from app.simulation.simulate_wiring import Simulations
@@ -45,6 +46,7 @@ class FileActions:
         self._dialogs = ProjectDialogs(parts)
         self.simulations = Simulations(parts, projects_folder)
         self.drives = DriveActions(parts)
+        self.printing = SheetPrinting(parts, self._dialogs)
 
     def actions(self) -> tuple[Action, ...]:
         """The file menu, from top to bottom."""
@@ -94,6 +96,7 @@ class FileActions:
                 ),
                 needs_project=True,
             ),
+            self.printing.action(),
         )
 
     def _simulate(self) -> Action:
@@ -232,7 +235,8 @@ class FileActions:
         folder = project.folder.parent / f"{project.name}-export"
 
         def make() -> ExportForm:
-            choices = ExportChoices(formats, FORMATS.map_options())
+            options, owners = FORMATS.map_options(), FORMATS.map_option_owners()
+            choices = ExportChoices(formats, options, owners)
             form = ExportForm(folder, choices, language, self._parts.window)
             form.export_requested.connect(self._on_form_export_requested)
             return form

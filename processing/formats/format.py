@@ -86,6 +86,8 @@ class Format:
         Declared parameters that writing a map takes.
     needs_crs : bool
         Whether nothing can be done with it without a reference system.
+    pages : str
+        Name of the PDF with its sheets, true to scale, among its files; empty without one.
     has_attributes : bool
         Whether a map in it says the features' attributes, which name their pictures.
     """
@@ -103,6 +105,7 @@ class Format:
     writes_map: str = ""
     options: type[object] | None = None
     needs_crs: bool = False
+    pages: str = ""
     has_attributes: bool = True
 
     @property

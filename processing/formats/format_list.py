@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
 from processing.core.errors import OutOfRange
@@ -153,6 +153,14 @@ class FormatList:
             for option in reversed(parameters_of(one.options))
         }
         return tuple(reversed(found.values()))
+
+    def map_option_owners(self) -> Mapping[str, tuple[str, ...]]:
+        """By the id of a format of maps the ids of what can be chosen for it."""
+        return {
+            one.id: tuple(option.id for option in parameters_of(one.options))
+            for one in self.maps()
+            if one.options is not None
+        }
 
 
 def _fill_sentence(sentence: Text, choices: Iterable[Text], *contents: Content) -> Text:

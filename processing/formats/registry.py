@@ -324,6 +324,7 @@ _SURVEY_FORMATS = (
         map_title=Text("Drawing sheets (DXF, PDF)", "図面（図郭割り、DXF・PDF）"),
         writes_map="processing.formats.sheets.sheet_files:write_sheets_map",
         options=SheetOptions,
+        pages="sheets.pdf",
         has_attributes=False,
     ),
     Format(
@@ -335,6 +336,7 @@ _SURVEY_FORMATS = (
         ),
         writes_map="processing.formats.sections.section_files:write_sections_map",
         options=SectionOptions,
+        pages="sections.pdf",
         has_attributes=False,
     ),
 )

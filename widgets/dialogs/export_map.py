@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -56,10 +56,17 @@ class ExportChoices:
         The id of each and its title.
     options : tuple of Parameter
         What can be chosen for them.
+    owners : mapping of str to tuple of str
+        By the id of a format the ids of its options.
     """
 
     formats: tuple[tuple[str, Text], ...]
     options: tuple[Parameter, ...]
+    owners: Mapping[str, tuple[str, ...]]
+
+    def options_of(self, formats: Iterable[str]) -> frozenset[str]:
+        """Ids of what can be chosen for some formats."""
+        return frozenset(id_ for one in formats for id_ in self.owners.get(one, ()))
 
 
 class ExportForm(QDialog):
@@ -82,6 +89,8 @@ class ExportForm(QDialog):
         for id_ in ("dxf", "csv"):
             if id_ in self._boxes:
                 self._boxes[id_].setChecked(True)
+        self._choices = choices
+        self._form = QFormLayout()
         self._folder = QLineEdit(str(folder), self)
         self._options = [
             (option, ParameterRow(option, language, self)) for option in choices.options
@@ -97,6 +106,7 @@ class ExportForm(QDialog):
         self._buttons.rejected.connect(self.close)
         for box in self._boxes.values():
             box.toggled.connect(self._on_boxes_toggled)
+        self._on_boxes_toggled()
 
     def _lay_out(self, language: Language) -> None:
         choose = QPushButton(self.tr("Choose…"), self)
@@ -107,7 +117,7 @@ class ExportForm(QDialog):
         boxes = QVBoxLayout()
         for box in self._boxes.values():
             boxes.addWidget(box)
-        form = QFormLayout()
+        form = self._form
         form.addRow(self.tr("Files"), boxes)
         form.addRow(self.tr("Folder"), folder)
         for option, row in self._options:
@@ -116,7 +126,7 @@ class ExportForm(QDialog):
         form.addRow("", self._candidates)
         body = QWidget(self)
         body.setLayout(form)
-        scroll = QScrollArea(self)  # the options of all formats are higher than small screens
+        scroll = QScrollArea(self)  # the options of many formats are higher than small screens
         scroll.setFrameShape(QFrame.Shape.NoFrame)
         scroll.setWidgetResizable(True)
         scroll.setWidget(body)
@@ -126,7 +136,11 @@ class ExportForm(QDialog):
         self.resize(540, 640)
 
     def _on_boxes_toggled(self) -> None:
-        self._export.setEnabled(any(box.isChecked() for box in self._boxes.values()))
+        ticked = [id_ for id_, box in self._boxes.items() if box.isChecked()]
+        self._export.setEnabled(bool(ticked))
+        shown = self._choices.options_of(ticked)
+        for option, row in self._options:
+            self._form.setRowVisible(row, option.id in shown)
 
     def _on_choose_clicked(self) -> None:
         name = QFileDialog.getExistingDirectory(self, self.tr("Folder"), self._folder.text())

@@ -75,7 +75,9 @@ def test_what_a_map_can_be_written_as_can_be_chosen() -> None:
         "dxf_version", "digits", "encoding", "dm_accuracy", "dm_company", "dm_approval",
         "sheet_scale", "sheet_division", "sheet_paper", "sheet_overlap", "sheet_route",
         "sheet_title", "sheet_client", "sheet_maker", "sheet_surveyor", "sheet_date",
-        "sheet_heights", "check_points", "map_level",
+        "sheet_heights", "section_scale", "section_height_scale", "profile_scale",
+        "profile_height_scale", "section_pitch", "section_stations", "section_reach",
+        "section_depth", "check_points", "map_level",
     ]  # fmt: skip
 
 

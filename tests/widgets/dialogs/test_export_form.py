@@ -15,7 +15,8 @@ from widgets.dialogs.export_map import ExportChoices, ExportForm, ExportOptions
 def _form(qtbot: QtBot, folder: Path) -> ExportForm:
     formats = FORMATS.including(TINY)
     titles = tuple((one.id, one.map_title) for one in formats.maps() if one.map_title)
-    form = ExportForm(folder, ExportChoices(titles, formats.map_options()), "en")
+    choices = ExportChoices(titles, formats.map_options(), formats.map_option_owners())
+    form = ExportForm(folder, choices, "en")
     qtbot.addWidget(form)
     return form
 
@@ -58,6 +59,27 @@ def test_what_is_chosen_is_asked_for(qtbot: QtBot, tmp_path: Path) -> None:
         "sheet_surveyor": "",
         "sheet_date": "",
         "sheet_heights": "",
+        "section_scale": "100",
+        "section_height_scale": "100",
+        "profile_scale": "500",
+        "profile_height_scale": "100",
+        "section_pitch": 20.0,
+        "section_stations": "",
+        "section_reach": 10.0,
+        "section_depth": 0.5,
         "tiny_decimals": 1,
     }
     assert request.options == expected
+
+
+def test_options_are_those_of_the_ticked_formats(qtbot: QtBot, tmp_path: Path) -> None:
+    form = _form(qtbot, tmp_path)
+    form.show()
+    shown = {label.text() for label in form.findChildren(QLabel) if label.isVisible()}
+    assert "Version of DXF" in shown
+    assert "Decimals of TINY" not in shown
+    for box in form.findChildren(QCheckBox):
+        box.setChecked(box.text() == "Tiny drawing")
+    shown = {label.text() for label in form.findChildren(QLabel) if label.isVisible()}
+    assert "Decimals of TINY" in shown
+    assert "Version of DXF" not in shown
