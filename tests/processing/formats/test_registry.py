@@ -72,12 +72,12 @@ def test_what_a_map_can_be_written_as_can_be_chosen() -> None:
     for one in FORMATS.maps():
         assert one.writes_map or one.writes[Content.FEATURES]
     assert [option.id for option in FORMATS.map_options()] == [
-        "dxf_version", "digits", "encoding", "dm_accuracy", "dm_company", "dm_approval",
-        "sheet_scale", "sheet_division", "sheet_paper", "sheet_overlap", "sheet_route",
-        "sheet_title", "sheet_client", "sheet_maker", "sheet_surveyor", "sheet_date",
-        "sheet_heights", "section_scale", "section_height_scale", "profile_scale",
-        "profile_height_scale", "section_pitch", "section_stations", "section_reach",
-        "section_depth", "check_points", "map_level",
+        "dxf_version", "dm_accuracy", "dm_company", "dm_approval", "sheet_scale",
+        "sheet_division", "sheet_overlap", "section_scale", "section_height_scale",
+        "profile_scale", "profile_height_scale", "section_pitch", "section_stations",
+        "section_reach", "section_depth", "sheet_paper", "sheet_route", "sheet_title",
+        "sheet_client", "sheet_maker", "sheet_surveyor", "sheet_date", "sheet_heights",
+        "encoding", "digits", "check_points", "map_level",
     ]  # fmt: skip
 
 
