@@ -125,8 +125,8 @@ def _write_surface(path: Path, given: ExportedVolume, monitor: Monitor) -> None:
     named = TriangleSurface(surface.xyz, surface.corners, _AFTER.in_language(given.language))
     facts = LandXmlFacts(given.details.work, given.kept.crs, given.details.height_datum)
     written = (WrittenSurface(named),)
-    line = given.result.line
-    write_landxml(path, written, facts, line=line, monitor=monitor, never=given.never)
+    lines = () if given.result.line is None else (given.result.line,)
+    write_landxml(path, written, facts, lines=lines, monitor=monitor, never=given.never)
 
 
 def _write_ground(path: Path, given: ExportedVolume, monitor: Monitor) -> None:

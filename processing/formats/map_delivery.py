@@ -181,6 +181,41 @@ def _sheet_heights() -> Any:
     )
 
 
+# Any: as the declarations of processing.core.parameters.
+def _section_pitch() -> Any:
+    return length(20.0, low=1.0, high=1000.0, name=Text("From section to section", "横断図の間隔"))
+
+
+# Any: as the declarations of processing.core.parameters.
+def _section_stations() -> Any:
+    return text(
+        name=Text("Further stations", "追加する測点"),
+        explanation=Text(
+            "As 35.2 or No.1+15.20, with commas between.",
+            "例: 35.2、No.1+15.20（カンマ区切り）",
+        ),
+    )
+
+
+# Any: as the declarations of processing.core.parameters.
+def _section_reach() -> Any:
+    return length(10.0, low=1.0, high=100.0, name=Text("Reach to either side", "横断図の片側の幅"))
+
+
+# Any: as the declarations of processing.core.parameters.
+def _section_depth() -> Any:
+    return length(
+        0.5,
+        low=0.05,
+        high=5.0,
+        name=Text("Depth of a section", "断面の奥行き"),
+        explanation=Text(
+            "Points so near together are drawn as the ground.",
+            "この範囲の点から地盤線を求めます。",
+        ),
+    )
+
+
 @dataclass(frozen=True)
 class SheetOptions:
     """What can be chosen for drawing sheets, and what their title blocks say."""
@@ -239,29 +274,10 @@ class SectionOptions:
     profile_height_scale: str = _scales(
         "100", ("50", "100", "200", "500"), Text("Scale of its heights", "縦断図の縮尺（縦）")
     )
-    section_pitch: float = length(
-        20.0, low=1.0, high=1000.0, name=Text("From section to section", "横断図の間隔")
-    )
-    section_stations: str = text(
-        name=Text("Further stations", "追加する測点"),
-        explanation=Text(
-            "As 35.2 or No.1+15.20, with commas between.",
-            "例: 35.2、No.1+15.20（カンマ区切り）",
-        ),
-    )
-    section_reach: float = length(
-        10.0, low=1.0, high=100.0, name=Text("Reach to either side", "横断図の片側の幅")
-    )
-    section_depth: float = length(
-        0.5,
-        low=0.05,
-        high=5.0,
-        name=Text("Depth of a section", "断面の奥行き"),
-        explanation=Text(
-            "Points so near together are drawn as the ground.",
-            "この範囲の点から地盤線を求めます。",
-        ),
-    )
+    section_pitch: float = _section_pitch()
+    section_stations: str = _section_stations()
+    section_reach: float = _section_reach()
+    section_depth: float = _section_depth()
     sheet_paper: str = _paper()
     sheet_route: str = _sheet_route()
     sheet_title: str = _sheet_title()
@@ -272,6 +288,38 @@ class SectionOptions:
     sheet_heights: str = _sheet_heights()
     encoding: str = _encoding()
     digits: int = _digits()
+
+
+@dataclass(frozen=True)
+class LandXmlOptions:
+    """What can be chosen for LandXML."""
+
+    landxml_form: str = _same_choices(
+        "J-LandXML", ("J-LandXML", "LandXML"), Text("Form of LandXML", "LandXMLの形式")
+    )
+    sheet_route: str = _sheet_route()
+    section_pitch: float = _section_pitch()
+    section_stations: str = _section_stations()
+    section_reach: float = _section_reach()
+    section_depth: float = _section_depth()
+    sheet_heights: str = _sheet_heights()
+
+
+@dataclass(frozen=True)
+class OpenDriveOptions:
+    """What can be chosen for OpenDRIVE."""
+
+    lane_pitch: float = length(
+        5.0,
+        low=0.5,
+        high=100.0,
+        name=Text("From width to width of lanes", "車線幅員の間隔"),
+        explanation=Text(
+            "Along the route; straight in between.",
+            "路線に沿った間隔です。間は直線的に補間します。",
+        ),
+    )
+    sheet_route: str = _sheet_route()
 
 
 def tell_nobody(_note: Text) -> None:

@@ -12,6 +12,8 @@ from processing.formats.format_list import FormatList
 from processing.formats.map_delivery import (
     DmOptions,
     DxfOptions,
+    LandXmlOptions,
+    OpenDriveOptions,
     QualityOptions,
     SectionOptions,
     ShapefileOptions,
@@ -229,6 +231,19 @@ _OTHER_FORMATS = (
         (".xml", ".landxml"),
         reads={Content.SURFACE: f"{_SURFACES}.landxml:read_landxml"},
         writes={Content.SURFACE: BY_MAKER},
+        map_title=Text("Alignments and sections (LandXML)", "線形・断面（LandXML）"),
+        writes_map="processing.formats.sections.section_landxml:write_landxml_map",
+        options=LandXmlOptions,
+        has_attributes=False,
+    ),
+    Format(
+        "opendrive",
+        Text.same("OpenDRIVE"),
+        (".xodr",),
+        writes={Content.FEATURES: "processing.formats.roads.opendrive:write_opendrive_features"},
+        map_title=Text("Roads and lanes (OpenDRIVE)", "道路・車線（OpenDRIVE）"),
+        options=OpenDriveOptions,
+        has_attributes=False,
     ),
     Format(
         "geotiff",

@@ -95,7 +95,7 @@ def write_landxml(
     surfaces: Sequence[WrittenSurface],
     facts: LandXmlFacts,
     *,
-    line: SectionedLine | None = None,
+    lines: Sequence[SectionedLine] = (),
     form: LandXmlForm = "J-LandXML",
     monitor: Monitor | None = None,
     never: Iterable[Path] = (),
@@ -106,8 +106,9 @@ def write_landxml(
     ----------
     surfaces : sequence of WrittenSurface
         Names that are missing or there twice are completed by a number.
-    line : SectionedLine or None
-        Becomes an alignment with both grounds at each section; stations differ by a millimetre.
+    lines : sequence of SectionedLine
+        Each becomes an alignment with its ground along it, and both grounds at each section;
+        stations of one differ by a millimetre.
     form : {"J-LandXML", "LandXML"}
         J-LandXML leaves break lines out and needs a plane system of Japan.
     never : iterable of Path
@@ -125,7 +126,7 @@ def write_landxml(
     ----------
     LandXML 1.2; MLIT, J-LandXML 1.7: points are north, east, height; left offsets are negative.
     """
-    _check(path, surfaces, facts, line=line, form=form)
+    _check(path, surfaces, facts, lines=lines, form=form)
     monitor = monitor or SilentMonitor()
     with (
         write_safely(path, never=never) as temporary,
@@ -133,7 +134,7 @@ def write_landxml(
     ):
         for words in _head(facts, form):
             file.write(words + "\n")
-        for words in _alignment(line, facts) if line is not None else ():
+        for words in _alignments(lines, facts):
             monitor.check()
             file.write(words + "\n")
         if surfaces:
@@ -153,11 +154,11 @@ def _check(
     surfaces: Sequence[WrittenSurface],
     facts: LandXmlFacts,
     *,
-    line: SectionedLine | None,
+    lines: Sequence[SectionedLine],
     form: LandXmlForm,
 ) -> None:
     where = Text.same(str(path))
-    if not surfaces and not (line is not None and line.sections):
+    if not surfaces and not any(line.sections for line in lines):
         raise Unsuitable(
             Text("There is neither a surface nor a section.", "サーフェスも断面もありません。"),
             where,
@@ -244,15 +245,24 @@ def _surface(name: str, one: WrittenSurface, decimals: int, form: LandXmlForm) -
     yield "</Faces></Definition></Surface>"
 
 
-def _alignment(line: SectionedLine, facts: LandXmlFacts) -> Iterator[str]:
-    """Lines of the file: the line's corners, then a section each."""
+def _alignments(lines: Sequence[SectionedLine], facts: LandXmlFacts) -> Iterator[str]:
+    """Lines of the file: an alignment each."""
+    if lines:
+        yield "<Alignments>"
+        for name, line in zip(_names(one.name or "1" for one in lines), lines, strict=True):
+            yield from _alignment(name, line, facts)
+        yield "</Alignments>"
+
+
+def _alignment(name: str, line: SectionedLine, facts: LandXmlFacts) -> Iterator[str]:
+    """Lines of the file: the line's corners, the ground along it, then a section each."""
     decimals = facts.decimals
     moved = np.hypot(*np.diff(line.xy, axis=0).T) >= _LEAST_M
     corners = _round_values(line.xy[np.append(True, moved)][:, ::-1], decimals)
     lengths = [float(np.hypot(*(end - start))) for start, end in pairwise(corners)]
     names = ["BP", *(f"IP.{number}" for number in range(1, len(corners) - 1)), "EP"]
     reported = f'length="{sum(lengths):.{decimals}f}" staStart="{line.start_m:.{decimals}f}"'
-    yield f"<Alignments><Alignment name={_quote_words(line.name or '1')} {reported}><CoordGeom>"
+    yield f"<Alignment name={_quote_words(name)} {reported}><CoordGeom>"
     ends = list(zip(names, corners.tolist(), strict=True))
     for length, (start, end) in zip(lengths, pairwise(ends), strict=True):
         positions = [
@@ -261,11 +271,21 @@ def _alignment(line: SectionedLine, facts: LandXmlFacts) -> Iterator[str]:
         ]
         yield f'<Line length="{length:.{decimals}f}">{"".join(positions)}</Line>'
     yield "</CoordGeom>"
+    if line.ground:
+        drawn = "".join(_point_list(part, decimals) for part in line.ground)
+        yield f'<Profile><ProfSurf name="{facts.section_names[0]}">{drawn}</ProfSurf></Profile>'
     if line.sections:
         yield "<CrossSects>"
         yield from (_section(section, facts) for section in line.sections)
         yield "</CrossSects>"
-    yield "</Alignment></Alignments>"
+    yield "</Alignment>"
+
+
+def _point_list(part: NDArray[np.float64], decimals: int) -> str:
+    """Stations or offsets, each with its height."""
+    values = _round_values(part, decimals).ravel().tolist()
+    numbers = " ".join(f"{value:.{decimals}f}" for value in values)
+    return f"<PntList2D>{numbers}</PntList2D>"
 
 
 def _section(section: DrawnSection, facts: LandXmlFacts) -> str:
@@ -274,15 +294,8 @@ def _section(section: DrawnSection, facts: LandXmlFacts) -> str:
     grounds = (section.before, section.after)
     for name, heights in zip(facts.section_names, grounds, strict=True):
         parts = parts_with_ground(section.offsets, heights)
-        lists = [
-            " ".join(
-                f"{value:.{facts.decimals}f}"
-                for value in _round_values(part, facts.decimals).ravel().tolist()
-            )
-            for part in parts
-        ]
-        if lists:
-            drawn = "".join(f"<PntList2D>{numbers}</PntList2D>" for numbers in lists)
+        drawn = "".join(_point_list(part, facts.decimals) for part in parts)
+        if drawn:
             words.append(f"<CrossSectSurf name={_quote_words(name)}>{drawn}</CrossSectSurf>")
     return "\n".join([*words, "</CrossSect>"])
 

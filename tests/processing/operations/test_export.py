@@ -313,6 +313,8 @@ def test_every_format_has_a_title_in_both_languages() -> None:
         "sheets",
         "sections",
         "las",
+        "landxml",
+        "opendrive",
         "qa",
     )
     for one in FORMATS.maps():

@@ -67,6 +67,8 @@ def test_what_is_chosen_is_asked_for(qtbot: QtBot, tmp_path: Path) -> None:
         "section_stations": "",
         "section_reach": 10.0,
         "section_depth": 0.5,
+        "landxml_form": "J-LandXML",
+        "lane_pitch": 5.0,
         "tiny_decimals": 1,
     }
     assert request.options == expected

@@ -50,12 +50,15 @@ class SectionedLine:
         Easting and northing of its corners, m, project CRS.
     start_m : float
         Station of the first corner.
+    ground : tuple of (k, 2) float64
+        Stations and heights along it, a part for each stretch without gap.
     """
 
     name: str
     xy: Floats
     start_m: float
     sections: tuple[DrawnSection, ...]
+    ground: tuple[Floats, ...] = ()
 
 
 def parts_with_ground(offsets: Floats, heights: Floats) -> list[Floats]:

@@ -60,9 +60,7 @@ def _written(
     request = ExportRequest(("sections",), folder, options={"section_pitch": 2.0, **options})
     catalogue = read_catalogue(path_of("catalogue/level500.toml"))
     features = _map(drives[0]) if drives else ()
-    written = export(
-        features, catalogue, "EPSG:6677", request, drives=drives, tell=notes.append
-    )
+    written = export(features, catalogue, "EPSG:6677", request, drives=drives, tell=notes.append)
     return written, notes
 
 

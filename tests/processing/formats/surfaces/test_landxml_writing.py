@@ -81,7 +81,9 @@ def written(
     form: LandXmlForm = "J-LandXML",
 ) -> Any:
     """The file's root, once its schema found no fault."""
-    write_landxml(path, surfaces or [WrittenSurface(SURFACE)], facts, line=line, form=form)
+    write_landxml(
+        path, surfaces or [WrittenSurface(SURFACE)], facts, lines=(line,) if line else (), form=form
+    )
     tree = etree.parse(path)
     schema().assertValid(tree)
     return tree.getroot()
@@ -158,7 +160,7 @@ def test_the_line_and_its_sections_are_an_alignment(tmp_path: Path) -> None:
 
 
 def test_sections_alone_are_a_file_too(tmp_path: Path) -> None:
-    write_landxml(tmp_path / "a.xml", [], FACTS, line=LINE)
+    write_landxml(tmp_path / "a.xml", [], FACTS, lines=[LINE])
     tree = etree.parse(tmp_path / "a.xml")
     schema().assertValid(tree)
     assert tree.find("l:Surfaces", SPACE) is None

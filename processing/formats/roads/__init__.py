@@ -1,0 +1,1 @@
+"""Roads as driving simulators and automated vehicles take them."""
