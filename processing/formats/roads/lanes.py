@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -119,10 +119,14 @@ class Markings:
 def lanes_of(
     route: Route, stations: Stations, sections: Sequence[RoadSection], markings: Markings
 ) -> tuple[LaneStretch, ...]:
-    """The lanes of a route, stretch by stretch; a side without a drawn edge has none there."""
+    """The lanes of a route, stretch by stretch; a side without a drawn edge has none there.
+
+    At the route's ends, where lines often end too, widths are those of the stretch's other end.
+    """
     ends = [sections[0].start_m, *(one.end_m for one in sections)]
     across = [markings.across(stations, one - route.start_m) for one in ends]
     found = []
+    sections = _with_ends(sections)
     for section, (before, after) in zip(sections, pairwise(across), strict=True):
         sides = [
             _lanes(
@@ -137,6 +141,28 @@ def lanes_of(
             centre = None
         found.append(LaneStretch(section.start_m, section.end_m, sides[0], sides[1], centre))
     return tuple(found)
+
+
+def _with_ends(sections: Sequence[RoadSection]) -> list[RoadSection]:
+    """Sections of which the first and the last have widths at both ends."""
+    filled = list(sections)
+    filled[0] = replace(filled[0], start=_filled_up(filled[0].start, filled[0].end))
+    filled[-1] = replace(filled[-1], end=_filled_up(filled[-1].end, filled[-1].start))
+    return filled
+
+
+def _filled_up(widths: RoadWidths, others: RoadWidths) -> RoadWidths:
+    """Widths with those of another place where there is no edge."""
+
+    def chosen(side: int) -> tuple[float, float]:
+        if not math.isfinite(widths.carriageway[side]):
+            return others.carriageway[side], others.footway[side]
+        footway = widths.footway[side]
+        known = footway if math.isfinite(footway) else others.footway[side]
+        return widths.carriageway[side], known
+
+    (left, left_walk), (right, right_walk) = chosen(0), chosen(1)
+    return RoadWidths((left, right), (left_walk, right_walk), widths.median)
 
 
 def _edges(

@@ -36,14 +36,7 @@ def cut_routes(
         if options.sheet_route in ("", route.name)
     ]
     if not routes:
-        raise Unsuitable(
-            Text("The map has no such route.", "該当する路線がありません。"),
-            Text("sections along a route", "路線の縦断・横断図"),
-            Text(
-                "Draw the road's centre line and accept it; nothing was written.",
-                "中心線を作図して確定してください。何も書き込まれていません。",
-            ),
-        )
+        raise _no_route()
     further = stations_in_words(options.section_stations)
     source = SectionSource(
         delivery.drives, SheetClips(delivery.features), delivery.catalogue, options.section_depth
@@ -92,3 +85,14 @@ def _tell_empty(delivery: MapDelivery, empty: Sequence[str]) -> None:
                 f"横断図がありません（例: {first}）。",
             )
         )
+
+
+def _no_route() -> Unsuitable:
+    return Unsuitable(
+        Text("The map has no such route.", "該当する路線がありません。"),
+        Text("sections along a route", "路線の縦断・横断図"),
+        Text(
+            "Draw the road's centre line and accept it; nothing was written.",
+            "中心線を作図して確定してください。何も書き込まれていません。",
+        ),
+    )

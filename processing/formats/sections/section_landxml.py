@@ -83,12 +83,17 @@ def _section(section: RouteSection) -> DrawnSection:
 def _surface(
     sections: Sequence[RouteSection], options: LandXmlOptions, monitor: Monitor
 ) -> TriangleSurface | None:
-    """The ground between cross sections; None where there is too little of it."""
+    """The ground between cross sections; None where there is too little of it.
+
+    Stretches of ground are cut into short ones, so that long edges are those across gaps.
+    """
     places = [
         (*section.place_of(offset), height)
         for section in sections
         for part in section.ground
-        for offset, height in part.tolist()
+        for offset, height in shapely.get_coordinates(
+            shapely.segmentize(shapely.LineString(part), options.section_pitch / 2)
+        ).tolist()
     ]
     longest = _LONGEST_SHARE * options.section_pitch
     try:

@@ -13,12 +13,13 @@ from processing.formats.surfaces.landxml import read_landxml
 from processing.map.catalogue_file import read_catalogue
 from processing.operations.export import ExportRequest, export
 from processing.recording.drive import Drive
+from processing.section.stations import Stations
 from resources import path_of
 from tests.processing.formats.sections.test_section_files import _map
 from tests.street_scene import CROSSFALL
 
 _SPACE = {"l": "http://www.landxml.org/schema/LandXML-1.2"}
-_SCHEMA = path_of("").parent / "tests/processing/formats/surfaces/landxml_as_written.rng"
+_SCHEMA = Path(__file__).parents[1] / "surfaces" / "landxml_as_written.rng"
 
 
 @pytest.mark.parametrize("form", ["J-LandXML", "LandXML"])
@@ -40,10 +41,13 @@ def test_alignment_sections_and_surface_come_back(
     road = places[np.abs(places[:, 0]) < 3.0]
     assert np.abs(road[:, 1] - 125.0 + CROSSFALL * np.abs(road[:, 0] - 0.5)).max() < 0.03
     surface = read_landxml(path).only().surface
-    places = np.array([vertex.xyz for vertex in _map(both_heads[0])[0].vertices])
-    heights = surface.heights_at(places[2:6, :2])
-    assert np.isfinite(heights).all()
-    assert np.abs(heights - (125.0 - CROSSFALL * 0.5)).max() < 0.06
+    stations = Stations([vertex.xyz for vertex in _map(both_heads[0])[0].vertices])
+    places = []
+    for station in (2.5, 3.3, 4.7):  # 3 m to the right of the centre line, between the sections
+        (x, y, _), (east, north) = stations.position_at(station), stations.direction_at(station)
+        places.append((x + 3.0 * north, y - 3.0 * east))
+    heights = surface.heights_at(np.array(places))
+    assert np.abs(heights - (125.0 - CROSSFALL * 2.5)).max() < 0.03
     breaks = tree.findall(".//l:Breakline", _SPACE)
     assert len(breaks) == (1 if form == "LandXML" else 0)
 
