@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from processing.core.errors import InUse, report_as_user_error
+from processing.core.errors import InUse, MissingInput, report_as_user_error
 from processing.core.text import Text
 
 
@@ -38,7 +38,7 @@ def write_safely(path: Path, *, never: Iterable[Path] = ()) -> Iterator[Path]:
     refuse_inputs(path, never)
     temporary = path.with_name(f".{path.stem}-{uuid.uuid4().hex[:8]}{path.suffix}")
     with report_as_user_error(path):
-        path.parent.mkdir(parents=True, exist_ok=True)
+        _make_folder(path.parent)
         try:
             yield temporary
             _flush(temporary)
@@ -47,6 +47,23 @@ def write_safely(path: Path, *, never: Iterable[Path] = ()) -> Iterator[Path]:
             with suppress(OSError):
                 temporary.unlink(missing_ok=True)
             raise
+
+
+def _make_folder(folder: Path) -> None:
+    """Make a folder and those above it; full disks and lacking rights are left to the caller."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except (FileNotFoundError, FileExistsError, NotADirectoryError) as error:
+        raise MissingInput(
+            Text("The folder can't be made.", "フォルダを作成できません。"),
+            Text.same(str(folder)),
+            Text(
+                "Choose another folder: a file has its name or that of a folder above it, or the"
+                " disk is not there; nothing was written.",
+                "別のフォルダを指定してください。同じ名前のファイルがあるか、ディスクがありません。"
+                "何も書き込まれていません。",
+            ),
+        ) from error
 
 
 def refuse_inputs(path: Path, never: Iterable[Path]) -> None:

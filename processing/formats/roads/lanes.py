@@ -125,6 +125,9 @@ def lanes_of(
     """
     ends = [sections[0].start_m, *(one.end_m for one in sections)]
     across = [markings.across(stations, one - route.start_m) for one in ends]
+    if len(across) > 1:  # markings end where the route does
+        across[0] = max(across[0], across[1], key=len)
+        across[-1] = max(across[-1], across[-2], key=len)
     found = []
     sections = _with_ends(sections)
     for section, (before, after) in zip(sections, pairwise(across), strict=True):

@@ -78,7 +78,7 @@ def write_sheets_map(delivery: MapDelivery, position: Position, monitor: Monitor
         path = position(f"sheets/{delivery.name}_{number:03d}.dxf")
         write_flat_dxf(path, delivery, features, one, layout, monitor=monitor)
     _tell_unplaced(delivery, position, unplaced)
-    _tell_missing(delivery, shown)
+    _tell_missing(delivery, position, shown)
 
 
 def _divided(
@@ -102,14 +102,13 @@ def _tell_unplaced(
 ) -> None:
     if not unplaced:
         return
-    table = io.StringIO()
-    writer = csv.writer(table, lineterminator="\r\n")
-    writer.writerow(["sheet", "feature", "kind", "words", "easting_m", "northing_m"])
+    rows = []
     for one in unplaced:
         easting, northing = (f"{value:.3f}" for value in one.place)
         words = f"'{one.words}" if one.words[:1] in "=+-@" else one.words
-        writer.writerow([one.sheet, one.feature.id, one.feature.kind, words, easting, northing])
-    position("sheets/unplaced_labels.csv").write_bytes(table.getvalue().encode("utf-8-sig"))
+        rows.append([one.sheet, one.feature.id, one.feature.kind, words, easting, northing])
+    columns = ("sheet", "feature", "kind", "words", "easting_m", "northing_m")
+    position("sheets/unplaced_labels.csv").write_bytes(_table(columns, rows))
     delivery.tell(
         Text(
             f"{len(unplaced)} labels have no room on their sheets;"
@@ -120,14 +119,32 @@ def _tell_unplaced(
     )
 
 
-def _tell_missing(delivery: MapDelivery, shown: Sequence[Sequence[Feature]]) -> None:
+def _tell_missing(
+    delivery: MapDelivery, position: Position, shown: Sequence[Sequence[Feature]]
+) -> None:
     on_sheets = {feature.id for features in shown for feature in features}
-    missing = [one.id for one in delivery.features if one.id not in on_sheets]
-    if missing:
-        first = ", ".join(missing[:3])
-        delivery.tell(
-            Text(
-                f"{len(missing)} features lie off the sheets, among them {first}.",
-                f"{len(missing)}件の地物が図面の範囲外です（例: {first}）。",
-            )
+    missing = [one for one in delivery.features if one.id not in on_sheets]
+    if not missing:
+        return
+    rows = []
+    for one in missing:
+        easting, northing = (f"{value:.3f}" for value in one.vertices[0].xyz[:2])
+        rows.append([one.id, one.kind, easting, northing])
+    columns = ("feature", "kind", "easting_m", "northing_m")
+    position("sheets/features_off_sheets.csv").write_bytes(_table(columns, rows))
+    delivery.tell(
+        Text(
+            f"{len(missing)} features lie off the sheets; sheets/features_off_sheets.csv lists"
+            " them.",
+            f"{len(missing)}件の地物が図面の範囲外です。"
+            "sheets/features_off_sheets.csv に一覧があります。",
         )
+    )
+
+
+def _table(columns: Sequence[str], rows: Sequence[Sequence[object]]) -> bytes:
+    table = io.StringIO()
+    writer = csv.writer(table, lineterminator="\r\n")
+    writer.writerow(columns)
+    writer.writerows(rows)
+    return table.getvalue().encode("utf-8-sig")

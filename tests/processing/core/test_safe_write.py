@@ -53,7 +53,7 @@ def test_an_input_is_not_overwritten_by_whatever_name(tmp_path: Path) -> None:
 def test_a_folder_that_is_a_file_is_told_in_a_sentence(tmp_path: Path) -> None:
     (tmp_path / "folder").write_text("")
     with (
-        pytest.raises(UserError, match="folder"),
+        pytest.raises(UserError, match="folder can't be made"),
         write_safely(tmp_path / "folder" / "a.csv") as temporary,
     ):
         temporary.write_text("x")

@@ -17,8 +17,9 @@ from processing.core.text import Text
 from processing.formats.sheets.drawing_sheet import DrawingSheet
 from processing.formats.sheets.grid_division import map_grid, plain_grid
 from processing.formats.sheets.map_looks import map_shapes
-from processing.formats.sheets.paper_shapes import PaperLine
+from processing.formats.sheets.paper_shapes import PaperLine, PaperWords
 from processing.formats.sheets.sheet_clips import SheetClips
+from processing.formats.sheets.sheet_column import LegendRow, legend_box
 from processing.formats.sheets.sheet_layout import layout_of
 from processing.map.catalogue import Catalogue, Geometry
 from processing.map.catalogue_file import read_catalogue
@@ -175,3 +176,20 @@ def test_bad_input_is_refused_in_one_sentence(tmp_path: Path, catalogue: Catalog
     with pytest.raises(UserError):
         _written(tmp_path, catalogue, *_street())
     assert [path.name for path in tmp_path.iterdir()] == ["sheets"]
+
+
+def test_features_off_a_routes_sheets_are_listed(tmp_path: Path, catalogue: Catalogue) -> None:
+    far = _feature("far", "street_tree", Geometry.POINT, (300.0, 5000.0, 1.0))
+    _, notes = _written(tmp_path, catalogue, *_street(), far, sheet_division="route")
+    assert [note.en for note in notes if "off the sheets" in note.en]
+    rows = (tmp_path / "sheets/features_off_sheets.csv").read_text("utf-8-sig").splitlines()
+    assert rows[1:] == ["far,street_tree,-7700.000,-31200.000"]
+
+
+def test_a_dense_legend_stays_legible_and_counts_what_has_no_room() -> None:
+    rows = [LegendRow(f"kind {number}", lambda _place, _step: ()) for number in range(40)]
+    for height, last in ((200.0, "kind 39"), (60.0, "and 5 more kinds")):
+        shapes = list(legend_box(rows, "en", (0.0, 0.0), (140.0, height)))
+        words = [one for one in shapes if isinstance(one, PaperWords)]
+        assert words[-1].words == last
+        assert min(one.height for one in words) >= 2.3
