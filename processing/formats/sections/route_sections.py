@@ -34,6 +34,9 @@ _NARROW_M, _STANDS_OUT_M = 1.0, 0.3
 """What stands out by so much and is narrower is a trunk, a post or a fence, not ground."""
 
 _CHORD_M = 20.0
+_BEYOND_M = 0.1
+"""Ground is looked for so far beyond the ends of a chord, so that it goes through them."""
+
 _LEAST_M = 0.01
 _STATION = re.compile(r"(?:No\.?\s*(?P<number>-?\d+)\s*\+?)?\s*(?P<rest>-?\d+(?:\.\d*)?)?", re.I)
 
@@ -149,7 +152,7 @@ class SectionSource:
             length = float(np.hypot(*(end - start)[:2]))
             east, north = ((end - start)[:2] / length).tolist()
             x, y, z = ((start + end) / 2).tolist()
-            cut = Cut((x, y, z), (east, north), self.depth_m, length / 2)
+            cut = Cut((x, y, z), (east, north), self.depth_m, length / 2 + _BEYOND_M)
 
             def station(along: float, first: float = first, last: float = last,
                         length: float = length) -> float:  # fmt: skip
@@ -160,7 +163,11 @@ class SectionSource:
                 scale = (last - first) / length
                 middle = route.start_m + (first + last) / 2
                 parts.append(part * [scale, 1.0] + [middle, 0.0])
-            found += [replace(one, along_m=station(one.along_m)) for one in self._crossed(cut)]
+            found += [
+                replace(one, along_m=station(one.along_m))
+                for one in self._crossed(cut)
+                if abs(one.along_m) <= length / 2
+            ]
         ground = _cleared(_joined(parts))
         section = RouteSection(route, stations, ground, ())
         crossed = {
@@ -169,9 +176,9 @@ class SectionSource:
             )
             for one in found
         }
-        return replace(
-            section, crossed=tuple(sorted(crossed.values(), key=lambda one: one.along_m))
-        )
+        in_order = tuple(sorted(crossed.values(), key=lambda one: one.along_m))
+        end_m = route.start_m + stations.length_m
+        return replace(section, crossed=in_order).between(route.start_m, end_m)
 
     def _crossed(self, cut: Cut) -> Iterable[CrossedFeature]:
         for feature in self.clips.within(shapely.Polygon(cut.outline)):

@@ -108,6 +108,7 @@ def test_the_longitudinal_section_meets_what_lies_across(
     assert max(abs(one - (125.0 - CROSSFALL * _LANE_M)) for one in heights) < 0.03
     stations = [float(one["station_m"]) for one in ground]
     assert stations == sorted(stations)
+    assert stations[0] >= 0.0
 
 
 def test_drawings_are_clean_and_true_to_scale(
