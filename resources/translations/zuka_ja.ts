@@ -1235,6 +1235,25 @@ kept</source>
     </message>
 </context>
 <context>
+    <name>PrintForm</name>
+    <message>
+        <source>Print</source>
+        <translation>印刷</translation>
+    </message>
+    <message>
+        <source>Unchecked candidates as well</source>
+        <translation>未確認の候補も含める</translation>
+    </message>
+    <message>
+        <source>Sheets</source>
+        <translation>図面</translation>
+    </message>
+    <message>
+        <source>Print…</source>
+        <translation>印刷…</translation>
+    </message>
+</context>
+<context>
     <name>ProcessingPanel</name>
     <message>
         <source>Search for a tool</source>
