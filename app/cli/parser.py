@@ -135,6 +135,15 @@ def _add_working_commands(commands: _Commands[_Parser]) -> None:
         "--crs", default="", metavar="EPSG:n", help="where the file does not say it"
     )
     taking.add_argument("--kind", default="", metavar="KIND", help="of what says no known kind")
+    taking.add_argument(
+        "--compare", action="store_true", help="store what is new, moved and gone for review"
+    )
+    taking.add_argument(
+        "--tolerance", type=float, metavar="M", help="what lies nearer has not moved"
+    )
+    taking.add_argument(
+        "--search", type=float, metavar="M", help="what lies farther is another thing"
+    )
     taking.set_defaults(module="maps.take")
     learning = commands.add_parser("learn", help="a model of classes from what was painted")
     learning.add_argument("project", type=Path, metavar="PROJECT")

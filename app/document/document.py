@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,6 +20,7 @@ from app.document.run_results import RunResultApplier
 from app.document.undo import UndoStack
 from app.jobs.jobs import JobLane, JobQueue
 from processing.core.errors import OutOfRange, UserError
+from processing.core.monitor import Monitor
 from processing.core.text import Text
 from processing.image.attributes.tile_cache import TileCache
 from processing.map.catalogue import Catalogue
@@ -47,6 +49,8 @@ from widgets.shared.shared_state import SharedState
 from widgets.shared.sketch import Sketch
 from widgets.shared.snap_state import SnapState
 from widgets.shared.view_settings import ViewSettings
+
+_MadeT = TypeVar("_MadeT")
 
 
 class Document(QObject):
@@ -317,6 +321,40 @@ class Document(QObject):
     ) -> None:
         """Do a moment's work for the tool in the hand; it gets None where that failed."""
         self._job_results.start_at_hand(self._need_project(), work, take)
+
+    def prepare_step(
+        self,
+        title: Text,
+        work: Callable[[Monitor], _MadeT],
+        act: Callable[[Project, _MadeT], Change],
+        done: Callable[[_MadeT], None],
+    ) -> str:
+        """Have a job make what a step of the open project needs; gives the job's id.
+
+        Parameters
+        ----------
+        work : callable
+            Runs beside the window, and touches neither the project nor a widget.
+        act : callable
+            Does the step with what came of it.
+        done : callable
+            Called when that was done, also where it changed nothing.
+        """
+        project = self._need_project()
+
+        def take(made: _MadeT) -> None:
+            acted: list[_MadeT] = []
+
+            def step(opened: Project) -> Change:
+                change = act(opened, made)
+                acted.append(made)
+                return change
+
+            self.do_step(step)
+            for one in acted:
+                done(one)
+
+        return self._job_results.start(project, title, work, take)
 
     def export(self, request: ExportRequest) -> str:
         """Write the map to files in the background; gives the job's id."""

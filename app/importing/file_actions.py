@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QFileDialog
 from app.catalogue.catalogue_update import adopt_catalogue
 from app.importing.column_request import with_columns
 from app.importing.drive_actions import DriveActions
+from app.importing.existing_maps import ExistingMaps
 from app.importing.sheet_printing import SheetPrinting
 from app.importing.source_watch import SourceWatch
 from app.importing.trajectory_offer import TrajectoryOffer
@@ -47,6 +48,7 @@ class FileActions:
         self.simulations = Simulations(parts, projects_folder)
         self.drives = DriveActions(parts)
         self.printing = SheetPrinting(parts, self._dialogs)
+        self.existing_maps = ExistingMaps(parts, self._dialogs)
 
     def actions(self) -> tuple[Action, ...]:
         """The file menu, from top to bottom."""
@@ -81,6 +83,7 @@ class FileActions:
                 ),
             ),
             *self.drives.actions(),
+            self._existing_map(),
             self._simulate(),
             Action(
                 "export",
@@ -97,6 +100,20 @@ class FileActions:
                 needs_project=True,
             ),
             self.printing.action(),
+        )
+
+    def _existing_map(self) -> Action:
+        return Action(
+            "existing-map",
+            Text("Existing map…", "既存図の比較・取り込み…"),
+            self.existing_maps.choose,
+            "file",
+            icon="mdi6.map-plus",
+            hint=Text(
+                "Finds what is new, moved and gone since a delivered map, or takes it in.",
+                "納品済みの図面と比較して新設・移動・消滅を抽出するか、地物として取り込みます。",
+            ),
+            needs_project=True,
         )
 
     def _simulate(self) -> Action:

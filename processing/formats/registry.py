@@ -209,6 +209,7 @@ _VECTOR_FORMATS = (
         "shp",
         Text.same("Shapefile"),
         (".shp",),
+        reads={Content.FEATURES: f"{_VECTORS}.shapefile_reading:read_shapefile_features"},
         writes={Content.FEATURES: BY_MAKER},
         map_title=Text("GIS (Shapefile)", "GIS（Shapefile）"),
         writes_map=f"{_VECTORS}.shapefile:write_shapefile_map",

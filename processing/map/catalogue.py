@@ -33,6 +33,9 @@ LINE_TYPES: Mapping[str, tuple[float, ...]] = {
 }
 """Patterns of lines: dash and gap (negative) in metres on the ground, drawn for 1:500."""
 
+CHANGE_KIND = "map_change"
+"""The kind as which changes since the last map are drawn: about the map, and no part of it."""
+
 RESERVED_ATTRIBUTES = frozenset(
     {"id", "kind", "status", "confidence", "tool", "fid", "geom", "geometry"}
 )

@@ -1,20 +1,40 @@
-"""Steps of a project's map: a delivered map taken in, ledgers numbered, the last step undone."""
+"""Steps of a project's map: ledgers numbered, a delivered map taken in or compared, an undo."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from datetime import datetime
 from pathlib import Path
 
 from processing.core.errors import UNCHANGED, MissingInput, OutOfRange
 from processing.core.monitor import Monitor
 from processing.core.text import Text
-from processing.formats.vectors.delivered_maps import features_of_map
+from processing.formats.vectors.delivered_maps import ReadMap, features_of_map
 from processing.formats.vectors.mapped_shapes import read_mapped
+from processing.map.catalogue import CHANGE_KIND, Catalogue
 from processing.map.change import Change
+from processing.map.feature import AttributeValue, Feature, Status
+from processing.map.map_extent import extent_of
 from processing.map.reference_system import reference_system
+from processing.map.renewal.map_comparison import (
+    MOST_SEARCH_M,
+    ComparisonLimits,
+    MapComparison,
+    compare_maps,
+)
 from processing.map.routes.numbering import number_along_routes
 from processing.map.routes.route import routes_of
 from processing.operations.inputs import opened_project
+from processing.project.comparison.found_differences import (
+    FoundDifferences,
+    found_differences,
+    store_differences,
+)
+from processing.project.comparison.measured_ground import MeasuredGround
+from processing.project.project import Project
+from processing.project.store.runs import Run
+from processing.recording.drive import Drive
 from processing.scoring.features.mapped_features import IN_DEGREES, MappedFile
 
 NO_CENTRE_LINE = Text(
@@ -32,6 +52,20 @@ NUMBERED = Text(
 )
 _TAKE_LABEL = Text("Take in {count} features of {file}", "{file}から{count}個の地物を取り込み")
 _TAKEN = Text("{count} features taken in.", "{count}個の地物を取り込みました。")
+_SAME = Text("{count} things are where they were.", "{count}個の地物に変化はありません。")
+_ONLY_BEFORE = Text(
+    "Not compared, since nothing of the kind is on today's map: {kinds}.",
+    "今回の図面に同じ種別がないため、次は比較していません: {kinds}",
+)
+_ONLY_NOW = Text(
+    "Not compared, since nothing of the kind is on the last map: {kinds}.",
+    "既存図に同じ種別がないため、次は比較していません: {kinds}",
+)
+_UNREACHED = Text(
+    "{count} things or pieces of the last map lie where nothing was measured: nothing is said of"
+    " them.",
+    "既存図の{count}か所は計測範囲の外にあるため、判定していません。",
+)
 _UNDONE = Text("Undone: {label}", "元に戻しました: {label}")
 _NOTHING = Text("There is nothing to undo.", "元に戻す操作はありません。")
 
@@ -144,7 +178,7 @@ class TakeMapOperation:
     ----------
     project : Path
     path : Path
-        DXF, GeoPackage, GeoJSON, SIMA or extended DM.
+        DXF, GeoPackage, GeoJSON, Shapefile, SIMA or extended DM.
     crs : str
         ``EPSG:n`` of a file that doesn't say it; empty where it does.
     of_kind : str
@@ -170,6 +204,90 @@ class TakenMap:
         return (_TAKEN.filled(count=f"{self.count:,}"), *self.notes)
 
 
+@dataclass(frozen=True)
+class CompareMapOperation:
+    """A map that was delivered before, to be compared with a project's.
+
+    Attributes
+    ----------
+    project, path, crs, of_kind
+        As of :class:`TakeMapOperation`.
+    limits : ComparisonLimits
+    """
+
+    project: Path
+    path: Path
+    crs: str = ""
+    of_kind: str = ""
+    limits: ComparisonLimits = field(default_factory=ComparisonLimits)
+
+    def check(self) -> None:
+        """Refuse limits that say nothing.
+
+        Raises
+        ------
+        OutOfRange
+        """
+        if not 0.0 < self.limits.tolerance_m <= self.limits.search_m <= MOST_SEARCH_M:
+            raise OutOfRange(
+                Text(
+                    "The tolerance must be above 0 and no larger than the search distance.",
+                    "許容差は0より大きく、探索距離以下にしてください。",
+                ),
+                Text.same(f"{self.limits.tolerance_m:g} m, {self.limits.search_m:g} m"),
+                Text(
+                    f"Search up to {MOST_SEARCH_M:g} m.", f"探索距離は{MOST_SEARCH_M:g} m以下です。"
+                ),
+            )
+
+
+@dataclass(frozen=True)
+class MapSnapshot:
+    """A project's map as it is when a job begins.
+
+    Attributes
+    ----------
+    folder : Path
+        Of the project.
+    """
+
+    folder: Path
+    features: tuple[Feature, ...]
+    catalogue: Catalogue
+    crs: str
+    drives: tuple[Drive, ...]
+
+    @staticmethod
+    def of(project: Project) -> MapSnapshot:
+        """Of an open project."""
+        return MapSnapshot(
+            project.folder,
+            tuple(project.features.all()),
+            project.catalogue,
+            project.crs,
+            project.drives,
+        )
+
+
+@dataclass(frozen=True)
+class ComparedMap:
+    """What was stored of a comparison, and what has to be known about it.
+
+    Attributes
+    ----------
+    run : Run
+    notes : tuple of Text
+    """
+
+    run: Run
+    notes: tuple[Text, ...]
+
+    @property
+    def words(self) -> tuple[Text, ...]:
+        """A line for what was found, and one for each note."""
+        return (self.run.summary, *self.notes)
+
+
 def take_map(operation: TakeMapOperation, monitor: Monitor) -> TakenMap:
     """Add the features of a delivered map to a project, as one step to be undone.
 
@@ -182,26 +300,121 @@ def take_map(operation: TakeMapOperation, monitor: Monitor) -> TakenMap:
     Unsuitable, BadFile, InUse, NoSpace, Cancelled
         The project is as it was.
     """
-    mapped = read_mapped(operation.path)
-    monitor.check()
     with opened_project(operation.project, writing=True) as project:
-        mapped = replace(mapped, crs=_system_of(mapped, operation, project.crs))
-        read = features_of_map(
-            mapped,
-            project.catalogue,
-            crs=project.crs,
-            known=frozenset(one.id for one in project.features.all()),
-            kind=operation.of_kind,
-        )
-        monitor.check()
+        snapshot = MapSnapshot.of(project)
+        read = read_for_taking(operation, snapshot, monitor)
         if read.features:
-            label = _TAKE_LABEL.filled(count=f"{len(read.features):,}", file=operation.path.name)
-            project.features.apply(label, Change(added=read.features))
+            project.features.apply(label_of_taking(read, operation.path), Change(read.features))
         return TakenMap(len(read.features), read.notes)
 
 
-def _system_of(mapped: MappedFile, operation: TakeMapOperation, own: str) -> str:
+def read_for_taking(
+    operation: TakeMapOperation, snapshot: MapSnapshot, monitor: Monitor
+) -> ReadMap:
+    """What a project's map would get, without what it has; see :func:`take_map`."""
+    known = frozenset(one.id for one in snapshot.features)
+    ground = MeasuredGround(snapshot.drives, monitor)
+    return _read(operation, snapshot, ground, monitor, known=known)
+
+
+def label_of_taking(read: ReadMap, path: Path) -> Text:
+    """What the undo menu calls the step."""
+    return _TAKE_LABEL.filled(count=f"{len(read.features):,}", file=path.name)
+
+
+def compare_map(operation: CompareMapOperation, monitor: Monitor) -> ComparedMap:
+    """Put what is new, moved and gone since a map into a project, as candidates of a run.
+
+    Raises
+    ------
+    MissingInput
+        As :func:`take_map`; nothing is accepted yet; the catalogue has no kind for changes.
+    OutOfRange, Unsuitable, BadFile, InUse, NoSpace, Cancelled
+        The project is as it was.
+    """
+    operation.check()
+    with opened_project(operation.project, writing=True) as project:
+        found, notes = differences_from(operation, MapSnapshot.of(project), monitor)
+        store_differences(project, found)
+        stored = project.runs.get(found.run.id) or found.run
+        return ComparedMap(stored, notes)
+
+
+def differences_from(
+    operation: CompareMapOperation, snapshot: MapSnapshot, monitor: Monitor
+) -> tuple[FoundDifferences, tuple[Text, ...]]:
+    """What :func:`compare_map` stores, and what has to be known about it."""
+    operation.check()
+    started = datetime.now().astimezone()
+    now = [
+        one
+        for one in snapshot.features
+        if one.status is Status.ACCEPTED and one.kind != CHANGE_KIND
+    ]
+    if not now:
+        raise MissingInput(
+            Text(
+                "Nothing is accepted or drawn yet that could be compared.",
+                "比較できる採用済みの地物がまだありません。",
+            ),
+            Text.same(str(snapshot.folder)),
+            Text(
+                "Draw or accept features first. {unchanged}",
+                "先に作図または採用してください。{unchanged}",
+            ).filled(unchanged=UNCHANGED),
+        )
+    ground = MeasuredGround(snapshot.drives, monitor)
+    read = _read(operation, snapshot, ground, monitor, known=frozenset())
+    before = [one for one in read.features if one.kind != CHANGE_KIND]
+    compared = compare_maps(before, now, operation.limits, ground.holds, monitor)
+    parameters: dict[str, AttributeValue] = {
+        "map": operation.path.name,
+        "tolerance_m": operation.limits.tolerance_m,
+        "search_m": operation.limits.search_m,
+    }
+    found = found_differences(compared, snapshot.catalogue, now, parameters, started)
+    return found, (*read.notes, *_notes_of(compared, snapshot.catalogue))
+
+
+def _notes_of(compared: MapComparison, catalogue: Catalogue) -> Iterator[Text]:
+    yield _SAME.filled(count=f"{compared.same:,}")
+    for words, kinds in ((_ONLY_BEFORE, compared.only_before), (_ONLY_NOW, compared.only_now)):
+        if kinds:
+            names = [catalogue[kind].name for kind in kinds]
+            listed = Text(", ".join(n.en for n in names), "、".join(n.ja for n in names))
+            yield words.filled(kinds=listed)
+    if compared.unreached:
+        yield _UNREACHED.filled(count=f"{compared.unreached:,}")
+
+
+def _read(
+    operation: TakeMapOperation | CompareMapOperation,
+    snapshot: MapSnapshot,
+    ground: MeasuredGround,
+    monitor: Monitor,
+    *,
+    known: frozenset[str],
+) -> ReadMap:
+    mapped = read_mapped(operation.path)
+    monitor.check()
+    mapped = replace(mapped, crs=_system_of(mapped, operation, snapshot))
+    read = features_of_map(
+        mapped,
+        snapshot.catalogue,
+        crs=snapshot.crs,
+        known=known,
+        kind=operation.of_kind,
+        around=ground.bounds_with(extent_of(snapshot.features)),
+    )
+    monitor.check()
+    return read
+
+
+def _system_of(
+    mapped: MappedFile, operation: TakeMapOperation | CompareMapOperation, snapshot: MapSnapshot
+) -> str:
     """The reference system of a map: as the file says, else as was given."""
+    own = snapshot.crs
     given = reference_system(operation.crs) if operation.crs else ""
     said = "" if mapped.crs == IN_DEGREES and given else mapped.crs
     if said and given and said != given:
@@ -211,7 +424,10 @@ def _system_of(mapped: MappedFile, operation: TakeMapOperation, own: str) -> str
                 f"ファイルの座標参照系は{said}です（{given}ではありません）。",
             ),
             Text.same(str(operation.path)),
-            Text("Leave --crs out.", "--crsを省略してください。"),
+            Text(
+                "Leave the system out (--crs). {unchanged}",
+                "座標参照系（--crs）の指定を省略してください。{unchanged}",
+            ).filled(unchanged=UNCHANGED),
         )
     if not own or not (said or given):
         what = Text(
@@ -226,8 +442,8 @@ def _system_of(mapped: MappedFile, operation: TakeMapOperation, own: str) -> str
             what,
             Text.same(str(operation.path if own else operation.project)),
             Text(
-                "Give it with --crs, for instance --crs EPSG:6677. {unchanged}",
-                "--crs EPSG:6677のように指定してください。{unchanged}",
+                "Give it (--crs), for instance EPSG:6677. {unchanged}",
+                "座標参照系（--crs）をEPSG:6677のように指定してください。{unchanged}",
             ).filled(unchanged=UNCHANGED)
             if own
             else Text("Set it in the project first.", "先にプロジェクトで設定してください。"),

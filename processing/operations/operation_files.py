@@ -20,9 +20,11 @@ from processing.operations.extraction import ExtractOperation, extract
 from processing.operations.import_files import ImportOperation, import_files
 from processing.operations.learn import LearnOperation, learn_in_project
 from processing.operations.map_steps import (
+    CompareMapOperation,
     NumberOperation,
     TakeMapOperation,
     UndoOperation,
+    compare_map,
     number_features,
     take_map,
     undo_step,
@@ -74,6 +76,7 @@ OPERATIONS: Kinds = {
         OperationKind("learn", LearnOperation, learn_in_project),
         OperationKind("number", NumberOperation, number_features),
         OperationKind("take-map", TakeMapOperation, take_map),
+        OperationKind("compare-map", CompareMapOperation, compare_map),
         OperationKind("undo", UndoOperation, undo_step),
         OperationKind("export", ExportOperation, export_project),
         OperationKind("score", ScoreOperation, score_result),

@@ -9,6 +9,7 @@ from PySide6.QtCore import QLocale
 from processing.core.text import Language, Text
 from processing.map.catalogue import AttributeField, Catalogue
 from processing.map.feature import AttributeValue, Feature, Status
+from processing.map.renewal.map_comparison import COMPARISON, COMPARISON_NAME
 from processing.tools.registry import TOOLS
 
 STATUS_NAMES: Mapping[Status, Text] = {
@@ -34,6 +35,8 @@ def name_of_origin(feature: Feature, language: Language) -> str:
     tool = feature.provenance.tool
     if tool == HAND:
         return _BY_HAND.in_language(language)
+    if tool == COMPARISON:
+        return COMPARISON_NAME.in_language(language)
     return TOOLS[tool].name.in_language(language) if tool in TOOLS else tool
 
 

@@ -8,6 +8,7 @@ from PySide6.QtCore import QDateTime, QLocale
 
 from processing.core.parameters import parameters_of
 from processing.core.text import Language, Text
+from processing.map.renewal.map_comparison import COMPARISON, COMPARISON_NAME
 from processing.project.store.runs import Run
 from processing.tools.registry import TOOLS
 from widgets.panels.feature_tally import RunOfTool, RunTally
@@ -27,6 +28,8 @@ _COUNTS = Text(
 
 def name_of_tool(tool: str, language: Language) -> str:
     """A tool's name; its id where the program no longer has it."""
+    if tool == COMPARISON:
+        return COMPARISON_NAME.in_language(language)
     return TOOLS[tool].name.in_language(language) if tool in TOOLS else tool
 
 

@@ -13,7 +13,7 @@ import numpy as np
 
 from processing.core.arrays import Floats
 from processing.formats.drawings.drawn_outlines import opened_drawing, system_of_drawing
-from processing.formats.drawings.dxf_document import APP_ID
+from processing.formats.drawings.dxf_document import APP_ID, SHEET_MARK
 from processing.scoring.features.mapped_features import GeometryType, MappedFeature, MappedFile
 
 LAYER = "layer"
@@ -31,7 +31,7 @@ def read_dxf_features(path: Path) -> MappedFile:
 
     Numbers are metres whatever the drawing says of its units. Polylines that are closed, or end
     where they begin, are areas. Light polylines lie at their elevation; meshes, texts and what is
-    inside blocks are passed over.
+    inside blocks are passed over, and so is the paper around the map on this program's sheets.
 
     Raises
     ------
@@ -41,11 +41,18 @@ def read_dxf_features(path: Path) -> MappedFile:
     features: list[MappedFeature] = []
     with opened_drawing(path) as drawing:
         for entity in drawing.modelspace().query(_DRAWN):
-            found = _shape_of(entity)
+            found = None if _is_of_sheet(entity) else _shape_of(entity)
             if found is not None and np.isfinite(found[1]).all():
                 facts = {LAYER: entity.dxf.layer, **_said(entity)}
                 features.append(MappedFeature(len(features) + 1, *found, facts))
         return MappedFile(path, system_of_drawing(drawing), tuple(features))
+
+
+# Any: as of _shape_of.
+def _is_of_sheet(entity: Any) -> bool:
+    """Whether it belongs to the paper around the map, as the legend's samples do."""
+    has_mark = entity.has_xdata(APP_ID)
+    return has_mark and any(tag.value == SHEET_MARK for tag in entity.get_xdata(APP_ID)[1:2])
 
 
 # Any: an entity of ezdxf, which is not typed here.

@@ -39,6 +39,9 @@ _TRUE_COLOURS: frozenset[DxfVersion] = frozenset({"R2007", "R2010", "R2018"})
 APP_ID = "ZUKA"
 """Application id of the extended data."""
 
+SHEET_MARK = "sheet"
+"""What the extended data of frames, legends and other paper around the map says."""
+
 _STYLE, _FONT, _FONT_FAMILY = "JAPANESE", "msgothic.ttc", "MS Gothic"
 _CHECK_WRITES = 4096
 _SILENT = logging.NullHandler()

@@ -13,7 +13,7 @@ from pathlib import Path
 
 from processing.core.monitor import Monitor
 from processing.formats.drawings.dxf import DrawnSize, MapDrawing
-from processing.formats.drawings.dxf_document import DxfVersion
+from processing.formats.drawings.dxf_document import APP_ID, SHEET_MARK, DxfVersion
 from processing.formats.drawings.sxf_looks import pen_mm_of
 from processing.formats.map_delivery import MapDelivery
 from processing.formats.sheets.drawing_sheet import DrawingSheet
@@ -87,8 +87,13 @@ def write_flat_dxf(
         return [(x, y) for x, y in sheet.on_ground(places, layout).tolist()]
 
     placing = Placing(on_ground, sheet.scale / 1000, sheet.turned_deg)
+    space = drawing.document.space
+    count = len(space)
     for shape in drawn.shapes:
-        draw_shape(drawing.document, drawing.document.space, shape, placing)
+        draw_shape(drawing.document, space, shape, placing)
+    for entity in list(space)[count:]:
+        # The legend's samples lie on the layers of the map: whoever reads it takes them for things.
+        entity.set_xdata(APP_ID, [(1000, SHEET_MARK)])
     corners = on_ground([(0.0, 0.0), (layout.paper[0], 0.0), layout.paper, (0.0, layout.paper[1])])
     xs, ys = zip(*corners, strict=True)
     drawing.document.show((min(xs), min(ys)), (max(xs), max(ys)))

@@ -12,9 +12,11 @@ import numpy as np
 from processing.core.arrays import Floats
 from processing.core.errors import OutOfRange, Unsuitable, use_one_of
 from processing.core.text import Text
+from processing.formats.vectors.map_place import check_place
 from processing.map.catalogue import RESERVED_ATTRIBUTES, Catalogue, FeatureKind, Geometry
 from processing.map.feature import AttributeValue, Feature, Provenance, Status, Vertex
 from processing.map.feature import new_feature_id as new_id
+from processing.map.map_extent import Bounds
 from processing.map.reference_transform import reference_transform
 from processing.scoring.features.mapped_features import MappedFeature, MappedFile
 
@@ -40,7 +42,13 @@ class ReadMap:
 
 
 def features_of_map(
-    mapped: MappedFile, catalogue: Catalogue, *, crs: str, known: frozenset[str], kind: str = ""
+    mapped: MappedFile,
+    catalogue: Catalogue,
+    *,
+    crs: str,
+    known: frozenset[str],
+    kind: str = "",
+    around: Bounds | None = None,
 ) -> ReadMap:
     """The features of a map, each of the kind that it says or that its layer or code stands for.
 
@@ -57,16 +65,19 @@ def features_of_map(
         Ids that the project has: what comes back to it is not added twice.
     kind : str
         Of what has no other; empty: such things are left out.
+    around : Bounds or None
+        Where the project is; None where that isn't known.
 
     Raises
     ------
     OutOfRange
         There is no such kind.
     Unsuitable
-        The systems can't be brought together; nothing on the map is of a kind.
+        The systems can't be brought together; the map lies elsewhere; nothing on it is of a kind.
     """
     fallback = _kind_named(kind, catalogue)
     places, notes = _places_in(mapped, crs)
+    check_place(mapped, places, crs, around)
     features: list[Feature] = []
     unknown: Counter[str] = Counter()
     again = heightless = 0
@@ -121,7 +132,7 @@ def _kind_of(one: MappedFeature, catalogue: Catalogue) -> FeatureKind | None:
     fitting = [kind for kind in catalogue if kind.geometry.value == one.shape]
     begins = _CODE.match(layer)
     code = str(one.facts.get("dm_code") or (begins[0] if begins else ""))
-    by_layer = (kind for kind in fitting if layer and kind.layer == layer)
+    by_layer = (kind for kind in fitting if layer and layer in (kind.layer, kind.id))
     by_code = (kind for kind in fitting if code and kind.dm_code == code)
     return next(by_layer, None) or next(by_code, None)
 
@@ -200,7 +211,9 @@ def _nothing(mapped: MappedFile, unknown: Counter[str]) -> Unsuitable:
         ),
         Text.same(f"{mapped.path}: {_listed(unknown) or '–'}"),
         Text(
-            "Give the kind with --kind, or add layers to the catalogue; nothing was changed.",
-            "--kindで種別を指定するか、カタログに画層を追加してください。何も変更されていません。",
+            "Give a kind for things without one (--kind), or add layers to the catalogue; nothing"
+            " was changed.",
+            "種別のない地物の種別（--kind）を指定するか、カタログに画層を追加してください。"
+            "何も変更されていません。",
         ),
     )

@@ -1,4 +1,4 @@
-"""Maps as tools and exports write them, read back for scores: GeoJSON and GeoPackage."""
+"""Maps as tools and exports write them, read back for scores: GeoJSON, GeoPackage, Shapefile."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from processing.core.arrays import Floats
-from processing.core.errors import BadFile, report_as_user_error
+from processing.core.errors import BadFile, Unsuitable, report_as_user_error
 from processing.core.japanese_text import read_text
 from processing.core.text import Text
 from processing.formats.format import Content
@@ -22,6 +22,9 @@ _GEOPACKAGE_SHAPES: dict[str, GeometryType] = {
     "LineString": "line",
     "Polygon": "area",
 }
+_SURE = 25
+"""Names and parameters agree (PROJ): the .prj of ESRI's programs says no code."""
+
 _AGAIN = Text(
     "Write the file again with the tool, or copy it again.",
     "ツールで出力し直すか、ファイルをコピーし直してください。",
@@ -92,32 +95,91 @@ def read_geojson_features(path: Path) -> MappedFile:
 
 def read_geopackage_features(path: Path) -> MappedFile:
     """Read a GeoPackage, as :func:`read_mapped`."""
-    import pyogrio
-    import pyogrio.raw
-    from pyogrio.errors import DataLayerError, DataSourceError
-
     with report_as_user_error(path), path.open("rb"):
         # The library's own words for a missing file, or a name that is no text, help nobody.
         str(path).encode()
+    return read_layers(path, Text.same("GeoPackage"))
+
+
+def read_layers(path: Path, name: Text, *, encoding: str = "", layer: str = "") -> MappedFile:
+    """The features of all layers of a file that GDAL reads, as :func:`read_mapped`.
+
+    Parameters
+    ----------
+    name : Text
+        What such a file is called, for messages.
+    encoding : str
+        Of its texts; empty where the format says it.
+    layer : str
+        The layer of features that name none; empty: as the file calls it.
+
+    Raises
+    ------
+    BadFile
+        It can't be read as such a file.
+    Unsuitable
+        Its layers are in different reference systems.
+    """
+    import pyogrio
+    import pyogrio.raw
+    import shapely
+    from pyogrio.errors import CRSError, DataLayerError, DataSourceError, FeatureError
+
     features: list[MappedFeature] = []
-    systems: set[str] = set()
+    systems: dict[str, str] = {}
     try:
-        for layer, shape_type in pyogrio.list_layers(path):
+        for own, shape_type in pyogrio.list_layers(path):
             if shape_type is None:  # a table, such as that of styles
                 continue
-            reported, _, shapes, columns = pyogrio.raw.read(path, layer=layer)
-            systems.add(reported["crs"] or "")
+            reported, _, shapes, columns = pyogrio.raw.read(
+                path, layer=own, encoding=encoding or None
+            )
+            systems[own] = _code_of(reported["crs"] or "")
             rows = zip(shapes, *columns, strict=True)
             for shape, *values in rows:
                 facts = dict(zip(reported["fields"], map(_plain, values), strict=True))
+                facts.setdefault("layer", layer or own)
                 features += _of_wkb(shape, facts, len(features) + 1)
-    except (DataLayerError, DataSourceError) as error:
+    except (
+        CRSError, DataLayerError, DataSourceError, FeatureError, UnicodeError,
+        shapely.GEOSException,
+    ) as error:  # fmt: skip
         raise BadFile(
-            Text("The file is no GeoPackage.", "GeoPackageではありません。"),
+            Text("The file is no {name}.", "{name}ではありません。").filled(name=name),
             Text.same(str(path)),
             _AGAIN,
         ) from error
-    return MappedFile(path, systems.pop() if len(systems) == 1 else "", tuple(features))
+    return MappedFile(path, _one_system(path, systems), tuple(features))
+
+
+def _one_system(path: Path, systems: dict[str, str]) -> str:
+    if len(set(systems.values())) > 1:
+        raise Unsuitable(
+            Text(
+                "The layers of the file are in different reference systems.",
+                "レイヤの座標参照系が統一されていません。",
+            ),
+            Text.same(f"{path}: " + ", ".join(f"{n} {c or '?'}" for n, c in systems.items())),
+            Text(
+                "Write all of them in one reference system.",
+                "1つの座標参照系にそろえて出力し直してください。",
+            ),
+        )
+    return next(iter(systems.values()), "")
+
+
+def _code_of(crs: str) -> str:
+    """``EPSG:n`` of a system as the library gives it; empty where it has no code."""
+    from pyproj import CRS
+    from pyproj.exceptions import CRSError
+
+    if not crs or crs.startswith("EPSG:"):
+        return crs
+    try:
+        found = CRS.from_user_input(crs).to_authority(min_confidence=_SURE)
+    except CRSError:
+        return ""
+    return ":".join(found) if found else ""
 
 
 # Any: a value of a column of whatever type the file has.

@@ -9,7 +9,7 @@ from itertools import chain, groupby
 
 from processing.core.monitor import Monitor, SilentMonitor
 from processing.core.text import Text
-from processing.map.catalogue import Catalogue, FeatureKind, Geometry
+from processing.map.catalogue import CHANGE_KIND, Catalogue, FeatureKind, Geometry
 from processing.map.feature import Feature, Status
 from processing.map.quality.findings import RULES, Finding, RuleId
 from processing.map.quality.topology import topology_findings
@@ -107,7 +107,7 @@ def check_map(
         kind: list(members)
         for kind, members in groupby(sorted(features, key=_kind_of), key=_kind_of)
     }
-    kinds = [kind for kind in catalogue if kind.id in by_kind]
+    kinds = [kind for kind in catalogue if kind.id in by_kind and kind.id != CHANGE_KIND]
     findings: list[Finding] = []
     for number, kind in enumerate(kinds):
         monitor.check()

@@ -1,0 +1,1 @@
+"""A map against the one before it: what is new, moved and gone."""

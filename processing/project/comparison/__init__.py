@@ -1,0 +1,1 @@
+"""A map that was delivered before, against the map of a project."""
