@@ -63,6 +63,7 @@ def read_arguments(arguments: Sequence[str]) -> tuple[Command, argparse.Namespac
         _add_window_commands,
         _add_reading_commands,
         _add_working_commands,
+        _add_map,
         _add_run,
         _add_extract,
         _add_simulate,
@@ -128,23 +129,6 @@ def _add_working_commands(commands: _Commands[_Parser]) -> None:
     numbering = commands.add_parser("number", help="number what ledgers list along the routes")
     numbering.add_argument("project", type=Path, metavar="PROJECT")
     numbering.set_defaults(module="maps.number")
-    taking = commands.add_parser("map", help="take an existing map into a project")
-    taking.add_argument("project", type=Path, metavar="PROJECT")
-    taking.add_argument("file", type=Path, metavar="FILE")
-    taking.add_argument(
-        "--crs", default="", metavar="EPSG:n", help="where the file does not say it"
-    )
-    taking.add_argument("--kind", default="", metavar="KIND", help="of what says no known kind")
-    taking.add_argument(
-        "--compare", action="store_true", help="store what is new, moved and gone for review"
-    )
-    taking.add_argument(
-        "--tolerance", type=float, metavar="M", help="what lies nearer has not moved"
-    )
-    taking.add_argument(
-        "--search", type=float, metavar="M", help="what lies farther is another thing"
-    )
-    taking.set_defaults(module="maps.take")
     learning = commands.add_parser("learn", help="a model of classes from what was painted")
     learning.add_argument("project", type=Path, metavar="PROJECT")
     learning.add_argument("--json", action="store_true")
@@ -183,6 +167,26 @@ def _add_working_commands(commands: _Commands[_Parser]) -> None:
         )
     exporting.add_argument("--candidates", action="store_true", help="unchecked ones as well")
     exporting.set_defaults(module="export")
+
+
+def _add_map(commands: _Commands[_Parser]) -> None:
+    taking = commands.add_parser("map", help="take an existing map into a project")
+    taking.add_argument("project", type=Path, metavar="PROJECT")
+    taking.add_argument("file", type=Path, metavar="FILE")
+    taking.add_argument(
+        "--crs", default="", metavar="EPSG:n", help="where the file does not say it"
+    )
+    taking.add_argument("--kind", default="", metavar="KIND", help="of what says no known kind")
+    taking.add_argument(
+        "--compare", action="store_true", help="store what is new, moved and gone for review"
+    )
+    taking.add_argument(
+        "--tolerance", type=float, metavar="M", help="what lies nearer has not moved"
+    )
+    taking.add_argument(
+        "--search", type=float, metavar="M", help="what lies farther is another thing"
+    )
+    taking.set_defaults(module="maps.take")
 
 
 def _add_run(commands: _Commands[_Parser]) -> None:

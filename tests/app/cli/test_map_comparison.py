@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-import shutil
+from collections.abc import Callable
 from contextlib import closing
+from dataclasses import dataclass
 from pathlib import Path
 
 import pyogrio
@@ -113,7 +114,7 @@ def test_changes_are_candidates_of_one_step(
 ) -> None:
     status, out, err = _compared(capsys, project, _old_map(tmp_path, project, format_))
     assert status == DONE, err
-    assert out.startswith(f"map.{format_}: 2 new, 2 moved, 3 gone")
+    assert out.startswith(f"features.{format_}: 2 new, 2 moved, 3 gone")
     assert "guard" in err.lower()
     assert _said(project) == EXPECTED
     changes = _changes(project)
@@ -204,12 +205,12 @@ def _no_table(path: Path) -> None:
 def test_what_is_wrong_with_a_shapefile_is_one_sentence(
     tmp_path: Path,
     project: Path,
-    damage: object,
+    damage: Callable[[Path], None],
     words: str,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     path = _shapefile(tmp_path, project, "cp932")
-    damage(path)  # type: ignore[operator]
+    damage(path)
     status, out, err = _compared(capsys, project, path)
     assert (status, out) == (BAD_INPUT, "")
     assert words in err
@@ -217,38 +218,43 @@ def test_what_is_wrong_with_a_shapefile_is_one_sentence(
     assert not _changes(project)
 
 
-def _moved(before: tuple[Feature, ...], change: object) -> list[Feature]:
+def _moved(before: tuple[Feature, ...], change: Callable[..., object]) -> list[Feature]:
     return [
-        one.with_vertices(tuple(Vertex((*change(*v.xyz[:2]), v.xyz[2])) for v in one.vertices))  # type: ignore[operator]
+        one.with_vertices(
+            tuple(Vertex((*change(*v.xyz[:2]), v.xyz[2])) for v in one.vertices)  # type: ignore[misc]
+        )
         for one in before
     ]
 
 
+@dataclass(frozen=True)
+class _Elsewhere:
+    """A map that lies elsewhere, and what is said of it."""
+
+    change: Callable[..., object]
+    crs: str
+    words: str
+
+
 @pytest.mark.parametrize(
-    ("change", "crs", "words"),
+    "case",
     [
-        (lambda x, y: (y, x), _CRS, "swap them"),
-        (lambda x, y: (x * 1000, y * 1000), _CRS, "millimetres"),
-        (lambda x, y: (x + 80_000, y), _CRS, "80.0 km"),
-        (lambda x, y: (x, y), "EPSG:6675", "fits as zone 9: give EPSG:6677"),
+        _Elsewhere(lambda x, y: (y, x), _CRS, "swap them"),
+        _Elsewhere(lambda x, y: (x * 1000, y * 1000), _CRS, "millimetres"),
+        _Elsewhere(lambda x, y: (x + 80_000, y), _CRS, "80.0 km"),
+        _Elsewhere(lambda x, y: (x, y), "EPSG:6675", "fits as zone 9: give EPSG:6677"),
     ],
 )
 def test_a_map_that_lies_elsewhere_says_what_it_looks_like(
-    tmp_path: Path,
-    project: Path,
-    change: object,
-    crs: str,
-    words: str,
-    capsys: pytest.CaptureFixture[str],
+    tmp_path: Path, project: Path, case: _Elsewhere, capsys: pytest.CaptureFixture[str]
 ) -> None:
     with closing(Project.open(project)) as opened:
         request = ExportRequest(("gpkg",), tmp_path / "old", "en")
-        export(_moved(BEFORE, change), opened.catalogue, crs, request)
-    status, _, err = _compared(capsys, project, tmp_path / "old" / "map.gpkg")
+        made = export(_moved(BEFORE, case.change), opened.catalogue, case.crs, request)
+    status, _, err = _compared(capsys, project, made[0])
     assert status == BAD_INPUT
-    assert words in err
+    assert case.words in err
     assert len(err.strip().splitlines()) == 1
-    shutil.rmtree(tmp_path / "old")
 
 
 def test_nothing_drawn_is_nothing_to_compare(

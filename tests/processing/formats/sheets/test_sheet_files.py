@@ -14,6 +14,8 @@ import shapely
 
 from processing.core.errors import Unsuitable, UserError
 from processing.core.text import Text
+from processing.formats.drawings.drawn_features import read_dxf_features
+from processing.formats.drawings.dxf_document import SHEET_MARK
 from processing.formats.sheets.drawing_sheet import DrawingSheet
 from processing.formats.sheets.grid_division import map_grid, plain_grid
 from processing.formats.sheets.map_looks import map_shapes
@@ -89,12 +91,19 @@ def test_every_division_is_written_clean_and_whole(
         if not path.stem.endswith("_layouts"):
             flat = doc.dxfversion
             assert flat == "AC1009"
-    assert ids == {feature.id for feature in _street()}
+    assert ids == {feature.id for feature in _street()} | {SHEET_MARK}
     pdf = pypdfium2.PdfDocument(tmp_path / "sheets.pdf")
     assert len(pdf) == len(drawings) - 1
     words = pdf[0].get_textpage().get_text_bounded()
     for expected in ("凡例", "測量 太郎", "第9系", f"1 / {len(pdf)}"):
         assert expected in words
+
+
+def test_the_legend_of_a_flat_sheet_is_no_map(tmp_path: Path, catalogue: Catalogue) -> None:
+    paths, _ = _written(tmp_path, catalogue, *_street(), sheet_paper="A0")
+    flat = [p for p in paths if p.suffix == ".dxf" and not p.stem.endswith("_layouts")]
+    read = [one for path in flat for one in read_dxf_features(path).features]
+    assert {one.facts["id"] for one in read} == {feature.id for feature in _street()}
 
 
 def test_fifty_metres_are_a_hundred_millimetres(tmp_path: Path, catalogue: Catalogue) -> None:
