@@ -21,6 +21,7 @@ from processing.core.parameters import (
 )
 from processing.core.text import Language, Text
 from processing.formats.format import MAP
+from processing.formats.reports.work_facts import WorkFacts
 
 if TYPE_CHECKING:  # the command line asks for the options alone
     from processing.map.catalogue import Catalogue
@@ -355,6 +356,8 @@ class MapDelivery:
     tell : callable
         Takes sentences about what a file holds otherwise than the map has it: features that the
         format has no place for, characters that were replaced.
+    work : WorkFacts
+        What papers say of the work; empty where the map is of no project.
     """
 
     features: tuple[Feature, ...]
@@ -367,6 +370,7 @@ class MapDelivery:
     every_feature: tuple[Feature, ...] = ()
     name: str = MAP
     tell: Callable[[Text], None] = tell_nobody
+    work: WorkFacts = field(default_factory=WorkFacts)
 
     def options_of(self, options: type[OptionsT]) -> OptionsT:
         """What was chosen for a format.

@@ -7,6 +7,7 @@ recognised, and in which maps are offered.
 from __future__ import annotations
 
 from processing.core.text import Text
+from processing.formats.delivery.delivery_options import DeliveryOptions
 from processing.formats.format import BY_MAKER, Content, Format
 from processing.formats.format_list import FormatList
 from processing.formats.map_delivery import (
@@ -331,6 +332,16 @@ _SURVEY_FORMATS = (
         writes={Content.DRAWING: BY_MAKER},
         map_title=Text("Drawing (SXF)", "図面（SXF）"),
         writes_map=f"{_DRAWINGS}.sxf:write_sxf_map",
+        has_attributes=False,
+    ),
+    Format(
+        "delivery",
+        Text("Electronic delivery", "電子納品"),
+        (),
+        map_title=Text("Electronic delivery (folder)", "電子納品（フォルダ一式）"),
+        writes_map="processing.formats.delivery.survey_delivery:write_delivery_map",
+        options=DeliveryOptions,
+        needs_crs=True,
         has_attributes=False,
     ),
     Format(

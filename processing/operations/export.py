@@ -25,6 +25,7 @@ from processing.formats.format import MAP, Content, Format, function_of
 from processing.formats.format_list import FormatList
 from processing.formats.map_delivery import MapDelivery, tell_nobody
 from processing.formats.registry import FORMATS
+from processing.formats.reports.work_facts import WorkFacts
 from processing.map.catalogue import Catalogue, Geometry
 from processing.map.feature import Feature, Status
 from processing.project.photos import photos_to_hand_in
@@ -75,6 +76,7 @@ def export(
     *,
     drives: tuple[Drive, ...] = (),
     project: Path | None = None,
+    work: WorkFacts | None = None,
     formats: FormatList = FORMATS,
     tell: Callable[[Text], None] = tell_nobody,
 ) -> tuple[Path, ...]:
@@ -94,6 +96,8 @@ def export(
         Whose points are written with their labels.
     project : Path, optional
         Its folder: files are named after it; pictures in it go beside files that name them.
+    work : WorkFacts, optional
+        What papers say of the work.
     tell : callable
         Takes sentences about what files hold otherwise than the map has it.
 
@@ -124,6 +128,7 @@ def export(
         wanted, catalogue, crs, request.language, request.options,
         write_points=partial(write_labelled_points, drives), every_feature=every,
         name=MAP if project is None else project.stem, drives=drives, tell=tell,
+        work=work or WorkFacts(crs=crs),
     )  # fmt: skip
     return _write(delivery, chosen, request, monitor, pictures)
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from datetime import datetime
+from importlib.metadata import version
 from pathlib import Path
 
 from processing.core.monitor import Monitor
@@ -11,6 +13,7 @@ from processing.core.text import Text
 from processing.operations.export import ExportRequest, check_formats, export
 from processing.operations.inputs import opened_project
 from processing.project.project import Project
+from processing.project.work_store import WorkStore
 
 
 @dataclass(frozen=True)
@@ -81,6 +84,8 @@ def export_of(project: Project, request: ExportRequest) -> Callable[[Monitor], W
     features = tuple(project.features.all())
     catalogue, crs, drives = project.catalogue, project.crs, project.drives
     folder = project.folder
+    details = WorkStore(project.settings).details()
+    work_facts = details.facts(crs, version("zuka"), datetime.now().astimezone().date())
     delivered = (path for drive in drives for path in drive.delivered_files)
     request = replace(request, never=(*request.never, *delivered))
 
@@ -94,6 +99,7 @@ def export_of(project: Project, request: ExportRequest) -> Callable[[Monitor], W
             monitor,
             drives=drives,
             project=folder,
+            work=work_facts,
             tell=notes.append,
         )
         return WrittenFiles(paths, tuple(notes))

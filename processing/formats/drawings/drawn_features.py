@@ -51,8 +51,8 @@ def read_dxf_features(path: Path) -> MappedFile:
 # Any: as of _shape_of.
 def _is_of_sheet(entity: Any) -> bool:
     """Whether it belongs to the paper around the map, as the legend's samples do."""
-    has_mark = entity.has_xdata(APP_ID)
-    return has_mark and any(tag.value == SHEET_MARK for tag in entity.get_xdata(APP_ID)[1:2])
+    tags = entity.get_xdata(APP_ID) if entity.has_xdata(APP_ID) else []
+    return [tag.value for tag in tags if tag.code != _APP_CODE] == [SHEET_MARK]
 
 
 # Any: an entity of ezdxf, which is not typed here.

@@ -30,8 +30,11 @@ def write_quality_map(delivery: MapDelivery, position: Position, monitor: Monito
         What stands against writing; `Cancelled`.
     """
     check = check_map(delivery.every_feature, delivery.catalogue, monitor)
-    points = _checked_points(delivery)
-    facts = QualityFacts(check, delivery.catalogue, delivery.crs, f"Zuka {version('zuka')}", points)
+    points = checked_points(delivery)
+    software = f"Zuka {version('zuka')}"
+    facts = QualityFacts(
+        check, delivery.catalogue, delivery.crs, software, points, work=delivery.work
+    )
     language = delivery.language or "en"
     write_quality_pdf(position("qa.pdf"), facts, language, monitor)
     write_quality_html(position("qa.html"), facts, language)
@@ -41,7 +44,14 @@ def write_quality_map(delivery: MapDelivery, position: Position, monitor: Monito
     position("qa.json").write_text(words + "\n", encoding="utf-8")
 
 
-def _checked_points(delivery: MapDelivery) -> PointCheck | None:
+def checked_points(delivery: MapDelivery) -> PointCheck | None:
+    """The map against the check points that were given; None without any.
+
+    Raises
+    ------
+    OutOfRange, MissingInput, BadFile
+        As :func:`read_check_points`.
+    """
     options = delivery.options_of(QualityOptions)
     if not options.check_points:
         return None

@@ -5,9 +5,10 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from processing.core.text import Language, Text
+from processing.formats.reports.work_facts import WorkFacts
 from processing.map.catalogue import Catalogue
 from processing.map.quality.check_points import PointCheck
 from processing.map.quality.findings import RULES, Finding
@@ -67,6 +68,9 @@ PASSED = Text("passed", "適合")
 LOOK = Text("look at it", "要確認")
 FAILED = Text("failed", "不適合")
 _SYSTEM = Text("Reference system", "座標参照系")
+_WORK, _CLIENT = Text("Work", "業務名"), Text("Client", "計画機関")
+_CONTRACTOR = Text("Contractor", "作業機関")
+_HEIGHTS = Text("Heights", "標高の基準")
 _UNKNOWN = Text("not known", "不明")
 _FEATURES = Text("Features handed in", "納品する地物")
 _DECIDED = Text("Decided on, of what tools found", "自動抽出のうち採否を決めた割合")
@@ -89,6 +93,8 @@ class QualityFacts:
         Name and version of the program.
     points : PointCheck or None
         None where no check points were given.
+    work : WorkFacts
+        Whose names stand on the report where they are known.
     """
 
     check: MapCheck
@@ -96,6 +102,7 @@ class QualityFacts:
     crs: str
     software: str
     points: PointCheck | None = None
+    work: WorkFacts = field(default_factory=WorkFacts)
 
     def kind_name(self, kind: str) -> Text:
         """What a kind is called."""
@@ -104,8 +111,15 @@ class QualityFacts:
 
 def summary_rows(facts: QualityFacts) -> Iterator[tuple[Text, Text]]:
     """What is known of the whole map: names and values."""
-    check = facts.check
+    check, work = facts.check, facts.work
+    for name, words in (
+        (_WORK, work.work), (_CLIENT, work.client), (_CONTRACTOR, work.contractor),
+    ):  # fmt: skip
+        if words:
+            yield name, Text.same(words)
     yield _SYSTEM, Text.same(facts.crs) if facts.crs else _UNKNOWN
+    if work.height_datum:
+        yield _HEIGHTS, Text.same(work.height_datum)
     yield _FEATURES, Text.same(f"{sum(one.accepted for one in check.kinds):,}")
     yield _DECIDED, Text.same(f"{check.decided_share:.1%}")
     yield _ERRORS, Text.same(f"{check.errors:,}")
