@@ -9,7 +9,7 @@ from pathlib import Path, PurePath
 
 from processing.core.monitor import Monitor
 from processing.core.text import Language, Text
-from processing.formats.reports.work_facts import SideFacts
+from processing.formats.work_facts import SideFacts
 from processing.methods.earthwork.maps.contours import LevelLine
 from processing.methods.earthwork.surfaces.sides import Side
 from processing.methods.earthwork.volumes.volume_result import VolumeResult

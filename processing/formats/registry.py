@@ -7,10 +7,10 @@ recognised, and in which maps are offered.
 from __future__ import annotations
 
 from processing.core.text import Text
-from processing.formats.delivery.delivery_options import DeliveryOptions
 from processing.formats.format import BY_MAKER, Content, Format
 from processing.formats.format_list import FormatList
 from processing.formats.map_delivery import (
+    DeliveryOptions,
     DmOptions,
     DxfOptions,
     LandXmlOptions,

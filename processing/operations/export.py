@@ -25,7 +25,7 @@ from processing.formats.format import MAP, Content, Format, function_of
 from processing.formats.format_list import FormatList
 from processing.formats.map_delivery import MapDelivery, tell_nobody
 from processing.formats.registry import FORMATS
-from processing.formats.reports.work_facts import WorkFacts
+from processing.formats.work_facts import WorkFacts
 from processing.map.catalogue import Catalogue, Geometry
 from processing.map.feature import Feature, Status
 from processing.project.photos import photos_to_hand_in

@@ -14,9 +14,9 @@ from processing.core.safe_write import refuse_inputs
 from processing.core.text import Language, Text
 from processing.formats.format import Content
 from processing.formats.registry import FORMATS
-from processing.formats.reports.work_facts import SideFacts
 from processing.formats.surfaces.change_geotiff import write_change_geotiff
 from processing.formats.vectors.boundary_files import file_and_layer
+from processing.formats.work_facts import SideFacts
 from processing.methods.earthwork.as_built.as_built import AsBuiltResult
 from processing.methods.earthwork.as_built.limits import AsBuiltLimits
 from processing.methods.earthwork.as_built.limits_file import as_built_limits, read_limits

@@ -16,7 +16,7 @@ from processing.formats.reports.as_built_tables import write_as_built_csv, write
 from processing.formats.reports.volume_report import write_volume_report
 from processing.formats.reports.volume_rows import VolumeFacts
 from processing.formats.reports.volume_tables import write_volume_csv, write_volume_xlsx
-from processing.formats.reports.work_facts import SideFacts, WorkFacts
+from processing.formats.work_facts import SideFacts, WorkFacts
 from processing.methods.earthwork.as_built.as_built import AsBuiltResult, evaluate_as_built
 from processing.methods.earthwork.as_built.limits import AsBuiltLimits
 from processing.methods.earthwork.surfaces.sides import Side

@@ -12,7 +12,7 @@ from processing.core.errors import OutOfRange
 from processing.core.parameters import MOST_LETTERS, fill_parameters, parameters_of, text
 from processing.core.text import Text
 from processing.core.toml_lines import line_error, short, toml_content, toml_of
-from processing.formats.reports.work_facts import WorkFacts
+from processing.formats.work_facts import WorkFacts
 
 _CORRECT = Text(
     "Correct this line of the file and try again; nothing was written.",

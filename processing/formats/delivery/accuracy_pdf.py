@@ -9,7 +9,7 @@ from processing.core.monitor import Monitor
 from processing.core.text import Text
 from processing.formats.reports.pdf_page import A4_PORTRAIT, Paper, write_report_page
 from processing.formats.reports.pdf_table import Table, TableCell, TableRow
-from processing.formats.reports.work_facts import WorkFacts, crs_words, day
+from processing.formats.work_facts import WorkFacts, crs_words, day
 from processing.map.quality.check_points import CheckedPoint, Deviation, PointCheck
 
 TITLE = Text("Accuracy of the map at check points", "数値地形図データ作成 精度管理表")
@@ -17,7 +17,7 @@ _MARGIN_MM, _GAP_MM, _SIZE = 14.0, 5.0, 8.0
 _HEAD_MM = (30.0, 61.0, 30.0, 61.0)
 _POINTS_MM = (26.0, 34.0, 34.0, 28.0, 30.0, 30.0)
 _RESULT_MM = (34.0, 22.0, 32.0, 32.0, 32.0, 30.0)
-_SIGNED_MM = (91.0, 91.0)
+_SIGNED_MM = (30.0, 61.0, 30.0, 61.0)
 _POINT_COLUMNS = (
     Text("Point", "点名"),
     Text("Northing (m)", "X座標 (m)"),
@@ -59,7 +59,15 @@ def write_accuracy_pdf(path: Path, check: PointCheck, work: WorkFacts, monitor: 
         y = Table(_MARGIN_MM, _HEAD_MM, _SIZE).draw(paper, _MARGIN_MM + 12.0, _head(check, work))
         y = Table(_MARGIN_MM, _RESULT_MM, _SIZE).draw(paper, y + _GAP_MM, _results(check))
         Table(_MARGIN_MM, _SIGNED_MM, _SIZE).draw(
-            paper, y + _GAP_MM, [[TableCell(one) for one in _SIGNED]]
+            paper,
+            y + _GAP_MM,
+            [
+                [
+                    cell
+                    for one in _SIGNED
+                    for cell in (TableCell(one, is_head=True), TableCell("", "right"))
+                ]
+            ],
         )
         monitor.check()
         _draw_points(paper, check, work, y + 2 * _GAP_MM + 8.0)

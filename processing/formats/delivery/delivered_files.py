@@ -9,8 +9,12 @@ from processing.core.errors import OutOfRange
 from processing.core.text import Text
 
 _FOLDER = re.compile(r"[A-Z0-9_]{1,8}")
-_FILE = re.compile(r"[A-Z0-9_]{1,8}\.[A-Z0-9]{3}")
+_FILE = re.compile(r"[A-Z0-9_]{1,8}\.[A-Z0-9]{2,3}")
 
+_ANOTHER = Text(
+    "Give another name; nothing was written.",
+    "別の名前を指定してください。何も書き込まれていません。",
+)
 SURVEY, TOPOGRAPHY = "SURVEY", "CHIKEI"
 RECORDS, RESULTS = "WORK", "DATA"
 """測量記録 and 測量成果."""
@@ -75,15 +79,15 @@ def check_file(name: str) -> str:
     Raises
     ------
     OutOfRange
-        Other than 8 half-width capitals, digits and underscores, a dot and 3 of them.
+        Other than 8 half-width capitals, digits and underscores, a dot and 2 or 3 of them.
     """
     if not _FILE.fullmatch(name):
         raise OutOfRange(
             Text(
-                "A file of a delivery has up to 8 half-width capitals, digits or underscores, and 3"
-                " behind the dot.",
+                "A file of a delivery has up to 8 half-width capitals, digits or underscores, and 2"
+                " or 3 behind the dot.",
                 "電子納品のファイル名は、半角英大文字・数字・アンダースコアの8文字以内と"
-                "拡張子3文字です。",
+                "拡張子2～3文字です。",
             ),
             Text.same(name),
             Text(

@@ -74,16 +74,21 @@ def check_day(value: str) -> str:
     OutOfRange
         It is no date.
     """
+    found = _DAY.fullmatch(value)
     try:
-        if value and not _DAY.fullmatch(value):
-            raise ValueError(value)
-        return date.fromisoformat(value).isoformat() if value else _NO_DATE
+        return date.fromisoformat(found[0]).isoformat() if found else _unknown_day(value)
     except ValueError as error:
         raise OutOfRange(
             Text("That is no date.", "日付として読めません。"),
             Text.same(value),
             Text("Write it as 2026-04-01.", "2026-04-01のように入力してください。"),
         ) from error
+
+
+def _unknown_day(value: str) -> str:
+    if value:
+        raise ValueError(value)
+    return _NO_DATE
 
 
 def index_xml(facts: SurveyFacts, texts: ShiftJisText, dtds: Mapping[str, Path]) -> bytes:

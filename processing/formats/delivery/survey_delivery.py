@@ -24,7 +24,6 @@ from processing.formats.delivery.delivered_files import (
     check_file,
     check_folder,
 )
-from processing.formats.delivery.delivery_options import DeliveryOptions
 from processing.formats.delivery.management_xml import (
     INDEX,
     OF_TOPOGRAPHY,
@@ -38,14 +37,14 @@ from processing.formats.delivery.management_xml import (
     topography_xml,
 )
 from processing.formats.delivery.metadata_xml import metadata_xml
-from processing.formats.map_delivery import MapDelivery, Position
+from processing.formats.map_delivery import DeliveryOptions, MapDelivery, Position
 from processing.formats.reports.quality.quality_pdf import write_quality_pdf
 from processing.formats.reports.quality.quality_report import checked_points
 from processing.formats.reports.quality.quality_rows import QualityFacts
-from processing.formats.reports.work_facts import WorkFacts
 from processing.formats.shift_jis import ShiftJisText
 from processing.formats.survey.dm import write_dm_map
 from processing.formats.survey.map_sheets import zone_for_sheets
+from processing.formats.work_facts import WorkFacts
 from processing.map.map_extent import extent_of
 from processing.map.quality.map_check import check_map
 from processing.map.reference_transform import reference_transform

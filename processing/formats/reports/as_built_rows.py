@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 
 from processing.core.text import Text
-from processing.formats.reports.work_facts import (
+from processing.formats.work_facts import (
     FAIL,
     NOTHING,
     PASS,

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 from processing.core.text import Text
-from processing.formats.reports.work_facts import (
+from processing.formats.work_facts import (
     NOTHING,
     SideFacts,
     WorkFacts,

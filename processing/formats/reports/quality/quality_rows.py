@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from processing.core.text import Language, Text
-from processing.formats.reports.work_facts import WorkFacts
+from processing.formats.work_facts import WorkFacts
 from processing.map.catalogue import Catalogue
 from processing.map.quality.check_points import PointCheck
 from processing.map.quality.findings import RULES, Finding

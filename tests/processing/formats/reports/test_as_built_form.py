@@ -18,7 +18,7 @@ from processing.core.text import Language
 from processing.formats.reports.as_built_form import write_as_built_form
 from processing.formats.reports.as_built_rows import AsBuiltFacts
 from processing.formats.reports.as_built_tables import write_as_built_csv, write_as_built_xlsx
-from processing.formats.reports.work_facts import SideFacts, WorkFacts
+from processing.formats.work_facts import SideFacts, WorkFacts
 from processing.methods.earthwork.as_built.as_built import AsBuiltResult, evaluate_as_built
 from processing.methods.earthwork.as_built.limits_file import as_built_limits
 from processing.methods.earthwork.maps.heat_map import SHARE_CLASSES

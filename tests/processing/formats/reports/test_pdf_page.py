@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from processing.formats.reports.pdf_page import break_lines, drawable, width_of
-from processing.formats.reports.work_facts import crs_words, format_signed
+from processing.formats.work_facts import crs_words, format_signed
 
 WORDS = st.text(st.sampled_from("あ漢、。（）a-1 .mxyz"), max_size=60)
 

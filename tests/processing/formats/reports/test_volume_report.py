@@ -17,7 +17,7 @@ from processing.formats.reports.plan_picture import change_plan
 from processing.formats.reports.volume_report import write_volume_report
 from processing.formats.reports.volume_rows import VolumeFacts, section_rows, section_sums
 from processing.formats.reports.volume_tables import write_volume_csv, write_volume_xlsx
-from processing.formats.reports.work_facts import SideFacts, WorkFacts
+from processing.formats.work_facts import SideFacts, WorkFacts
 from processing.methods.earthwork.maps.change_grid import ChangeGrid
 from processing.methods.earthwork.maps.heat_map import change_classes
 from processing.methods.earthwork.sections.drawing_parts import DrawnSection, SectionedLine
