@@ -131,6 +131,15 @@ class QualityOptions:
             "id・easting_m・northing_m（必要に応じてheight_m・kind）の列をもつCSVです。",
         ),
     )
+    check_map: str = file(
+        name=Text("Hand check (quality report)", "別途点検の図面（品質評価表）"),
+        explanation=Text(
+            "A map of part of the job that somebody drew separately: precision and recall of the"
+            " map and of the tools are judged by it.",
+            "業務範囲の一部を別に図化した図面です。これを正として、"
+            "図面と自動抽出の適合率・再現率を求めます。",
+        ),
+    )
     map_level: str = choice(
         "500",
         choices=tuple(ParameterChoice(one, Text.same(one)) for one in ("250", "500", "1000")),

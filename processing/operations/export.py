@@ -82,9 +82,8 @@ def export(
 ) -> tuple[Path, ...]:
     """Write the map's accepted features in each format that is asked for.
 
-    A map without features gives files without features, where their format has such.
-    Files take their own names when the last one is whole, so that an error, a cancel or a full disk
-    leaves the folder as it was.
+    A map without features gives files without features, where their format has such. Files take
+    their names when the last one is whole: an error, a cancel or a full disk leaves no trace.
 
     Parameters
     ----------
@@ -96,10 +95,8 @@ def export(
         Whose points are written with their labels.
     project : Path, optional
         Its folder: files are named after it; pictures in it go beside files that name them.
-    work : WorkFacts, optional
-        What papers say of the work.
-    tell : callable
-        Takes sentences about what files hold otherwise than the map has it.
+    work, tell
+        As of :class:`MapDelivery`.
 
     Returns
     -------
@@ -111,8 +108,7 @@ def export(
     OutOfRange
         No such format, option or reference system; a number or character that can't be written.
     Unsuitable
-        A feature with too few vertices, of a kind the catalogue lacks, or that a format can't hold;
-        nothing that any of the formats has a place for.
+        A feature that isn't whole, or that a format can't hold; nothing that any has a place for.
     MissingInput, InUse, NoSpace, BadFile, Cancelled
         A format needs a reference system; what stands against writing. Nothing was written.
     """

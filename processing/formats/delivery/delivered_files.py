@@ -21,7 +21,7 @@ RECORDS, RESULTS = "WORK", "DATA"
 
 
 @dataclass(frozen=True)
-class DeliveredFile:
+class SurveyFile:
     """A file of a delivery.
 
     Attributes

@@ -6,18 +6,20 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from datetime import date
+from io import BytesIO
 from pathlib import Path
 
-from lxml import etree
+from lxml import etree  # type: ignore[import-untyped]
 
 from processing.core.errors import BadFile, OutOfRange, report_as_user_error
+from processing.core.japanese_text import decode_text
 from processing.core.text import Text
 from processing.formats.delivery.delivered_files import (
     RECORDS,
     RESULTS,
     SURVEY,
     TOPOGRAPHY,
-    DeliveredFile,
+    SurveyFile,
 )
 from processing.formats.shift_jis import ShiftJisText
 
@@ -25,6 +27,7 @@ _VERSION = re.compile(r"(\d{2})\.DTD", re.IGNORECASE)
 _NO_DATE = "9999-01-01"
 """What the rules write where a date is not known."""
 
+_DECLARED = re.compile(r"^\s*<\?xml[^>]*\?>\s*")
 _DAY = re.compile(r"\d{4}-\d{2}-\d{2}")
 INDEX, SURVEYED, OF_TOPOGRAPHY = "INDEX_D.XML", "SURVEY.XML", "SURV_CHI.XML"
 _ROOTS = {INDEX: "gyomudata", SURVEYED: "surveydata", OF_TOPOGRAPHY: "surv_data"}
@@ -172,7 +175,7 @@ def survey_xml(facts: SurveyFacts, texts: ShiftJisText, dtds: Mapping[str, Path]
 
 
 def topography_xml(
-    files: Sequence[DeliveredFile], texts: ShiftJisText, dtds: Mapping[str, Path]
+    files: Sequence[SurveyFile], texts: ShiftJisText, dtds: Mapping[str, Path]
 ) -> bytes:
     """``SURV_CHI.XML``: every file of the topographic survey (測量成果管理ファイル)."""
     titles = dict.fromkeys((one.part, one.folder, one.title) for one in files)
@@ -234,8 +237,11 @@ def fault_by_dtd(content: bytes, dtd: Path) -> str:
     """
     try:
         with report_as_user_error(dtd):
-            rules = etree.DTD(str(dtd))
-        rules.validate(etree.fromstring(content, etree.XMLParser(load_dtd=False)))
+            said = decode_text(dtd.read_bytes(), dtd)
+        # The library knows no Shift_JIS: it gets both as Unicode, without what they declare.
+        rules = etree.DTD(BytesIO(_DECLARED.sub("", said).encode("utf-8")))
+        words = _DECLARED.sub("", content.decode("cp932"))
+        rules.validate(etree.fromstring(words, etree.XMLParser(load_dtd=False)))
     except (etree.DTDParseError, etree.XMLSyntaxError) as error:
         raise BadFile(
             Text("The file is no DTD, or is damaged.", "DTDではないか、壊れています。"),

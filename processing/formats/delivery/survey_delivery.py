@@ -20,7 +20,7 @@ from processing.formats.delivery.delivered_files import (
     RESULTS,
     SURVEY,
     TOPOGRAPHY,
-    DeliveredFile,
+    SurveyFile,
     check_file,
     check_folder,
 )
@@ -39,7 +39,7 @@ from processing.formats.delivery.management_xml import (
 from processing.formats.delivery.metadata_xml import metadata_xml
 from processing.formats.map_delivery import DeliveryOptions, MapDelivery, Position
 from processing.formats.reports.quality.quality_pdf import write_quality_pdf
-from processing.formats.reports.quality.quality_report import checked_points
+from processing.formats.reports.quality.quality_report import checked_points, hand_check
 from processing.formats.reports.quality.quality_rows import QualityFacts
 from processing.formats.shift_jis import ShiftJisText
 from processing.formats.survey.dm import write_dm_map
@@ -93,10 +93,10 @@ def write_delivery_map(delivery: MapDelivery, position: Position, monitor: Monit
     options = delivery.options_of(DeliveryOptions)
     facts = _facts(delivery, options)
     dtds = dtds_beside(Path(options.delivery_dtds)) if options.delivery_dtds else {}
-    files: list[DeliveredFile] = []
+    files: list[SurveyFile] = []
 
     def place(part: str, name: str, title: str, subtitle: str = "") -> Path:
-        one = DeliveredFile(part, facts.folder, check_file(name), title, subtitle)
+        one = SurveyFile(part, facts.folder, check_file(name), title, subtitle)
         files.append(one)
         return position(one.path)
 
@@ -124,9 +124,15 @@ def _write_papers(
 ) -> None:
     work = _work(delivery, facts)
     points = checked_points(delivery)
-    check = check_map(delivery.every_feature, delivery.catalogue, monitor)
+    check = check_map(delivery.every_feature, delivery.catalogue, monitor, crs=delivery.crs)
     quality = QualityFacts(
-        check, delivery.catalogue, delivery.crs, facts.software, points, work=work
+        check,
+        delivery.catalogue,
+        delivery.crs,
+        facts.software,
+        points,
+        work=work,
+        hand=hand_check(delivery, monitor),
     )
     write_quality_pdf(place(RESULTS, "HINSH001.PDF", _QUALITY), quality, "ja", monitor)
     if points is None:
@@ -140,7 +146,7 @@ def _write_papers(
 def _write_management(
     delivery: MapDelivery,
     facts: SurveyFacts,
-    files: list[DeliveredFile],
+    files: list[SurveyFile],
     dtds: Mapping[str, Path],
     position: Position,
 ) -> None:

@@ -15,6 +15,7 @@ RuleId = Literal[
     "crossing",
     "self_crossing",
     "gap",
+    "sheet_gap",
     "overlap",
     "too_small",
     "unmeasured",
@@ -63,6 +64,10 @@ RULES: Mapping[RuleId, Rule] = {
     "gap": Rule(
         Text("End not joined", "端点の不接合"),
         Text("Join the lines, or extend the one.", "線を接合するか延長してください。"),
+    ),
+    "sheet_gap": Rule(
+        Text("Not joined across sheets", "図郭間の不接合"),
+        Text("Join the lines at the edge of the sheets.", "図郭線で線を接合してください。"),
     ),
     "overlap": Rule(
         Text("Areas of one kind overlap", "同じ種別の面の重なり"),
@@ -120,7 +125,7 @@ class Finding:
     position : Position
         Where to look: easting, northing, height in metres, project CRS.
     extent_m : float or None
-        How large it is where that can be said: a gap's width (m), an overlap's area (m²).
+        How large it is where that can be said: the width of a gap (m), an overlap's area (m²).
     """
 
     rule: RuleId

@@ -12,6 +12,7 @@ from processing.core.text import Text
 from processing.map.catalogue import CHANGE_KIND, Catalogue, FeatureKind, Geometry
 from processing.map.feature import Feature, Status
 from processing.map.quality.findings import RULES, Finding, RuleId
+from processing.map.quality.sheet_edges import has_sheets, sheet_gaps
 from processing.map.quality.topology import topology_findings
 from processing.map.routes.numbering import NUMBER, ROUTE
 from processing.map.sign_numbers import FIELD, is_kind_of_signs
@@ -89,7 +90,11 @@ class MapCheck:
 
 
 def check_map(
-    features: Iterable[Feature], catalogue: Catalogue, monitor: Monitor | None = None
+    features: Iterable[Feature],
+    catalogue: Catalogue,
+    monitor: Monitor | None = None,
+    *,
+    crs: str = "",
 ) -> MapCheck:
     """Look a map through.
 
@@ -97,6 +102,8 @@ def check_map(
     ----------
     features : iterable of Feature
         All of them: accepted ones are checked, candidates and rejected ones are counted.
+    crs : str
+        ``EPSG:n``: in a plane rectangular system of Japan lines are looked at where sheets meet.
 
     Raises
     ------
@@ -116,6 +123,7 @@ def check_map(
         accepted = [one for one in members if one.status is Status.ACCEPTED]
         found = chain(
             topology_findings(accepted),
+            sheet_gaps(accepted) if has_sheets(crs) else (),
             _unmeasured(accepted),
             _unnumbered(accepted) if is_kind_of_signs(kind) else (),
             _not_in_ledgers(accepted, kind),

@@ -9,10 +9,14 @@ from dataclasses import replace
 from processing.map.change import Change, Replacement
 from processing.map.feature import Feature, Vertex
 from processing.map.quality.findings import Finding, RuleId
+from processing.map.quality.sheet_edges import EDGE_REACH_M
 from processing.map.quality.topology import GAP_M
 
-MENDABLE: frozenset[RuleId] = frozenset({"duplicate", "too_small", "gap"})
+MENDABLE: frozenset[RuleId] = frozenset({"duplicate", "too_small", "gap", "sheet_gap"})
 """Rules whose findings can be mended without asking what was meant."""
+
+_REACH_M: Mapping[RuleId, float] = {"gap": GAP_M, "sheet_gap": EDGE_REACH_M}
+"""How far an end is moved to another's end."""
 
 
 def repair(findings: Iterable[Finding], features: Mapping[str, Feature]) -> Change:
@@ -35,7 +39,7 @@ def repair(findings: Iterable[Finding], features: Mapping[str, Feature]) -> Chan
         if one.rule in ("duplicate", "too_small"):
             gone = min(reversed(involved), key=_known)
             removed.append(gone)
-        elif one.rule == "gap":
+        elif one.rule in _REACH_M:
             before, after = involved[0], _joined(involved[0], involved[-1], one)
             replaced.append(Replacement(before, after))
         else:
@@ -59,7 +63,7 @@ def _joined(line: Feature, other: Feature, gap: Finding) -> Feature:
         (other.vertices[0], other.vertices[-1]),
         key=lambda vertex: math.dist(vertex.xyz[:2], line.vertices[end].xyz[:2]),
     )
-    if math.dist(target.xyz[:2], line.vertices[end].xyz[:2]) > GAP_M:
+    if math.dist(target.xyz[:2], line.vertices[end].xyz[:2]) > _REACH_M[gap.rule]:
         # It stops short of the other's middle: the finding's place is on it.
         target = Vertex(gap.position, is_occluded=line.vertices[end].is_occluded)
     vertices = list(line.vertices)

@@ -147,14 +147,14 @@ def _to_end(line: shapely.LineString, place: shapely.Point) -> float:
 
 def _gaps(shapes: PlanShapes) -> Iterator[Finding]:
     """Ends that stop short of the end, or of the middle, of another line of the kind."""
-    ends, outward, owners = _ends(shapes)
+    ends, outward, owners = line_ends(shapes)
     if not len(ends):
         return
     yield from _gaps_to_ends(shapes, ends, outward, owners)
     yield from _gaps_to_lines(shapes, ends, outward, owners)
 
 
-def _ends(shapes: PlanShapes) -> tuple[Floats, Floats, list[int]]:
+def line_ends(shapes: PlanShapes) -> tuple[Floats, Floats, list[int]]:
     """Both ends of each open line: place, direction outwards in plan, whose it is."""
     places, outward, owners = [], [], []
     for number, shape in enumerate(shapes.shapes):

@@ -146,7 +146,7 @@ def compare_maps(
     """
     groups = _grouped(before), _grouped(now)
     shared = [key for key in groups[0] if key in groups[1]]
-    mapped = _mapped_ground(before, limits.search_m)
+    mapped = mapped_ground(before, limits.search_m)
     found: list[MapDifference] = []
     same = unreached = 0
     for number, key in enumerate(shared):
@@ -191,8 +191,8 @@ def _grouped(features: Sequence[Feature]) -> _Groups:
     return groups
 
 
-def _mapped_ground(features: Sequence[Feature], reach_m: float) -> Callable[[Floats], Flags]:
-    """Whether places lie within the outline around all features."""
+def mapped_ground(features: Sequence[Feature], reach_m: float) -> Callable[[Floats], Flags]:
+    """Whether places lie within the outline around all features, with a margin."""
     corners = np.array([vertex.xyz[:2] for one in features for vertex in one.vertices])
     outline = shapely.MultiPoint(corners).convex_hull.buffer(reach_m)
     shapely.prepare(outline)
@@ -205,8 +205,15 @@ def _mapped_ground(features: Sequence[Feature], reach_m: float) -> Callable[[Flo
 
 
 def _share(is_there: Callable[[Floats], Flags], one: MapDifference) -> float:
-    xy = np.array([vertex.xyz[:2] for vertex in one.vertices])
-    return float(np.mean(is_there(_dense(xy) if one.geometry is Geometry.LINE else xy)))
+    return share_within(is_there, one.geometry, one.vertices)
+
+
+def share_within(
+    is_there: Callable[[Floats], Flags], geometry: Geometry, vertices: Sequence[Vertex]
+) -> float:
+    """The share of a thing's places of which something is so; along lines every half metre."""
+    xy = np.array([vertex.xyz[:2] for vertex in vertices])
+    return float(np.mean(is_there(_dense(xy) if geometry is Geometry.LINE else xy)))
 
 
 def _dense(xy: Floats) -> Floats:

@@ -100,3 +100,19 @@ def test_bad_check_points_are_refused_and_nothing_is_written(
     request = ExportRequest(("qa",), tmp_path / "out", "ja", {"check_points": "none.csv"})
     with pytest.raises(MissingInput):
         export(_HOLES, _CATALOGUE, "EPSG:6677", request)
+
+
+def test_a_hand_check_gives_precision_and_recall_in_every_form(tmp_path: Path) -> None:
+    request = ExportRequest(("gpkg",), tmp_path / "hand")
+    (hand,) = export(_HOLES[:2], _CATALOGUE, "EPSG:6677", request)
+    chosen = {"check_map": str(hand)}
+    request = ExportRequest(("qa",), tmp_path / "out", "ja", chosen)
+    paths = {one.suffix: one for one in export(_HOLES, _CATALOGUE, "EPSG:6677", request)}
+    (row,) = json.loads(paths[".json"].read_text(encoding="utf-8"))["hand_check"]
+    assert row["unit"] == "count"
+    assert row["amount"] == 2
+    assert row["map"] == {"precision": 1.0, "recall": 1.0}
+    assert row["tools"]["recall"] == 0.0
+    page = plain(paths[".html"].read_text(encoding="utf-8"))
+    for words in (page, plain("".join(words_of(paths[".pdf"])))):
+        assert plain("別途点検による適合率") in words

@@ -310,6 +310,7 @@ def test_every_format_has_a_title_in_both_languages() -> None:
         "dm",
         "sima",
         "sxf",
+        "delivery",
         "sheets",
         "sections",
         "las",

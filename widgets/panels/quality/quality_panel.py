@@ -104,7 +104,8 @@ class QualityPanel(QWidget):
             return
         self._is_checking = True
         self._show_state()
-        self._in_background(partial(check_map, features, self._source.catalogue()), self._take)
+        check = partial(check_map, features, self._source.catalogue(), crs=self._source.crs())
+        self._in_background(check, self._take)
 
     def _new_table(self) -> QTableWidget:
         table = QTableWidget(0, _COLUMNS, self)
@@ -146,7 +147,7 @@ class QualityPanel(QWidget):
     def _fill(self, row: int, finding: Finding) -> None:
         rule, catalogue = RULES[finding.rule], self._source.catalogue()
         kind = catalogue[finding.kind].name if finding.kind in catalogue else finding.kind
-        unit = "m" if finding.rule == "gap" else "m²"
+        unit = "m" if finding.rule in ("gap", "sheet_gap") else "m²"
         size = "" if finding.extent_m is None else f"{finding.extent_m:.3f} {unit}"
         for column, words in enumerate((rule.name, kind, size, rule.remedy)):
             shown = words if isinstance(words, str) else words.in_language(self._language)

@@ -11,6 +11,8 @@ from processing.formats.reports.quality.quality_rows import (
     ACCURACY_COLUMNS,
     FINDING_COLUMNS,
     FINDINGS_TITLE,
+    HAND_COLUMNS,
+    HAND_TITLE,
     KIND_COLUMNS,
     KINDS_TITLE,
     NO_FINDINGS,
@@ -23,6 +25,7 @@ from processing.formats.reports.quality.quality_rows import (
     accuracy_rows,
     accuracy_title,
     finding_rows,
+    hand_rows,
     in_language,
     is_number,
     kind_rows,
@@ -61,7 +64,9 @@ def write_quality_html(path: Path, facts: QualityFacts, language: Language) -> N
 
 
 def _accuracy(facts: QualityFacts, language: Language) -> Iterator[str]:
-    points = facts.points
+    points, hand = facts.points, facts.hand
+    if hand is not None:
+        yield _section(HAND_TITLE, HAND_COLUMNS, hand_rows(facts, hand), language)
     if points is not None:
         yield _section(accuracy_title(points), ACCURACY_COLUMNS, accuracy_rows(points), language)
         yield _section(POINTS_TITLE, POINT_COLUMNS, point_rows(facts, points), language)

@@ -13,6 +13,8 @@ from processing.formats.reports.quality.quality_rows import (
     ACCURACY_COLUMNS,
     FINDING_COLUMNS,
     FINDINGS_TITLE,
+    HAND_COLUMNS,
+    HAND_TITLE,
     KIND_COLUMNS,
     KINDS_TITLE,
     NO_FINDINGS,
@@ -25,6 +27,7 @@ from processing.formats.reports.quality.quality_rows import (
     accuracy_rows,
     accuracy_title,
     finding_rows,
+    hand_rows,
     is_number,
     kind_rows,
     point_rows,
@@ -38,6 +41,7 @@ _SUMMARY_MM = (70.0, 112.0)
 _RULES_MM = (48.0, 14.0, 20.0, 100.0)
 _KINDS_MM = (52.0, 20.0, 16.0, 24.0, 18.0, 16.0, 18.0, 18.0)
 _ACCURACY_MM = (62.0, 20.0, 26.0, 26.0, 24.0, 24.0)
+_HAND_MM = (52.0, 26.0, 26.0, 26.0, 26.0, 26.0)
 _POINTS_MM = (40.0, 52.0, 34.0, 28.0, 28.0)
 _FINDINGS_MM = (10.0, 42.0, 34.0, 31.0, 24.0, 24.0, 17.0)
 
@@ -61,6 +65,9 @@ def write_quality_pdf(
             paper, facts, KINDS_TITLE, _table(_KINDS_MM, KIND_COLUMNS, kind_rows(facts)), bottom
         )
         monitor.check()
+        if facts.hand is not None:
+            rows = _table(_HAND_MM, HAND_COLUMNS, hand_rows(facts, facts.hand))
+            _draw_over_pages(paper, facts, HAND_TITLE, rows, bottom)
         if facts.points is not None:
             rows = _table(_POINTS_MM, POINT_COLUMNS, point_rows(facts, facts.points))
             _draw_over_pages(paper, facts, POINTS_TITLE, rows, bottom)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -13,10 +14,18 @@ from processing.formats.map_delivery import MapDelivery, Position, QualityOption
 from processing.formats.reports.quality.check_point_file import read_check_points
 from processing.formats.reports.quality.quality_html import write_quality_html
 from processing.formats.reports.quality.quality_pdf import write_quality_pdf
-from processing.formats.reports.quality.quality_rows import QualityFacts
-from processing.map.quality.check_points import PointCheck, check_points
+from processing.formats.reports.quality.quality_rows import HandCheck, QualityFacts
+from processing.formats.vectors.delivered_maps import features_of_map
+from processing.formats.vectors.mapped_shapes import read_mapped
+from processing.map.catalogue import CHANGE_KIND
+from processing.map.feature import Status
+from processing.map.map_extent import extent_of
+from processing.map.quality.check_points import LEVEL_LIMITS, PointCheck, check_points
 from processing.map.quality.findings import RULES
 from processing.map.quality.map_check import MapCheck, check_map
+from processing.map.renewal.map_agreement import agreement
+
+_HAND = "hand"
 
 
 def write_quality_map(delivery: MapDelivery, position: Position, monitor: Monitor) -> None:
@@ -29,17 +38,25 @@ def write_quality_map(delivery: MapDelivery, position: Position, monitor: Monito
     UserError
         What stands against writing; `Cancelled`.
     """
-    check = check_map(delivery.every_feature, delivery.catalogue, monitor)
+    check = check_map(delivery.every_feature, delivery.catalogue, monitor, crs=delivery.crs)
     points = checked_points(delivery)
     software = f"Zuka {version('zuka')}"
     facts = QualityFacts(
-        check, delivery.catalogue, delivery.crs, software, points, work=delivery.work
+        check,
+        delivery.catalogue,
+        delivery.crs,
+        software,
+        points,
+        work=delivery.work,
+        hand=hand_check(delivery, monitor),
     )
     language = delivery.language or "en"
     write_quality_pdf(position("qa.pdf"), facts, language, monitor)
     write_quality_html(position("qa.html"), facts, language)
     words = json.dumps(
-        {**_numbers(check, delivery.crs), **_accuracy(points)}, ensure_ascii=False, indent=1
+        {**_numbers(check, delivery.crs), **_accuracy(points), **_hand(facts.hand)},
+        ensure_ascii=False,
+        indent=1,
     )
     position("qa.json").write_text(words + "\n", encoding="utf-8")
 
@@ -57,6 +74,59 @@ def checked_points(delivery: MapDelivery) -> PointCheck | None:
         return None
     points = read_check_points(Path(options.check_points), delivery.catalogue)
     return check_points(points, delivery.every_feature, int(options.map_level))
+
+
+def hand_check(delivery: MapDelivery, monitor: Monitor) -> HandCheck | None:
+    """The map and what tools found, by a map that was drawn separately; None without any.
+
+    Twice the standard deviation of the map level lies between two places of one thing at most.
+
+    Raises
+    ------
+    OutOfRange, MissingInput, BadFile, Unsuitable
+        It can't be read, lies elsewhere, or has nothing of the catalogue's kinds; `Cancelled`.
+    """
+    options = delivery.options_of(QualityOptions)
+    if not options.check_map:
+        return None
+    mapped = read_mapped(Path(options.check_map))
+    if not mapped.crs:
+        mapped = replace(mapped, crs=delivery.crs)
+    read = features_of_map(
+        mapped,
+        delivery.catalogue,
+        crs=delivery.crs,
+        known=frozenset(),
+        around=extent_of(delivery.every_feature),
+    )
+    tolerance = 2 * LEVEL_LIMITS[int(options.map_level)].plan_m
+    own = [one for one in delivery.every_feature if one.kind != CHANGE_KIND]
+    accepted = [one for one in own if one.status is Status.ACCEPTED]
+    by_tools = [one for one in own if one.provenance.tool != _HAND]
+    return HandCheck(
+        agreement(read.features, accepted, tolerance, monitor),
+        agreement(read.features, by_tools, tolerance, monitor),
+    )
+
+
+def _hand(hand: HandCheck | None) -> dict[str, Any]:
+    if hand is None:
+        return {}
+    return {
+        "hand_check": [
+            {
+                "kind": one.kind,
+                "unit": "m" if one.is_line else "count",
+                "amount": round(one.truth, 3),
+                "map": {"precision": _rounded(one.precision), "recall": _rounded(one.recall)},
+                "tools": {
+                    "precision": _rounded(tools.precision),
+                    "recall": _rounded(tools.recall),
+                },
+            }
+            for one, tools in zip(hand.map, hand.tools, strict=True)
+        ]
+    }
 
 
 def _accuracy(points: PointCheck | None) -> dict[str, Any]:

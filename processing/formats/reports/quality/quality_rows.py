@@ -13,6 +13,7 @@ from processing.map.catalogue import Catalogue
 from processing.map.quality.check_points import PointCheck
 from processing.map.quality.findings import RULES, Finding
 from processing.map.quality.map_check import MapCheck
+from processing.map.renewal.map_agreement import KindAgreement
 
 TITLE = Text("Quality of the map", "図化成果 品質評価表")
 RULE_COLUMNS = (
@@ -55,10 +56,20 @@ POINT_COLUMNS = (
     Text("In plan (m)", "水平較差 (m)"),
     Text("Height (m)", "標高較差 (m)"),
 )
+HAND_COLUMNS = (
+    Text("Kind", "種別"),
+    Text("Hand check", "別途点検"),
+    Text("Map: precision", "図面の適合率"),
+    Text("Map: recall", "図面の再現率"),
+    Text("Tools: precision", "自動抽出の適合率"),
+    Text("Tools: recall", "自動抽出の再現率"),
+)
+HAND_TITLE = Text("Precision and recall by a separate hand check", "別途点検による適合率・再現率")
 POINTS_TITLE = Text("Check points", "検証点")
 _PLAN, _HEIGHT = Text("In plan", "水平位置"), Text("Height", "標高")
 _NOT_FOUND = Text("no vertex near", "該当なし")
 _NOT_CHECKED = Text("not checked", "未検証")
+_GAPS = ("gap", "sheet_gap")
 RULES_TITLE = Text("Rules", "点検項目")
 KINDS_TITLE = Text("Kinds", "種別ごとの数量")
 FINDINGS_TITLE = Text("Findings", "指摘箇所")
@@ -82,6 +93,20 @@ _NUMBER = re.compile(r"-?[\d,]+(\.\d+)?%?")
 
 
 @dataclass(frozen=True)
+class HandCheck:
+    """The map, and what tools found for it, by one that was drawn separately.
+
+    Attributes
+    ----------
+    map, tools : tuple of KindAgreement
+        By kind, in the same order.
+    """
+
+    map: tuple[KindAgreement, ...]
+    tools: tuple[KindAgreement, ...]
+
+
+@dataclass(frozen=True)
 class QualityFacts:
     """What a report is about.
 
@@ -95,6 +120,8 @@ class QualityFacts:
         None where no check points were given.
     work : WorkFacts
         Whose names stand on the report where they are known.
+    hand : HandCheck or None
+        None where no map was drawn separately.
     """
 
     check: MapCheck
@@ -103,6 +130,7 @@ class QualityFacts:
     software: str
     points: PointCheck | None = None
     work: WorkFacts = field(default_factory=WorkFacts)
+    hand: HandCheck | None = None
 
     def kind_name(self, kind: str) -> Text:
         """What a kind is called."""
@@ -191,6 +219,14 @@ def kind_rows(facts: QualityFacts) -> Iterator[tuple[Text, ...]]:
         )
 
 
+def hand_rows(facts: QualityFacts, hand: HandCheck) -> Iterator[tuple[Text, ...]]:
+    """Every kind of the hand check: how much there is, precision and recall of map and tools."""
+    for one, tools in zip(hand.map, hand.tools, strict=True):
+        amount = f"{one.truth:,.1f} m" if one.is_line else f"{one.truth:,.0f}"
+        shares = (one.precision, one.recall, tools.precision, tools.recall)
+        yield facts.kind_name(one.kind), Text.same(amount), *map(_share, shares)
+
+
 def finding_rows(facts: QualityFacts) -> Iterator[tuple[Text, ...]]:
     """Every finding: number, rule, kind, features, place."""
     for number, one in enumerate(facts.check.findings, start=1):
@@ -207,7 +243,7 @@ def _with_extent(finding: Finding) -> Text:
     name = RULES[finding.rule].name
     if finding.extent_m is None:
         return name
-    extent = f"{finding.extent_m:.3f} m" if finding.rule == "gap" else f"{finding.extent_m:.2f} m²"
+    extent = f"{finding.extent_m:.3f} m" if finding.rule in _GAPS else f"{finding.extent_m:.2f} m²"
     return Text(f"{name.en} ({extent})", f"{name.ja}（{extent}）")
 
 

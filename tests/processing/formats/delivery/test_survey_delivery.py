@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import csv
 import re
+import xml.etree.ElementTree as ET
+import xml.sax
+from io import StringIO
 from pathlib import Path
-from xml.etree import ElementTree
+from typing import Any
 
 import pypdfium2
 import pytest
@@ -54,10 +57,30 @@ def _check_points(folder: Path) -> Path:
     return path
 
 
-def _xml(path: Path) -> ElementTree.Element:
+def _xml(path: Path) -> Any:
+    """A management file by another parser than the one it was made with: it knows Shift_JIS."""
     words = path.read_bytes().decode("cp932")
     assert words.startswith('<?xml version="1.0" encoding="Shift_JIS"?>\r\n')
-    return ElementTree.fromstring(words.split("?>", 1)[1])
+    builder = ET.TreeBuilder()
+    reader = xml.sax.make_parser()
+    reader.setContentHandler(_Handler(builder))
+    reader.parse(StringIO(words.split("?>", 1)[1].strip()))
+    return builder.close()
+
+
+class _Handler(xml.sax.ContentHandler):
+    def __init__(self, builder: ET.TreeBuilder) -> None:
+        super().__init__()
+        self._builder = builder
+
+    def startElement(self, name: str, attrs: Any) -> None:  # noqa: N802
+        self._builder.start(name, dict(attrs))
+
+    def endElement(self, name: str) -> None:  # noqa: N802
+        self._builder.end(name)
+
+    def characters(self, content: str) -> None:
+        self._builder.data(content)
 
 
 def test_the_tree_is_named_by_the_rule_and_listed_whole(tmp_path: Path) -> None:

@@ -13,6 +13,7 @@ from processing.map.catalogue_file import read_catalogue
 from processing.map.feature import Feature, Position, Provenance, Status, Vertex
 from processing.map.quality.findings import Finding
 from processing.map.quality.map_check import check_map
+from processing.map.quality.repairs import repair
 from resources import path_of
 
 _EAST, _NORTH = -11_394.608, -35_139.915
@@ -170,3 +171,27 @@ def test_any_lines_are_looked_through_and_every_finding_names_what_is_there(
     known = {one.id for one in lines}
     assert all(set(one.features) <= known for one in found.findings)
     assert check_map(lines, _CATALOGUE) == found
+
+
+def test_lines_of_two_sheets_that_miss_each_other_are_found_and_joined(
+    catalogue: Catalogue,
+) -> None:
+    edge = -11_200.0  # a multiple of 400 m
+    west, east = ((-20.0, 0.0), (-0.2, 0.0)), ((0.3, 0.4), (20.0, 0.4))
+    features = [
+        Feature(id_, "road_edge", Geometry.LINE, tuple(Vertex((edge + x, -35_100.0 + y, 5.0)) for x, y in line))
+        for id_, line in (("a", west), ("b", east))
+    ]  # fmt: skip
+    (finding,) = check_map(features, catalogue, crs="EPSG:6677").findings
+    assert finding.rule == "sheet_gap"
+    assert finding.extent_m == pytest.approx(0.64, abs=0.01)
+    assert not check_map(features, catalogue, crs="EPSG:32654").findings
+    change = repair([finding], {one.id: one for one in features})
+    (joined,) = change.replaced
+    others = [one for one in features if one.id != joined.after.id]
+    assert not check_map([joined.after, *others], catalogue, crs="EPSG:6677").findings
+
+
+def test_ends_away_from_sheet_edges_are_no_gaps_between_sheets(catalogue: Catalogue) -> None:
+    lines = [_line((0.0, 0.0), (10.0, 0.0)), _line((10.6, 0.0), (20.0, 0.0))]
+    assert not check_map(lines, catalogue, crs="EPSG:6677").findings
