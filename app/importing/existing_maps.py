@@ -27,7 +27,7 @@ from processing.project.project import Project
 from widgets.dialogs.existing_map import ExistingMapForm
 
 _TAKING = Text("Taking in {file}", "{file} の取り込み")
-_MORE = Text("{said} {more}", "{said}{more}")
+_MORE = Text("{said} – {more}", "{said}　{more}")
 
 
 class ExistingMaps:

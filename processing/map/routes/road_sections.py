@@ -17,6 +17,7 @@ from processing.core.arrays import Floats, Integers
 from processing.map.catalogue import Catalogue, FeatureKind, Geometry
 from processing.map.feature import Feature, Status
 from processing.map.routes.numbering import REACH_M
+from processing.map.routes.road_alignment import RoadAlignment, RouteShape
 from processing.map.routes.route import PITCH_M, Route, routes_of
 
 ROAD_EDGE_CODES = frozenset({"2101"})
@@ -104,6 +105,7 @@ class RoadSection:
     right: SideContent
     surfaces: tuple[str, ...] = ()
     bridges: tuple[str, ...] = ()
+    alignment: RoadAlignment = field(default_factory=RoadAlignment)
 
     @property
     def length_m(self) -> float:
@@ -114,6 +116,16 @@ class RoadSection:
     def carriageway_area_m2(self) -> float:
         """By the mean of the widths at both ends; NaN where either isn't known."""
         return (self.start.carriageway_m + self.end.carriageway_m) / 2 * self.length_m
+
+    @property
+    def footway_area_m2(self) -> float:
+        """Of both sides, by the mean of the widths at both ends; NaN where either isn't known."""
+        return (sum(self.start.footway) + sum(self.end.footway)) / 2 * self.length_m
+
+    @property
+    def surfaced_area_m2(self) -> float:
+        """Carriageway and footways, where the map says what they are surfaced with; else NaN."""
+        return self.carriageway_area_m2 + self.footway_area_m2 if self.surfaces else math.nan
 
     @property
     def road_area_m2(self) -> float:
@@ -152,12 +164,14 @@ def road_sections(
     filled = _contents(lines, accepted)
     for line, cells in zip(lines, filled, strict=True):
         widths = [across.widths(line, station) for station in line.stations]
+        first, bends = line.route.start_m, RouteShape(line.route.line.xyz)
         for number, cell in enumerate(cells):
             found.append(
                 RoadSection(
                     line.route.name, line.stations[number], line.stations[number + 1],
                     widths[number], widths[number + 1], cell.sides[0], cell.sides[1],
                     tuple(sorted(cell.surfaces)), tuple(sorted(cell.bridges)),
+                    bends.between(line.stations[number] - first, line.stations[number + 1] - first),
                 )
             )  # fmt: skip
     return tuple(found)

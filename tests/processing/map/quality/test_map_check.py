@@ -179,9 +179,14 @@ def test_lines_of_two_sheets_that_miss_each_other_are_found_and_joined(
     edge = -11_200.0  # a multiple of 400 m
     west, east = ((-20.0, 0.0), (-0.2, 0.0)), ((0.3, 0.4), (20.0, 0.4))
     features = [
-        Feature(id_, "road_edge", Geometry.LINE, tuple(Vertex((edge + x, -35_100.0 + y, 5.0)) for x, y in line))
+        Feature(
+            id_,
+            "road_edge",
+            Geometry.LINE,
+            tuple(Vertex((edge + x, -35_100.0 + y, 5.0)) for x, y in line),
+        )
         for id_, line in (("a", west), ("b", east))
-    ]  # fmt: skip
+    ]
     (finding,) = check_map(features, catalogue, crs="EPSG:6677").findings
     assert finding.rule == "sheet_gap"
     assert finding.extent_m == pytest.approx(0.64, abs=0.01)
