@@ -124,19 +124,24 @@ def _map_of_curbs(path: Path) -> None:
     path.write_text(json.dumps({"type": "FeatureCollection", "crs": crs, "features": lines}))
 
 
-def _package_of_curbs(path: Path) -> None:
+def _file_of_curbs(driver: str) -> Writer:
+    """Lines of a driver of GDAL; a Shapefile has its table and the rest beside it."""
     lines = [[(x, 0.0, up) for x in np.arange(0.0, 10.5, 0.5)] for up in (0.15, 0.0)]
     shapes = shapely.to_wkb(np.array([shapely.LineString(one) for one in lines]))
     values = [np.array(["curb"] * 2, object), np.array(["upper", "lower"], object)]
-    pyogrio.raw.write(
-        path,
-        shapes,
-        values,
-        ["kind", "edge"],
-        geometry_type="LineString Z",
-        crs="EPSG:6677",
-        driver="GPKG",
-    )
+
+    def write(path: Path) -> None:
+        pyogrio.raw.write(
+            path,
+            shapes,
+            values,
+            ["kind", "edge"],
+            geometry_type="LineString Z",
+            crs="EPSG:6677",
+            driver=driver,
+        )
+
+    return write
 
 
 def _exported_map(format_id: str, kinds: tuple[str, ...] = ("curb_upper", "curb_lower")) -> Writer:
@@ -160,6 +165,7 @@ def _exported_map(format_id: str, kinds: tuple[str, ...] = ("curb_upper", "curb_
 
 _OF_AREA, _OF_LINE = _geojson("Polygon", _AREA), _geojson("LineString", _LINE)
 
+
 SMALL_FILES: dict[tuple[Content, str], Writer] = {
     (Content.POINTS, "las"): _las,
     (Content.POINTS, "laz"): _las,
@@ -181,7 +187,8 @@ SMALL_FILES: dict[tuple[Content, str], Writer] = {
     (Content.TRAJECTORY, "sbet"): _sbet,
     (Content.FEATURES, "geojson"): _map_of_curbs,
     (Content.FEATURES, "json"): _map_of_curbs,
-    (Content.FEATURES, "gpkg"): _package_of_curbs,
+    (Content.FEATURES, "gpkg"): _file_of_curbs("GPKG"),
+    (Content.FEATURES, "shp"): _file_of_curbs("ESRI Shapefile"),
     (Content.FEATURES, "dxf"): _exported_map("dxf"),
     (Content.FEATURES, "dm"): _exported_map("dm", ("street_tree",)),
     (Content.FEATURES, "sima"): _exported_map("sima", ("street_tree",)),
