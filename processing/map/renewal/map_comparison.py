@@ -146,7 +146,7 @@ def compare_maps(
     """
     groups = _grouped(before), _grouped(now)
     shared = [key for key in groups[0] if key in groups[1]]
-    mapped = mapped_ground(before, limits.search_m)
+    mapped = mapped_ground(before, limits.tolerance_m)
     found: list[MapDifference] = []
     same = unreached = 0
     for number, key in enumerate(shared):
@@ -385,7 +385,9 @@ def _apart(
         return flat, _pieces(flat)
     lines = shapely.union_all(shapely.force_2d(near))
     rest = flat.difference(lines.buffer(limits.tolerance_m))
-    return rest, _pieces(rest.difference(lines.buffer(limits.search_m)))
+    # What goes on where another line ends has not moved: the search ends square with it.
+    beside = shapely.line_merge(lines).buffer(limits.search_m, cap_style="flat")
+    return rest, _pieces(rest.difference(beside))
 
 
 def _pieces(shape: shapely.Geometry) -> list[shapely.LineString]:

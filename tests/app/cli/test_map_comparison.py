@@ -266,3 +266,32 @@ def test_nothing_drawn_is_nothing_to_compare(
     status, _, err = _compared(capsys, empty, old)
     assert status == BAD_INPUT
     assert "Nothing is accepted" in err
+
+
+def test_what_goes_on_beyond_the_last_map_is_not_told(
+    tmp_path: Path, project: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    half = [
+        _feature("road_edge", Geometry.LINE, (0.0, 0.1), (10.0, 0.1)),
+        _feature("road_edge", Geometry.LINE, (0.0, -9.0), (10.0, -9.0)),
+    ]
+    with closing(Project.open(project)) as opened:
+        catalogue = opened.catalogue
+    made = export(half, catalogue, _CRS, ExportRequest(("gpkg",), tmp_path / "half"))
+    _, out, _ = _compared(capsys, project, made[0])
+    assert "0 new, 0 moved, 1 gone" in out
+
+
+def test_what_was_made_longer_is_new_and_not_moved(
+    tmp_path: Path, project: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    shorter = [
+        _feature("guard_rail", Geometry.LINE, (0.0, 1.0), (20.0, 1.0)),
+        _feature("guard_rail", Geometry.LINE, (39.0, 9.0), (40.0, 9.0)),
+        _feature("guard_rail", Geometry.LINE, (39.0, -9.0), (40.0, -9.0)),
+    ]
+    with closing(Project.open(project)) as opened:
+        catalogue = opened.catalogue
+    made = export(shorter, catalogue, _CRS, ExportRequest(("gpkg",), tmp_path / "shorter"))
+    _, out, _ = _compared(capsys, project, made[0])
+    assert "1 new, 0 moved, 2 gone" in out
