@@ -357,9 +357,13 @@ class Document(QObject):
         return self._job_results.start(project, title, work, take)
 
     def export(self, request: ExportRequest) -> str:
-        """Write the map to files in the background; gives the job's id."""
-        project = self._need_project()
-        title, work = Text("Export", "書き出し"), export_of(project, request)
+        """Write the map to files in the background; gives the job's id, empty where it can't."""
+        project, title = self._need_project(), Text("Export", "書き出し")
+        try:
+            work = export_of(project, request)
+        except UserError as error:  # what papers say of the work can't be read
+            self.refused.emit(error)
+            return ""
 
         def take(written: WrittenFiles) -> None:
             self.reported.emit(exported_words(written, request.folder))

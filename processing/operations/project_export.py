@@ -80,6 +80,11 @@ def export_of(project: Project, request: ExportRequest) -> Callable[[Monitor], W
     ----------
     request : ExportRequest
         As of :class:`ExportOperation`.
+
+    Raises
+    ------
+    BadFile
+        The work details that the project keeps can't be read.
     """
     features = tuple(project.features.all())
     catalogue, crs, drives = project.catalogue, project.crs, project.drives
