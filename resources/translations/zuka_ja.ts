@@ -590,6 +590,17 @@ kept</source>
     </message>
 </context>
 <context>
+    <name>ExistingMapForm</name>
+    <message>
+        <source>Existing map</source>
+        <translation>既存図</translation>
+    </message>
+    <message>
+        <source>Compares a map that was delivered before with what is accepted and drawn, kind by kind in plan, or takes its features in.</source>
+        <translation>納品済みの図面を、採用・作図済みの地物と種別ごとに平面位置で比較するか、地物として取り込みます。</translation>
+    </message>
+</context>
+<context>
     <name>ExportForm</name>
     <message>
         <source>Export</source>
