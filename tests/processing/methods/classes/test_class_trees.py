@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 from processing.core.monitor import SilentMonitor
 from processing.methods.classes.class_models import AGAIN, ALONE, MODELS
@@ -65,3 +67,60 @@ def test_other_programs_read_the_shipped_models_alike(name: str) -> None:
     ours = class_shares(forest, rows, SilentMonitor())
     np.testing.assert_allclose(ours, shares, atol=1e-4)
     assert (forest.codes[ours.argmax(axis=1)] == labels).mean() > 0.98
+
+
+@pytest.mark.parametrize("name", [ALONE, AGAIN])
+def test_words_of_rows_give_the_shares_of_a_walk_row_by_row_to_the_last_bit(name: str) -> None:
+    forest = read_forest(path_of(f"{MODELS}/{name}"))
+    random = np.random.default_rng(3)
+    columns = int(forest.trees.features.max()) + 1
+    rows = random.normal(0, 2, (64 + 7, columns)).astype(np.float32)  # a word, and part of one
+    inner = np.flatnonzero(forest.trees.features >= 0)
+    some = random.choice(inner, len(rows))
+    # As large as a threshold goes left.
+    rows[np.arange(len(rows)), forest.trees.features[some]] = forest.trees.thresholds[some]
+    rows[3, :] = np.nan
+    rows[4, ::2], rows[5, ::2] = np.inf, -np.inf
+    ours = class_shares(forest, rows, SilentMonitor())
+    np.testing.assert_array_equal(ours, _walked_shares(forest, rows))
+
+
+def test_nodes_may_stand_in_any_order() -> None:
+    """The second tree's root is its last node, and a leaf on its left comes after the right."""
+    trees = Trees(
+        np.array([-1, -1, 0, -1, 1], np.int32),
+        np.array([1.0, -1.0, 0.5, 3.0, 0.25]),
+        np.array([0, 1, 1, 3, 2], np.int32),
+        np.array([0, 1, 0, 3, 3], np.int32),
+        np.array([4], np.int32),
+        0.0,
+    )
+    forest = Forest(trees, np.zeros(1, np.int32), np.zeros(2), np.array([2, 6], np.uint8))
+    rows = np.array([[0, 0], [1, 0], [0, 1], [np.nan, 0.25]], np.float32)
+    ours = class_shares(forest, rows, SilentMonitor())
+    np.testing.assert_array_equal(ours, _walked_shares(forest, rows))
+    assert len(np.unique(ours[:, 0])) == 3
+
+
+def test_no_rows_have_no_shares(forest: Forest) -> None:
+    assert class_shares(forest, np.empty((0, 2), np.float32), SilentMonitor()).shape == (0, 3)
+
+
+def _walked_shares(forest: Forest, rows: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Each row down each tree."""
+    trees = forest.trees
+    shares = np.empty((len(rows), forest.codes.size), np.float32)
+    for number, row in enumerate(rows.astype(np.float64)):
+        sums = forest.bases.copy()
+        for root, which in zip(trees.roots.tolist(), forest.class_of.tolist(), strict=True):
+            node = root
+            while trees.features[node] >= 0:
+                is_left = row[trees.features[node]] <= trees.thresholds[node]
+                node = trees.lefts[node] if is_left else trees.rights[node]
+            sums[which] += trees.thresholds[node]
+        likely = [math.exp(one - sums.max()) for one in sums]
+        total = 0.0
+        for one in likely:
+            total += one
+        shares[number] = [one / total for one in likely]
+    return shares
