@@ -9,6 +9,13 @@ from pathlib import Path
 
 from processing.core.errors import Unsuitable
 from processing.core.monitor import Monitor
+from processing.formats.points.flight_scoring import (
+    other_flight,
+    read_flight_truth,
+    read_found_echoes,
+    read_found_waves,
+    read_true_waves,
+)
 from processing.formats.points.point_codes import read_result, read_truth
 from processing.formats.reports.number_file import read_numbers
 from processing.formats.vectors.mapped_shapes import read_mapped
@@ -20,6 +27,8 @@ from processing.scoring.features.volumes import MEASURES
 from processing.scoring.points.coded_points import CodedFile, pairs_by_order
 from processing.scoring.points.pairs_by_position import pairs_by_position
 from processing.scoring.points.point_scores import PointScore, PointScorer
+from processing.scoring.scorers import Scorer
+from processing.scoring.waveforms.flight_scores import EchoScorer, WaveScorer, rows_at
 from processing.tools.registry import scorer_of
 
 _ORDER, _POSITION = "order", "place"
@@ -57,7 +66,7 @@ class ScoreOutcome:
 
     Attributes
     ----------
-    scorer : PointScorer, FeatureScorer or VolumeScorer
+    scorer : Scorer
     points : PointScore or None
         Of a tool that says something about points.
     file : FileScore or None
@@ -66,7 +75,7 @@ class ScoreOutcome:
         ``order`` or ``place``: how the points were paired; empty where none were.
     """
 
-    scorer: PointScorer | FeatureScorer | VolumeScorer
+    scorer: Scorer
     points: PointScore | None = None
     file: FileScore | None = None
     paired_by: str = ""
@@ -89,7 +98,14 @@ def score_result(operation: ScoreOperation, monitor: Monitor) -> ScoreOutcome:
     return ScoreOutcome(scorer, points=points, paired_by=paired_by)
 
 
-def _scored_file(scorer: FeatureScorer | VolumeScorer, result: Path, truth: Path) -> FileScore:
+def _scored_file(
+    scorer: FeatureScorer | VolumeScorer | EchoScorer | WaveScorer, result: Path, truth: Path
+) -> FileScore:
+    if isinstance(scorer, EchoScorer):
+        return _scored_echoes(scorer, result, truth)
+    if isinstance(scorer, WaveScorer):
+        waves = read_true_waves(truth)
+        return scorer.score(*read_found_waves(result, waves), waves)
     if isinstance(scorer, VolumeScorer):
         return scorer.score(
             read_numbers(result, tuple(MEASURES)), read_numbers(truth, tuple(MEASURES))
@@ -98,6 +114,13 @@ def _scored_file(scorer: FeatureScorer | VolumeScorer, result: Path, truth: Path
     found = _read_result(result, scorer.tool)
     check_same_system(found, true)
     return scorer.score(found, true)
+
+
+def _scored_echoes(scorer: EchoScorer, result: Path, truth: Path) -> FileScore:
+    flight, found = read_flight_truth(truth), read_found_echoes(result)
+    if found.time_s.size and (rows_at(flight.time_s, found.time_s) < 0).all():
+        raise other_flight(result)
+    return scorer.score(found, flight)
 
 
 def _read_truth(path: Path) -> MappedFile:

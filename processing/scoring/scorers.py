@@ -3,7 +3,8 @@
 A tool names its scorer in its declaration; ``zuka score``, the accuracy tables and the evaluation
 in the window take it from there. A tool that classifies points has a
 :class:`~processing.scoring.points.point_scores.PointScorer`, one that maps features a
-:class:`~processing.scoring.features.file_scores.FeatureScorer`.
+:class:`~processing.scoring.features.file_scores.FeatureScorer`; echoes and waveforms of flights
+have those of :mod:`processing.scoring.waveforms.flight_scores`.
 """
 
 from __future__ import annotations
@@ -26,8 +27,14 @@ from processing.scoring.points.point_scores import (
     noise_score,
 )
 from processing.scoring.points.six_classes import six_class_score
+from processing.scoring.waveforms.flight_scores import (
+    EchoScorer,
+    WaveScorer,
+    flight_echo_score,
+    flight_wave_score,
+)
 
-Scorer = PointScorer | FeatureScorer | VolumeScorer
+Scorer = PointScorer | FeatureScorer | VolumeScorer | EchoScorer | WaveScorer
 """One per kind of result."""
 
 NOISE_SCORER = PointScorer(
@@ -73,3 +80,9 @@ TREE_SCORER = FeatureScorer("trees", Text("Street trees", "街路樹"), tree_sco
 POLE_SCORER = FeatureScorer("poles", Text("Poles", "柱状物"), pole_score)
 WIRE_SCORER = FeatureScorer("wires", Text("Wires", "架線"), wire_score)
 VOLUME_SCORER = VolumeScorer("volume", Text("Volumes", "土量"), volume_score)
+ECHO_SCORER = EchoScorer(
+    "waveform-decompose", Text("Echoes of waveforms", "波形の分解"), flight_echo_score
+)
+WAVE_SCORER = WaveScorer(
+    "waveform-estimate", Text("Estimated waveforms", "波形の推定"), flight_wave_score
+)

@@ -14,6 +14,7 @@ from processing.core.text import Text
 from processing.methods.waveforms.drive_echoes import EchoPoints, echoes_of
 from processing.methods.waveforms.pulse_file import read_pulse
 from processing.recording.drive import Drive
+from processing.scoring.scorers import ECHO_SCORER
 from processing.tools.tool import MadePoints, Needs, NewPoints, Tool
 
 _MOST_RETURNS = 15
@@ -91,4 +92,5 @@ WAVEFORM_DECOMPOSE = Tool(
     needs=Needs.POINTS,
     parameters=WaveformDecomposeParameters,
     method=NewPoints(make_echoes),
+    scorer=ECHO_SCORER,
 )

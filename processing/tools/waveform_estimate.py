@@ -33,6 +33,7 @@ from processing.methods.waveforms.estimation.pulse_returns import (
 from processing.methods.waveforms.pulse_file import read_pulse
 from processing.recording.drive import Drive
 from processing.recording.waveform_packets.descriptors import WaveformDescriptor
+from processing.scoring.scorers import WAVE_SCORER
 from processing.tools.tool import MadePackets, MadePoints, Needs, NewPointsTogether, Tool
 
 _PS_IN_NS = 1000
@@ -158,4 +159,5 @@ WAVEFORM_ESTIMATE = Tool(
             16, SAMPLES, spacing_ps=_PS_IN_NS, gain=1.0 / STEPS_OF_COUNT, offset=0.0
         ),
     ),
+    scorer=WAVE_SCORER,
 )

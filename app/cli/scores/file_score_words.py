@@ -40,6 +40,12 @@ _LEFT_OUT = {
         "trunks found but seen too little to be measured", "検出したが直径の評価対象外とした幹"
     ),
     "unmeasured_area_m2": Text("area the result left out, m²", "結果の未計測面積（㎡）"),
+    "unrecorded_echoes": Text(
+        "echoes that no packet holds, not asked for", "波形に記録されていないエコー（対象外）"
+    ),
+    "points_of_no_pulse": Text(
+        "points of no pulse, counted as false", "該当パルスのない点（誤検出に計上）"
+    ),
     "unseen_area_m2": Text("area no points show, m²", "点群に写っていない面積（㎡）"),
 }
 

@@ -22,7 +22,7 @@ from typing import Literal
 
 from processing.core.output_streams import write_every_character
 
-Inputs = Literal["none", "data", "streets", "drives", "sites", "trees"]
+Inputs = Literal["none", "data", "streets", "drives", "sites", "trees", "flights"]
 
 
 @dataclass(frozen=True)
@@ -35,7 +35,8 @@ class AccuracyTable:
         Below ``processing.laboratory``.
     inputs : str
         What it is told of the data: nothing; the whole folder; streets behind ``--samples``;
-        streets as they are; sites of earthwork; streets, and trees scanned by themselves.
+        streets as they are; sites of earthwork; streets, and trees scanned by themselves; flights
+        with waveforms.
     takes_page : bool
         Whether it writes into the page itself; the others are printed.
     paints : bool
@@ -68,6 +69,8 @@ TABLES = {
     "trees": AccuracyTable("accuracy.road.trees", "trees"),
     "signs": AccuracyTable("accuracy.road.signs", "streets"),
     "poles": AccuracyTable("accuracy.road.poles", "streets"),
+    "waveform-echoes": AccuracyTable("accuracy.waveform_echoes", "flights", takes_page=False),
+    "waveform-estimates": AccuracyTable("accuracy.waveform_estimates", "flights", takes_page=False),
     "labels": AccuracyTable("accuracy.road.labels_against_tools", "streets"),
 }
 """By name, in the order in which they are made."""
@@ -114,6 +117,8 @@ def _inputs(inputs: Inputs, data: Path) -> Iterator[str]:
         yield str(data)
     elif inputs == "drives":
         yield from streets
+    elif inputs == "flights":
+        yield from (str(one.parents[1]) for one in sorted(data.glob("**/truth/beams.npz")))
     elif inputs == "sites":
         yield from ("--samples", *map(str, known_recordings(data, "earthwork")))
     elif inputs in ("streets", "trees"):

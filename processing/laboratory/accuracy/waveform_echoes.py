@@ -23,7 +23,6 @@ from numpy.typing import NDArray
 from processing.core.arrays import Floats, Integers
 from processing.core.monitor import SilentMonitor
 from processing.core.output_streams import write_every_character
-from processing.laboratory.accuracy.echo_scores import EchoScore, TrueEchoes, echo_score
 from processing.laboratory.progress_lines import say
 from processing.laboratory.seed_ranges import seeds_of
 from processing.laboratory.simulate.airborne.flight_scene import FLIGHT_STYLES
@@ -33,14 +32,12 @@ from processing.laboratory.simulate.requests import FlightRequest
 from processing.methods.waveforms.decomposition import Digitiser, decompose
 from processing.methods.waveforms.pulse_file import read_pulse
 from processing.methods.waveforms.system_pulse import noise_of, own_pulse, system_pulse
+from processing.scoring.waveforms.echo_scores import EchoScore, TrueEchoes, echo_score
+from processing.scoring.waveforms.flight_scores import HALF_LIGHT_M_NS, recorded_echoes
 
 _LENGTH_M = 60.0
 _MOST = 6000
 """Packets of each flight, drawn by chance: some thousand echoes of every kind in all."""
-
-_HALF_LIGHT_M_NS = 0.149896229
-_BEFORE_NS, _BEHIND_NS = 2.0, 8.0
-"""An echo nearer to its packet's ends is not wholly recorded."""
 
 
 class _Packets(NamedTuple):
@@ -90,7 +87,7 @@ def score_flight(folder: Path, pulse: str) -> EchoScore:
         times_ns, amplitudes = read_pulse(folder / "in" / "system_pulse.csv")
         shape = system_pulse(times_ns / packets.digitiser.interval_ns, amplitudes)
     echoes = decompose(samples, lengths, shape, noise, packets.digitiser)
-    found_m = packets.first_m[echoes.row] + echoes.time_ns * _HALF_LIGHT_M_NS
+    found_m = packets.first_m[echoes.row] + echoes.time_ns * HALF_LIGHT_M_NS
     order = np.lexsort((found_m, packets.beam[echoes.row]))
     pulses = packets.beam[echoes.row][order].astype(np.int64)
     return echo_score(_true_echoes(beams, packets), pulses, found_m[order])
@@ -109,21 +106,15 @@ def _packets(folder: Path) -> _Packets:
     begin = np.asarray(cloud.wavepacket_offset, np.int64)[owners]
     data = np.ascontiguousarray(raw[begin[:, None] + np.arange(size)])
     samples = data.view("<u1" if bits == 8 else "<u2").astype(np.float32)
-    first_m = truth["range_m"][owners] - truth["loc_ps"][owners] / 1000.0 * _HALF_LIGHT_M_NS
+    first_m = truth["range_m"][owners] - truth["loc_ps"][owners] / 1000.0 * HALF_LIGHT_M_NS
     digitiser = Digitiser(interval_ns, 2.0**bits - 1)
     return _Packets(samples, truth["beam"][owners].astype(np.int64), first_m, digitiser)
 
 
 def _true_echoes(beams: np.lib.npyio.NpzFile, packets: _Packets) -> TrueEchoes:
     pulse, range_m = beams["echo_beam"].astype(np.int64), beams["echo_range"]
-    span_m = packets.samples.shape[1] * packets.digitiser.interval_ns * _HALF_LIGHT_M_NS
-    recorded = np.zeros(pulse.size, np.bool_)
-    for beam, first in zip(packets.beam, packets.first_m, strict=True):
-        here = slice(*np.searchsorted(pulse, [beam, beam + 1]))
-        after = range_m[here] - first
-        recorded[here] |= (after > _BEFORE_NS * _HALF_LIGHT_M_NS) & (
-            after < span_m - _BEHIND_NS * _HALF_LIGHT_M_NS
-        )
+    span_m = packets.samples.shape[1] * packets.digitiser.interval_ns * HALF_LIGHT_M_NS
+    recorded = recorded_echoes(pulse, range_m, packets.beam, packets.first_m, span_m)
     sigma = float(beams["noise_sigma"].ravel()[0])
     return TrueEchoes(pulse, range_m, beams["echo_spread"], beams["echo_energy"] / sigma, recorded)
 

@@ -23,12 +23,6 @@ from numpy.typing import NDArray
 from processing.core.arrays import Floats, Integers
 from processing.core.monitor import SilentMonitor
 from processing.core.output_streams import write_every_character
-from processing.laboratory.accuracy.wave_errors import (
-    WaveError,
-    best_constant,
-    constant_error,
-    wave_error,
-)
 from processing.laboratory.progress_lines import say
 from processing.laboratory.seed_ranges import seeds_of
 from processing.laboratory.simulate.airborne.flight_scene import FLIGHT_STYLES
@@ -42,6 +36,12 @@ from processing.methods.waveforms.pulse_file import read_pulse
 from processing.project.importing.import_request import ImportRequest
 from processing.project.importing.importing import import_drives
 from processing.recording.drive import Drive
+from processing.scoring.waveforms.wave_errors import (
+    WaveError,
+    best_constant,
+    constant_error,
+    wave_error,
+)
 from processing.tools.waveform_estimate import WaveformEstimateParameters, make_waveforms
 
 _LENGTH_M = 60.0

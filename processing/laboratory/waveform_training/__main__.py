@@ -17,7 +17,6 @@ from pathlib import Path
 import numpy as np
 
 from processing.core.output_streams import write_every_character
-from processing.laboratory.accuracy.wave_errors import wave_error
 from processing.laboratory.progress_lines import say
 from processing.laboratory.seed_ranges import seeds_of
 from processing.laboratory.waveform_training.drawn_flights import examples_of_seed
@@ -27,6 +26,7 @@ from processing.methods.waveforms.estimation.response_network import (
     ResponseNetwork,
     read_network,
 )
+from processing.scoring.waveforms.wave_errors import wave_error
 
 _WIDTHS = {"all": 24, "positions": 16}
 """Maps of the layers: positions tell less."""

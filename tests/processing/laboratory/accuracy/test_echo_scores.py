@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from processing.laboratory.accuracy.echo_scores import TrueEchoes, echo_score
+from processing.scoring.waveforms.echo_scores import TrueEchoes, echo_score
 
 
 def test_echoes_are_scored_by_how_near_the_next_is() -> None:

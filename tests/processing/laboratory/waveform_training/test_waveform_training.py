@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 
 from processing.core.monitor import SilentMonitor
-from processing.laboratory.accuracy.wave_errors import best_constant, constant_error, wave_error
 from processing.laboratory.simulate.airborne.flight_sensors import FLIGHT_SENSORS
 from processing.laboratory.simulate.flights import simulate_flight
 from processing.laboratory.simulate.requests import FlightRequest
@@ -20,6 +19,7 @@ from processing.methods.waveforms.estimation.response_network import (
     read_network,
     shipped_network,
 )
+from processing.scoring.waveforms.wave_errors import best_constant, constant_error, wave_error
 from resources import path_of
 
 MOST = 150

@@ -37,14 +37,19 @@ class WaveError:
     of_class : mapping of int to float
     factor : float
         What the estimate was multiplied by.
+    each : (n,) float64
+        Of every waveform.
     """
 
     mean: float
     of_class: Mapping[int, float]
     factor: float
+    each: Floats
 
 
-def wave_error(estimated: AnyFloats, true: AnyFloats, label: NDArray[np.uint8]) -> WaveError:
+def wave_error(
+    estimated: AnyFloats, true: AnyFloats, label: NDArray[np.uint8], *, factor: float | None = None
+) -> WaveError:
     """Of waveforms, aligned within half a sample, brightness by the one factor that fits best.
 
     Parameters
@@ -52,12 +57,16 @@ def wave_error(estimated: AnyFloats, true: AnyFloats, label: NDArray[np.uint8]) 
     estimated, true : (n, SAMPLES) float
         In any unit, and in counts.
     label : (n,) uint8
+    factor : float, optional
+        Given, it is used and none is fitted.
     """
     moved = [_moved(estimated, shift) for shift in _SHIFTS]
+    if factor is not None:
+        return _error(moved, true, label, factor)
     heights = np.maximum(estimated.max(axis=1), 1e-9)
-    factor = float(np.median(true.max(axis=1) / heights))
+    told = float(np.median(true.max(axis=1) / heights))
     few = moved[:: len(moved) // 2]
-    best = min((_error(few, true, label, factor * one) for one in _COARSE), key=_mean_of)
+    best = min((_error(few, true, label, told * one) for one in _COARSE), key=_mean_of)
     return min((_error(moved, true, label, best.factor * one) for one in _FINE), key=_mean_of)
 
 
@@ -82,7 +91,7 @@ def _error(
 ) -> WaveError:
     each = np.min([np.abs(factor * one - true).mean(axis=1) for one in moved], axis=0)
     of_class = {int(one): float(each[label == one].mean()) for one in np.unique(label)}
-    return WaveError(float(np.mean(list(of_class.values()))), of_class, factor)
+    return WaveError(float(np.mean(list(of_class.values()))), of_class, factor, np.asarray(each))
 
 
 def _mean_of(error: WaveError) -> float:

@@ -26,7 +26,7 @@ _LEAST_REACH_M = 0.15
 _LEVEL_M = 0.03
 """Spread of what a compact echo comes from, standard deviation."""
 
-_SURE = 20.0
+SURE = 20.0
 """Standard deviations of the noise of echoes whose ranges are compared: below, noise alone moves
 them by a centimetre."""
 
@@ -124,7 +124,7 @@ def _score_pulse(truth: TrueEchoes, true: slice, found_m: Floats, score: EchoSco
             score.lone += 1
             if (off < APART_M).sum() > 1:
                 score.split += 1
-            elif height[one] > _SURE:
+            elif height[one] > SURE:
                 error = float(found_m[order[0]] - ranges[one])
                 score.errors_m.append(error)
                 if spread[one] < _LEVEL_M:

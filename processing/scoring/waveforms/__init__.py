@@ -1,0 +1,1 @@
+"""Scores of echoes and waveforms of flights."""
