@@ -6,6 +6,7 @@ import dataclasses
 import struct
 from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
+from datetime import date
 from pathlib import Path
 from typing import Any, BinaryIO
 
@@ -51,6 +52,10 @@ class WaveformLas:
         Of all packets.
     is_adjusted_standard : bool
         Whether times are GPS seconds less 1e9.
+    system, software : str
+        What measured, and what wrote: 32 bytes of ASCII at most.
+    day : date or None
+        The header's; None for today.
     """
 
     crs: str
@@ -58,6 +63,9 @@ class WaveformLas:
     offset: Vector3
     descriptor: WaveformDescriptor
     is_adjusted_standard: bool = True
+    system: str = "OTHER"
+    software: str = "Zuka"
+    day: date | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,28 +120,61 @@ def write_waveform_las(
     NoSpace, InUse, Cancelled
         Nothing is left behind.
     """
-    frame = _frame_of(description)
-    written = _Written()
     with (
         write_safely(path, never=never) as points,
         write_safely(path.with_suffix(PACKETS_ENDING), never=never) as packets,
         points.open("wb+") as file,
         packets.open("wb+") as beside,
     ):
-        beside.write(_packets_head(0))
-        file.write(frame.start(RECORD_SIZES[_FORMAT], None))
+        made = WaveformLasFile(file, beside, description)
         for some in records:
             monitor.check()
-            first = beside.tell()
-            width = f"<u{description.descriptor.bits // 8}"
-            beside.write(np.ascontiguousarray(some.samples, width).data)
-            own = _records_with_packets(some, first, description.descriptor)
-            written.add(own)
-            file.write(own.data)
-        length = beside.tell() - len(_packets_head(0))
-        beside.seek(0)
-        beside.write(_packets_head(length))
-        written.note(file, frame)
+            made.write(some)
+        made.finish()
+
+
+class WaveformLasFile:
+    """Points of format 9 and their packets, written some at a time; nothing else writes them.
+
+    Parameters
+    ----------
+    points, packets : BinaryIO
+        Empty files open for writing, which can be gone back in; they are not closed.
+    description : WaveformLas
+    """
+
+    def __init__(self, points: BinaryIO, packets: BinaryIO, description: WaveformLas) -> None:
+        self._points, self._packets = points, packets
+        self._descriptor = description.descriptor
+        self._frame, self._written = _frame_of(description), _Written()
+        self._packets.write(_packets_head(0))
+        self._points.write(self._frame.start(RECORD_SIZES[_FORMAT], None))
+
+    def write(self, some: WaveformRecords) -> None:
+        """Add points and packets behind those that are there.
+
+        Raises
+        ------
+        OSError
+        """
+        first = self._packets.tell()
+        width = f"<u{self._descriptor.bits // 8}"
+        self._packets.write(np.ascontiguousarray(some.samples, width).data)
+        own = _records_with_packets(some, first, self._descriptor)
+        self._written.add(own)
+        self._points.write(own.data)
+
+    def finish(self) -> None:
+        """Note in both heads what was written.
+
+        Raises
+        ------
+        OSError
+        """
+        length = self._packets.tell() - len(_packets_head(0))
+        self._packets.seek(0)
+        self._packets.write(_packets_head(length))
+        self._written.note(self._points, self._frame)
 
 
 def packets_beside(source: Path, kept: Path | None = None) -> Path | None:
@@ -223,6 +264,11 @@ def _frame_of(description: WaveformLas) -> LasFrame:
     )
     head = bytearray(frame.head)
     head[6] |= _EXTERNAL_BIT
+    names = (description.system.encode("ascii"), description.software.encode("ascii"))
+    struct.pack_into("<32s32s", head, 26, *names)
+    if description.day is not None:
+        day = description.day
+        struct.pack_into("<HH", head, 90, day.timetuple().tm_yday, day.year)
     one = description.descriptor
     described = struct.pack(
         "<BBIIdd", one.bits, 0, one.samples, one.spacing_ps, one.gain, one.offset

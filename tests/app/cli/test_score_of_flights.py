@@ -49,7 +49,7 @@ def test_true_echoes_are_all_found_wherever_they_stand_in_the_file(
         shares = {name: one["share"] for name, one in told["shares"].items()}
         assert shares["alone"] == 1.0
         assert shares["false"] == 0.0
-        assert shares["split"] == 0.0
+        assert shares["split"] < 0.005
         assert told["errors"]["range"]["mean"] == pytest.approx(0.005, abs=0.001)
         assert told["left_out"]["points_of_no_pulse"] == 0
     assert run_in_terminal(["score", "waveform-decompose", str(points), str(flight)]) == DONE

@@ -2,52 +2,69 @@
 
 from __future__ import annotations
 
-import struct
 import zipfile
 from collections.abc import Mapping
 from contextlib import ExitStack
 from pathlib import Path
 from types import TracebackType
 
-import laspy
 import numpy as np
-from laspy.vlrs.known import WaveformPacketStruct, WaveformPacketVlr
 from numpy.typing import ArrayLike, NDArray
 
-from processing.formats.points.reported_writes import ReportedWrites, report_write_failures
+from processing.formats.points.waveform_output import (
+    PACKETS_ENDING,
+    WaveformLas,
+    WaveformLasFile,
+    WaveformRecords,
+)
 from processing.laboratory.simulate.airborne.flight_sensors import FlightSensor
 from processing.laboratory.simulate.airborne.landscapes import Floats
 from processing.laboratory.simulate.scanning.delivered_files import (
+    CRS_NAME,
+    SCALE_M,
+    SOFTWARE,
+    SURVEYED,
+    SYSTEM,
     ArrayFile,
     DeliveredPoints,
-    delivered_header,
-    point_records,
 )
+from processing.recording.waveform_packets.descriptors import WaveformDescriptor
 
-_PACKETS_BEGIN = 60
-"""Bytes of the record's head that a file of packets begins with, LAS 1.4, table 24."""
-
-_PACKET_RECORD, _FIRST_DESCRIPTOR = 65535, 100
-_SCAN_ANGLE_UNIT_DEG = 0.006
+_PS_IN_NS = 1000
 
 
 class WaveformFile:
-    """A LAS 1.4 file of point format 9 and its ``.wdp``, written chunk by chunk."""
+    """A LAS 1.4 file of point format 9 and its ``.wdp``, written chunk by chunk.
+
+    Parameters
+    ----------
+    offset : (3,) float64
+        Near the points, m; coordinates are whole millimetres from it.
+    """
 
     def __init__(self, path: Path, offset: Floats, sensor: FlightSensor) -> None:
-        self._header, self._bits = delivered_header(9, offset), sensor.bits
-        self._header.global_encoding.waveform_data_packets_external = True
-        described = WaveformPacketStruct(
-            sensor.bits, 0, sensor.samples, round(sensor.interval_ns * 1000), 1.0, -sensor.baseline
+        self._offset, self._bits = np.floor(offset), sensor.bits
+        east, north, height = (float(one) for one in self._offset)
+        description = WaveformLas(
+            CRS_NAME,
+            (SCALE_M,) * 3,
+            (east, north, height),
+            WaveformDescriptor(
+                sensor.bits,
+                sensor.samples,
+                round(sensor.interval_ns * _PS_IN_NS),
+                1.0,
+                -sensor.baseline,
+            ),
+            system=SYSTEM,
+            software=SOFTWARE,
+            day=SURVEYED,
         )
-        descriptor = WaveformPacketVlr(_FIRST_DESCRIPTOR)
-        descriptor.parsed_record = described
-        self._header.vlrs.append(descriptor)
-        self._file = ReportedWrites(path.open("wb"))
-        self._writer = laspy.LasWriter(self._file, self._header, do_compress=False)
-        self._packets = path.with_suffix(".wdp").open("wb")
-        self._packets.write(_packets_head(0))
-        self._at = _PACKETS_BEGIN
+        with ExitStack() as opening:
+            points = opening.enter_context(path.open("wb+"))
+            packets = opening.enter_context(path.with_suffix(PACKETS_ENDING).open("wb+"))
+            self._file = WaveformLasFile(points, packets, description)
+            self._open = opening.pop_all()
 
     def write(
         self,
@@ -68,18 +85,27 @@ class WaveformFile:
             Whole counts.
         """
         location, direction, angle_deg = ray
-        size = samples.shape[1] * self._bits // 8
-        record = point_records(points, self._header)
-        record["scan_angle"] = np.rint(angle_deg / _SCAN_ANGLE_UNIT_DEG).astype(np.int16)
-        record["wavepacket_index"] = np.ones(packet.size, np.uint8)
-        record["wavepacket_offset"] = (self._at + packet * size).astype(np.uint64)
-        record["wavepacket_size"] = np.full(packet.size, size, np.uint32)
-        record["return_point_wave_location"] = location.astype(np.float32)
-        record["x_t"], record["y_t"], record["z_t"] = direction.astype(np.float32).T
-        with report_write_failures(self._file):
-            self._writer.write_points(record)
-        self._packets.write(samples.astype("<u1" if self._bits == 8 else "<u2").tobytes())
-        self._at += size * len(samples)
+        nothing = np.zeros(packet.size, np.uint8)
+        columns = {
+            "xyz": np.rint((points.xyz - self._offset) / SCALE_M).astype(np.int32),
+            "intensity": points.intensity,
+            "return_number": points.number,
+            "number_of_returns": points.count,
+            "classification": nothing,
+            "user_data": nothing,
+            "scanner": np.full(packet.size, points.source_id, np.uint16),
+            "scan_angle_deg": angle_deg,
+            "time": points.time_s,
+        }
+        self._file.write(
+            WaveformRecords(
+                columns,
+                packet,
+                location.astype(np.float32),
+                direction.astype(np.float32),
+                samples.astype(f"<u{self._bits // 8}"),
+            )
+        )
 
     def __enter__(self) -> WaveformFile:
         return self
@@ -90,17 +116,9 @@ class WaveformFile:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        if error is None:
-            with report_write_failures(self._file):
-                self._writer.close()
-            self._packets.seek(0)
-            self._packets.write(_packets_head(self._at - _PACKETS_BEGIN))
-        self._file.close()
-        self._packets.close()
-
-
-def _packets_head(size: int) -> bytes:
-    return struct.pack("<H16sHQ32s", 0, b"LASF_Spec", _PACKET_RECORD, size, b"Waveform packets")
+        with self._open:
+            if error is None:
+                self._file.finish()
 
 
 Columns = Mapping[str, tuple[type[np.generic], int]]

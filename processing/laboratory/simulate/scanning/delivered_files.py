@@ -20,8 +20,8 @@ CRS_NAME = "EPSG:6677"
 """JGD2011, plane rectangular coordinates, zone IX; easting first."""
 
 SCALE_M = 0.001
-_SURVEYED = date(2024, 4, 1)  # in the header, so that the same seed gives the same bytes
-_SOFTWARE = "Zuka simulation"
+SURVEYED = date(2024, 4, 1)  # in the header, so that the same seed gives the same bytes
+SOFTWARE, SYSTEM = "Zuka simulation", "SIMULATION"
 
 
 @dataclass(frozen=True)
@@ -58,8 +58,8 @@ def delivered_header(point_format: int, offset: Floats) -> laspy.LasHeader:
     """
     header = laspy.LasHeader(point_format=point_format, version="1.4")
     header.scales, header.offsets = np.full(3, SCALE_M), np.floor(offset)
-    header.generating_software, header.creation_date = _SOFTWARE, _SURVEYED
-    header.system_identifier = "SIMULATION"
+    header.generating_software, header.creation_date = SOFTWARE, SURVEYED
+    header.system_identifier = SYSTEM
     header.global_encoding.gps_time_type = laspy.header.GpsTimeType.STANDARD
     header.add_crs(CRS.from_user_input(CRS_NAME))
     return header
