@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from contextlib import ExitStack
 from pathlib import Path
 from types import TracebackType
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -86,7 +87,7 @@ class WaveformFile:
         """
         location, direction, angle_deg = ray
         nothing = np.zeros(packet.size, np.uint8)
-        columns = {
+        columns: dict[str, NDArray[Any]] = {  # Any: they differ in type
             "xyz": np.rint((points.xyz - self._offset) / SCALE_M).astype(np.int32),
             "intensity": points.intensity,
             "return_number": points.number,
