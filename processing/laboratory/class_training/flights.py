@@ -60,6 +60,9 @@ _PLANS = {
     False: ForestPlan(BARE_ALONE, ForestSize(30, 24, 0.2), BARE_AGAIN, ForestSize(25, 24, 0.2)),
 }
 
+_LEARNT = "7000-7020,7030-7034"
+"""Of which the shipped models were made."""
+
 _CELLS = 700
 """Of each class and flight that are learnt from."""
 
@@ -85,7 +88,7 @@ class _Cells:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Make the models, or only score those that are there."""
     parser = argparse.ArgumentParser(prog="python -m processing.laboratory.class_training.flights")
-    parser.add_argument("--seeds", default="7000-7029", help="flights that are learnt from")
+    parser.add_argument("--seeds", default=_LEARNT, help="flights that are learnt from")
     parser.add_argument("--check", default="7100-7104", help="flights that are only scored")
     parser.add_argument("--without", default="", help="a scanner that isn't learnt from")
     parser.add_argument("--folders", type=Path, nargs="*", default=[])

@@ -7,9 +7,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.arrays import Floats
 from processing.core.monitor import Monitor
 from processing.methods.classes.aerial_cells import AerialPoints, aerial_cells
 from processing.methods.classes.features import ClassCells
+from processing.methods.classes.ground_strips import strip_columns
 from processing.methods.classes.shape_kernels import add_rows_kernel
 from processing.methods.noise.features.cell_kernels import mean_around_kernel
 
@@ -28,6 +30,7 @@ def flight_cells(
     points: AerialPoints,
     returns: NDArray[np.float32],
     measures: NDArray[np.float32] | None,
+    ranks: Floats,
     cell_m: float,
     monitor: Monitor,
 ) -> ClassCells:
@@ -38,6 +41,8 @@ def flight_cells(
     returns : (n, RETURN_COLUMNS) float32
     measures : (n, RETURN_MEASURES) float32 or None
         As :mod:`processing.methods.waveforms.return_measures` has them; None without waveforms.
+    ranks : (RANKS,) float64
+        Brightness of the flight's ground, rising, in even steps of its order.
     cell_m : float
         How far apart points lie.
     """
@@ -47,9 +52,7 @@ def flight_cells(
     if measures is not None:
         columns += [measures, (measures[:, 0] * is_ground)[:, None]]
     values = np.ascontiguousarray(np.hstack(columns), np.float32)
-    sums = np.zeros((len(cells.rows), values.shape[1] + 1))
-    add_rows_kernel(cells.cell_of, values, sums)
-    own = (sums[:, :-1] / np.maximum(sums[:, -1:], 1)).astype(np.float32)
+    own = _means(cells.cell_of, values)
     parts = [own, *(_around(cells, own, number) for number in _AROUND)]
     lit = [(4, 5)] if measures is None else [(4, 5), (4, own.shape[1] - 1)]
     wide = _around(cells, own, _WIDER)
@@ -58,7 +61,22 @@ def flight_cells(
         for ground, light in lit
         for part in parts
     ]
-    return replace(cells, rows=np.hstack([cells.rows, *parts, np.column_stack(contrast)]))
+    tones = bright if measures is None else np.ascontiguousarray(measures[:, 0])
+    is_told = points.is_ground & points.is_only
+    strips = strip_columns(points.local[:, :2], tones, is_told, ranks, cell_m, monitor)
+    return replace(
+        cells,
+        rows=np.hstack(
+            [cells.rows, *parts, np.column_stack(contrast), _means(cells.cell_of, strips)]
+        ),
+    )
+
+
+def _means(cell_of: NDArray[np.int32], values: NDArray[np.float32]) -> NDArray[np.float32]:
+    """(c, k) means of points' values in each of the finest cells."""
+    sums = np.zeros((int(cell_of.max()) + 1, values.shape[1] + 1))
+    add_rows_kernel(cell_of, np.ascontiguousarray(values), sums)
+    return (sums[:, :-1] / np.maximum(sums[:, -1:], 1)).astype(np.float32)
 
 
 def _of_ground(part: NDArray[np.float32], ground: int, light: int) -> NDArray[np.float32]:

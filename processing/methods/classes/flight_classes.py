@@ -20,7 +20,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.core.arrays import Integers
+from processing.core.arrays import Floats, Integers
 from processing.core.errors import report_as_user_error
 from processing.core.monitor import Monitor, PartMonitor
 from processing.methods.classes.aerial_classes import Strips
@@ -28,6 +28,7 @@ from processing.methods.classes.class_models import flight_models
 from processing.methods.classes.drive_classes import FoundClasses, shares_of_cells
 from processing.methods.classes.features import REACH, ClassCells
 from processing.methods.classes.flight_cells import RETURN_COLUMNS, flight_cells
+from processing.methods.classes.ground_strips import RANKS
 from processing.methods.ground.drive_ground import adaptive_ground
 from processing.methods.ground.drive_points import DrivePoints
 from processing.methods.ground.filters.adaptive import GroundAssumptions
@@ -79,10 +80,15 @@ class FlightPart:
 
 @dataclass(frozen=True)
 class _Light:
-    """Against what a drive's returns are told: median intensity of its ground, and its pulse."""
+    """Against what a drive's returns are told.
+
+    ``intensity``: median of its ground; ``pulse``: its own; ``tones``: brightness of some of its
+    ground's returns as :class:`FlightReturns` tells it, log2 over the median.
+    """
 
     intensity: float
     pulse: PulseReference | None
+    tones: Floats
 
 
 class FlightReturns:
@@ -112,6 +118,8 @@ class FlightReturns:
         self._waveforms = [waveforms_of(one) if uses_waveforms else None for one in drives]
         self._lights = [self._light_of(number) for number in range(len(drives))]
         self.has_waveforms = any(one.pulse is not None for one in self._lights)
+        tones = np.concatenate([one.tones for one in self._lights])
+        self._ranks = np.quantile(tones, np.linspace(0.0, 1.0, RANKS))
 
     def parts(self, cell_m: float, monitor: Monitor) -> Iterator[FlightPart]:
         """Cells, a part of space at a time; noise is left out."""
@@ -132,7 +140,9 @@ class FlightReturns:
                 returns, measures = self._told(numbers)
                 points = strips.points(numbers, xyz)
                 yield FlightPart(
-                    numbers, own, flight_cells(points, returns, measures, cell_m, rest)
+                    numbers,
+                    own,
+                    flight_cells(points, returns, measures, self._ranks, cell_m, rest),
                 )
             done += part.own.size
 
@@ -142,12 +152,17 @@ class FlightReturns:
         xyz = drive.xyz(local)
         known = self.strips.points(local + int(self.strips.starts[number]), xyz)
         bare = known.is_ground & known.is_only
-        intensity = np.asarray(drive.columns["intensity"][local], np.float64)
-        light = float(np.median(intensity[bare] if bare.any() else intensity))
+        bare = bare if bare.any() else np.ones_like(bare)
+        intensity = np.asarray(drive.columns["intensity"][local], np.float64)[bare]
+        light = float(np.median(intensity))
+        tones = _doublings(intensity, light)
         if waveforms is None:
-            return _Light(light, None)
+            return _Light(light, None, tones)
         raw = raw_measures(waveforms, local)
-        return _Light(light, pulse_reference(raw, known.is_only, known.is_ground))
+        pulse = pulse_reference(raw, known.is_only, known.is_ground)
+        if pulse is not None:
+            tones = return_measures(raw[bare], pulse)[:, 0].astype(np.float64)
+        return _Light(light, pulse, tones)
 
     def _told(self, numbers: Integers) -> tuple[NDArray[np.float32], NDArray[np.float32] | None]:
         """What the returns of points say, and their waveforms."""
@@ -157,8 +172,8 @@ class FlightReturns:
         for number, own, local in self.strips.by_drive(numbers):
             drive, light = self._drives[number], self._lights[number]
             columns = drive.columns
-            bright = np.asarray(columns["intensity"][local], np.float64) + 1
-            returns[own, 0] = np.clip(np.log2(bright / (light.intensity + 1)), -_STEPS, _STEPS)
+            bright = np.asarray(columns["intensity"][local], np.float64)
+            returns[own, 0] = _doublings(bright, light.intensity)
             returns[own, 1:] = 1.0
             if columns.has("return_number") and columns.has("number_of_returns"):
                 for at, name in ((1, "return_number"), (2, "number_of_returns")):
@@ -168,6 +183,12 @@ class FlightReturns:
                 raw = raw_measures(waveforms, local)
                 measures[own] = return_measures(raw, light.pulse)
         return returns, measures if self.has_waveforms else None
+
+
+def _doublings(intensity: Floats, light: float) -> Floats:
+    """log2 of intensities over that of the ground."""
+    found: Floats = np.clip(np.log2((intensity + 1) / (light + 1)), -_STEPS, _STEPS)
+    return found
 
 
 def classify_flight(

@@ -38,7 +38,18 @@ _ROAD_CLEAR_M = 1.5
 """No stem stands nearer to a road's edge."""
 
 _GRASS, _SOIL, _GRAVEL = (0.35, 0.6), (0.15, 0.35), (0.25, 0.4)
-_ASPHALT = (0.08, 0.22)
+_ASPHALT, _CONCRETE = (0.08, 0.22), (0.28, 0.45)
+_PAVED = ((_ASPHALT, 0.8), (_CONCRETE, 0.1), (_GRAVEL, 0.1))
+"""What a road is made of, and how often."""
+
+_PATCH_M = (3.0, 12.0)
+"""Sizes of patches of soil or gravel in the land, from one landscape to another."""
+
+_FIELD_M = (20.0, 60.0)
+"""Sides of fields, each of one tone with straight edges as roads have."""
+
+_WITH_FIELDS, _IS_FIELD = 0.5, 0.5
+"""Share of landscapes with fields, and of their land that fields take."""
 _PAINT = 0.6
 _ROOF = (0.1, 0.6)
 """Reflectances in the near infrared: roofing has any, so that no echo alone tells a roof."""
@@ -103,7 +114,8 @@ def flight_scene(style: str, seed: int, extent_m: float) -> FlightScene:
     drawn = FLIGHT_STYLES[style]
     random = chance(seed, "flight", style)
     land = landscape_of(drawn.terrain, seed, extent_m)
-    distance = _add_roads(land, random, int(random.integers(*drawn.roads, endpoint=True)))
+    count = int(random.integers(*drawn.roads, endpoint=True))
+    distance, which = _add_roads(land, random, count)
     road = distance < 0
     free = ~np.isfinite(land.solid) & ~land.water & (distance > _ROAD_CLEAR_M)
     parts = []
@@ -114,7 +126,7 @@ def flight_scene(style: str, seed: int, extent_m: float) -> FlightScene:
     surface = np.where(np.isfinite(land.solid), land.solid, land.ground).astype(np.float32)
     code = np.where(road, ROAD, GROUND).astype(np.uint8)
     code[np.isfinite(land.solid)] = land.solid_code[np.isfinite(land.solid)]
-    reflectance = _reflectances(land, random, code)
+    reflectance = _reflectances(land, random, code, which)
     high = [float(surface.max())]
     high += [float(one.max()) for one in (things.rods[:, [2, 5]], things.crowns[:, 3]) if one.size]
     starts, numbers = _over_squares(things, surface.shape)
@@ -138,21 +150,24 @@ def _line(land: Landscape, random: Generator, free: NDArray[np.bool_], style: Li
     return power_line_rods(land.ground, random, style, through)[0]
 
 
-def _add_roads(land: Landscape, random: Generator, count: int) -> Floats:
-    """Level roads into the land; gives the distance from the nearest one's edge, m."""
+def _add_roads(land: Landscape, random: Generator, count: int) -> tuple[Floats, NDArray[np.int64]]:
+    """Level roads into the land; gives the distance from the nearest one's edge, m, and which."""
     rows, columns = land.ground.shape
     centres = CELL_M * (np.arange(rows) + 0.5)
     north, east = np.meshgrid(centres, CELL_M * (np.arange(columns) + 0.5), indexing="ij")
     extent_m = rows * CELL_M
     nearest = np.full(land.ground.shape, np.inf)
-    for _ in range(count):
+    which = np.zeros(land.ground.shape, np.int64)
+    for number in range(count):
         turn, wide = random.uniform(0, np.pi), random.uniform(3.5, 9.0)
         middle = random.uniform(0.25, 0.75, 2) * extent_m
         off = (east - middle[0]) * np.cos(turn) + (north - middle[1]) * np.sin(turn)
         along = (north - middle[1]) * np.cos(turn) - (east - middle[0]) * np.sin(turn)
         bend, wave = random.uniform(0, 10.0), random.uniform(80.0, 300.0)
         off = off + bend * np.sin(2 * np.pi * along / wave + random.uniform(0, 6.3))
-        nearest = np.minimum(nearest, np.abs(off) - wide / 2)
+        edge = np.abs(off) - wide / 2
+        which[edge < nearest] = number
+        nearest = np.minimum(nearest, edge)
     level = gaussian_filter(land.ground, _SHOULDER_M / CELL_M)
     near = np.clip(1.0 - nearest / _SHOULDER_M, 0.0, 1.0)
     land.ground += near * (level - land.ground)
@@ -160,7 +175,7 @@ def _add_roads(land: Landscape, random: Generator, count: int) -> Floats:
     land.water[on_road] = False
     land.solid[on_road & (land.solid_code == BUILDING)] = np.nan
     _park(land, random, on_road)
-    return nearest
+    return nearest, which
 
 
 def _park(land: Landscape, random: Generator, on_road: NDArray[np.bool_]) -> None:
@@ -176,15 +191,11 @@ def _park(land: Landscape, random: Generator, on_road: NDArray[np.bool_]) -> Non
 
 
 def _reflectances(
-    land: Landscape, random: Generator, code: NDArray[np.uint8]
+    land: Landscape, random: Generator, code: NDArray[np.uint8], which: NDArray[np.int64]
 ) -> NDArray[np.float32]:
-    """Of each cell: materials in patches, roofs each of its own, grain within."""
+    """Of each cell: land, roads and roofs each of a tone of their own, grain within."""
     shape = code.shape
-    patches = gaussian_filter(random.normal(0, 1, shape), 6.0 / CELL_M)
-    patches /= patches.std() + 1e-9
-    kinds = [random.uniform(*one) for one in (_SOIL, _GRAVEL, _GRASS)]
-    value = np.choose(np.digitize(patches, [-1.0, -0.6]), kinds)
-    value = np.where(code == ROAD, random.uniform(*_ASPHALT), value)
+    value = np.where(code == ROAD, _paved(random, which), _land_tones(random, shape))
     painted = (code == ROAD) & (random.random(shape) < _PAINTED)
     value = np.where(painted, _PAINT, value)
     solid = np.isfinite(land.solid)
@@ -195,6 +206,39 @@ def _reflectances(
     value[land.water] = _WATER
     return np.asarray(value, np.float32)
 
+
+def _paved(random: Generator, which: NDArray[np.int64]) -> Floats:
+    """The tone of the nearest road, each of which is of one material."""
+    shares = [share for _, share in _PAVED]
+    made = random.choice(len(_PAVED), int(which.max()) + 1, p=shares)
+    tones: Floats = np.array([random.uniform(*_PAVED[one][0]) for one in made])[which]
+    return tones
+
+
+def _land_tones(random: Generator, shape: tuple[int, ...]) -> Floats:
+    """Grass with patches of soil and gravel, or one of these with patches; often fields in it."""
+    patches = gaussian_filter(random.normal(0, 1, shape), random.uniform(*_PATCH_M) / CELL_M)
+    patches /= patches.std() + 1e-9
+    kinds = [random.uniform(*one) for one in (_SOIL, _GRAVEL, _GRASS)]
+    if random.random() < _BARE_LAND:
+        random.shuffle(kinds)
+    value: Floats = np.choose(np.digitize(patches, [-1.0, -0.6]), kinds)
+    if random.random() >= _WITH_FIELDS:
+        return value
+    turn, side = random.uniform(0, np.pi), random.uniform(*_FIELD_M, 2)
+    north, east = CELL_M * np.indices(shape)
+    along = (east * np.cos(turn) + north * np.sin(turn)) // side[0]
+    across = (north * np.cos(turn) - east * np.sin(turn)) // side[1]
+    field = (along * 31 + across * 17).astype(np.int64) % _FIELDS
+    tones = np.array([random.uniform(*(_GRASS, _SOIL)[one % 2]) for one in range(_FIELDS)])
+    return np.where((random.random(_FIELDS) < _IS_FIELD)[field], tones[field], value)
+
+
+_FIELDS = 256
+"""Tones of fields before they repeat."""
+
+_BARE_LAND = 0.2
+"""Share of landscapes whose land is mostly of soil or gravel."""
 
 _PAINTED = 0.01
 """Share of a road's cells that bear paint."""
