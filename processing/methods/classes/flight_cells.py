@@ -31,6 +31,7 @@ def flight_cells(
     returns: NDArray[np.float32],
     measures: NDArray[np.float32] | None,
     ranks: Floats,
+    *,
     cell_m: float,
     monitor: Monitor,
 ) -> ClassCells:
@@ -63,7 +64,9 @@ def flight_cells(
     ]
     tones = bright if measures is None else np.ascontiguousarray(measures[:, 0])
     is_told = points.is_ground & points.is_only
-    strips = strip_columns(points.local[:, :2], tones, is_told, ranks, cell_m, monitor)
+    strips = strip_columns(
+        points.local[:, :2], tones, is_told, ranks, cell_m=cell_m, monitor=monitor
+    )
     return replace(
         cells,
         rows=np.hstack(

@@ -139,11 +139,10 @@ class FlightReturns:
                 numbers, xyz = numbers[asked], xyz[asked]
                 returns, measures = self._told(numbers)
                 points = strips.points(numbers, xyz)
-                yield FlightPart(
-                    numbers,
-                    own,
-                    flight_cells(points, returns, measures, self._ranks, cell_m, rest),
+                cells = flight_cells(
+                    points, returns, measures, self._ranks, cell_m=cell_m, monitor=rest
                 )
+                yield FlightPart(numbers, own, cells)
             done += part.own.size
 
     def _light_of(self, number: int) -> _Light:

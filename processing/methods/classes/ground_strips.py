@@ -53,6 +53,7 @@ def strip_columns(
     tones: NDArray[np.float32],
     is_told: NDArray[np.bool_],
     ranks: Floats,
+    *,
     cell_m: float,
     monitor: Monitor,
 ) -> NDArray[np.float32]:
@@ -81,12 +82,8 @@ def strip_columns(
     shape = tuple((place.max(axis=0) + 1).tolist())
     flat = place[:, 0] * shape[1] + place[:, 1]
     used, where = np.unique(flat, return_inverse=True)
-    count = np.bincount(where[is_told], minlength=used.size)
-    total = np.bincount(where[is_told], tones[is_told], minlength=used.size)
-    plan = np.full(shape, np.nan, np.float32)
-    plan.reshape(-1)[used] = np.where(count > 0, total / np.maximum(count, 1), np.nan)
-    smooth = np.empty_like(plan)
-    _middle_kernel(plan, smooth)
+    means = _mean_tones(where, tones, is_told)
+    smooth = _smoothed_plan(shape, used, means)
     found = np.zeros((used.size, STRIP_COLUMNS), np.float32)
     own = smooth.reshape(-1)[used]
     known = np.isfinite(own)
@@ -109,6 +106,28 @@ def strip_columns(
         first = 2 + number * _TOLD
         found[known, first : first + _TOLD] = part
     return np.asarray(found[where], np.float32)
+
+
+def _mean_tones(
+    where: Integers, tones: NDArray[np.float32], is_told: NDArray[np.bool_]
+) -> NDArray[np.float32]:
+    """Mean tone of the points that tell one, for each place from 0 up; NaN where none does."""
+    places = int(where.max()) + 1
+    count = np.bincount(where[is_told], minlength=places)
+    total = np.bincount(where[is_told], tones[is_told], minlength=places)
+    means = np.where(count > 0, total / np.maximum(count, 1), np.nan)
+    return np.asarray(means, np.float32)
+
+
+def _smoothed_plan(
+    shape: tuple[int, int], used: Integers, means: NDArray[np.float32]
+) -> NDArray[np.float32]:
+    """Tones in plan, freed of single odd values; NaN where no place is used."""
+    plan = np.full(shape, np.nan, np.float32)
+    plan.reshape(-1)[used] = means
+    smooth = np.empty_like(plan)
+    _middle_kernel(plan, smooth)
+    return smooth
 
 
 @kernel

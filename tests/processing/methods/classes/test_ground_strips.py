@@ -25,8 +25,8 @@ def test_a_road_is_as_wide_as_it_is_and_goes_on(tone: float) -> None:
         tones.astype(np.float32),
         np.ones(east.size, np.bool_),
         ranks,
-        _SPACING_M,
-        SilentMonitor(),
+        cell_m=_SPACING_M,
+        monitor=SilentMonitor(),
     )
     assert found.shape == (east.size, STRIP_COLUMNS)
     inner = on_road & (np.abs(north - 40.0) < 10.0)
@@ -44,7 +44,7 @@ def test_without_ground_nothing_is_told() -> None:
         np.zeros(500, np.float32),
         np.zeros(500, np.bool_),
         np.zeros(RANKS),
-        _SPACING_M,
-        SilentMonitor(),
+        cell_m=_SPACING_M,
+        monitor=SilentMonitor(),
     )
     assert not found.any()
