@@ -18,7 +18,6 @@ from app.window.window_parts import WindowParts
 from processing.core.errors import InUse, MissingInput, UserError, report_as_user_error
 from processing.core.owned_files import mark, remove_marked
 from processing.core.text import Text
-from processing.formats.registry import FORMATS
 from processing.image.attributes.attributes import available
 from processing.image.search.nearest import nearest_point
 from processing.map.feature import Feature, PointReference
@@ -30,6 +29,10 @@ from processing.recording.kinds import ImageKind
 from processing.tools.registry import point_tools
 from resources import path_of
 from widgets.shared.cursor import PickedPosition
+
+_FORMATS = ("dxf", "csv", "gpkg", "geojson")
+"""A drawing and its ledgers. What needs a route, the grid of map sheets or facts of a work is no
+part of a first look."""
 
 _LONGEST_WAIT_MS = 300_000
 _SETTLE_MS = 1_500
@@ -154,7 +157,7 @@ class _DemoJob:
 
     def export(self) -> None:
         request = ExportRequest(
-            formats=tuple(one.id for one in FORMATS.maps()),
+            formats=_FORMATS,
             folder=self._out / "export",
             language=self._parts.language,
             candidates=False,

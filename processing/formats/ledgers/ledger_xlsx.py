@@ -36,6 +36,19 @@ _NOT_IN_TITLES = re.compile(r"[\[\]:*?/\\]")
 _NOT_IN_CELLS = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f]")
 _MOST_SAFE = 1 << 53  # whole numbers beyond it would be rounded
 _NARROWEST, _WIDEST = 6.0, 40.0  # letters
+_MARGIN = 1.0
+"""Letters of a column that its borders take."""
+
+_BOLD = 1.15
+"""How much wider bold letters are than those by which columns are measured."""
+
+_SHORT = 10
+"""Letters of a header that is not broken: five kanji."""
+
+_LINE_PT = 16.0
+_UNBROKEN = re.compile(r"[\x21-\u2fff]+ *|.")
+"""What stays on one line: a word of narrow letters with the space behind it, or one kanji."""
+
 _A4, _A3 = 9, 8
 _A4_LETTERS = 150.0  # what is wider is printed on A3
 _HEAD_FILL = "FFE8EEF4"
@@ -190,6 +203,8 @@ def _write_sheet(
     for number, width in enumerate(widths, 1):
         page.column_dimensions[get_column_letter(number)].width = width
     _set_page(page, title, sum(widths))
+    lines = max((_lines(*one) for one in zip(sheet.headers, widths, strict=True)), default=1)
+    page.row_dimensions[1].height = _LINE_PT * lines
     line = Side("thin", color="FF999999")
     border = Border(line, line, line, line)
     head_fill, head_font = PatternFill("solid", fgColor=_HEAD_FILL), Font(bold=True)
@@ -265,13 +280,27 @@ def _number_format(words: str) -> str:
 
 
 def _widths(sheet: _Sheet) -> list[float]:
-    """Of columns, in narrow letters: the longest cell, and half of the header, which is broken."""
+    """Of columns, in narrow letters: the longest cell, and the header, broken where it is long."""
     widths = []
     for number, words in enumerate(sheet.headers):
         longest = max((_letters(row[number][0]) for row in sheet.rows), default=0)
-        wanted = max(longest, (_letters(words) + 1) // 2) + 2.0
+        head = _letters(words)
+        shown = head if head <= _SHORT else (head + 1) // 2
+        wanted = max(longest, _BOLD * shown) + 2.0
         widths.append(min(max(wanted, _NARROWEST), _WIDEST))
     return widths
+
+
+def _lines(words: str, width: float) -> int:
+    """Lines that a header takes: broken between words, and between any two kanji."""
+    room = width - _MARGIN
+    lines, filled = 1, 0.0
+    for piece in _UNBROKEN.findall(words):
+        long = _BOLD * _letters(piece)
+        if filled and filled + _BOLD * _letters(piece.rstrip()) > room:
+            lines, filled = lines + 1, 0.0
+        filled += long
+    return lines
 
 
 def _letters(words: str) -> int:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Any
 
@@ -75,6 +76,17 @@ def test_numbers_are_numbers_with_the_decimals_of_csv_and_texts_are_texts(tmp_pa
     assert page.page_setup.fitToWidth == 1
     assert page.print_options.gridLines
     assert page.sheet_properties.pageSetUpPr.fitToPage
+
+
+def test_long_headers_have_the_lines_that_they_are_broken_into(tmp_path: Path) -> None:
+    page = _written(tmp_path, *_ROAD)["街路樹（並木）"]
+    height = page.row_dimensions[1].height
+    for cell in page[1]:
+        room = page.column_dimensions[cell.column_letter].width - 1.0
+        letters = sum(2 if ord(one) > 0x2FFF else 1 for one in cell.value)
+        assert math.ceil(letters / room) * 15.0 <= height
+        if letters <= 8:
+            assert letters <= room
 
 
 def test_the_road_ledger_sheet_has_a_row_for_each_section_of_the_route(tmp_path: Path) -> None:
