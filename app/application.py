@@ -274,6 +274,7 @@ def _add_actions(parts: WindowParts, files: FileActions, change: WindowChange) -
         *help_.actions(),
     )
     parts.window.add_actions(actions)
+    files.recent.connect()
     adopt_view_toggles(parts)
     parts.window.show_in_corner("language-en" if parts.language == "ja" else "language-ja")
     parts.start_page.open_requested.connect(files.choose_project)

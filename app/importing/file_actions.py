@@ -12,11 +12,12 @@ from app.catalogue.catalogue_update import adopt_catalogue
 from app.importing.column_request import with_columns
 from app.importing.drive_actions import DriveActions
 from app.importing.existing_maps import ExistingMaps
+from app.importing.recent_menu import RecentMenu
 from app.importing.sheet_printing import SheetPrinting
 from app.importing.source_watch import SourceWatch
 from app.importing.trajectory_offer import TrajectoryOffer
 from app.simulation.simulate_wiring import Simulations
-from app.window.action import Action
+from app.window.action import Action, grouped
 from app.window.project_dialogs import ProjectDialogs
 from app.window.window_parts import WindowParts
 from processing.core.errors import UserError
@@ -47,12 +48,21 @@ class FileActions:
         self._dialogs = ProjectDialogs(parts)
         self.simulations = Simulations(parts, projects_folder)
         self.drives = DriveActions(parts)
+        self.recent = RecentMenu(parts)
         self.printing = SheetPrinting(parts, self._dialogs)
         self.existing_maps = ExistingMaps(parts, self._dialogs)
 
     def actions(self) -> tuple[Action, ...]:
         """The file menu, from top to bottom."""
-        return (*self._of_files(), *self._of_the_project(), *self._of_the_program())
+        opening, *others = self._of_files()
+        adding = 1 + len(self.drives.actions())
+        return grouped(
+            (opening, self.recent.action()),
+            others[:adding],
+            others[adding:],
+            self._of_the_project(),
+            self._of_the_program(),
+        )
 
     def _of_files(self) -> tuple[Action, ...]:
         return (

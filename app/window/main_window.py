@@ -151,7 +151,6 @@ class MainWindow(QMainWindow):
 
     def add_panels(self, panels: Sequence[DockPanel], language: Language) -> None:
         """Put panels into docks; docks of one area stand above each other."""
-        self.actions_made.divide("view")
         self._panels = tuple(panels)
         for panel in panels:
             dock = QDockWidget(panel.title.in_language(language), self)
@@ -264,7 +263,7 @@ class MainWindow(QMainWindow):
             f"panel-{panel.id}",
             Text("Panel: {title}", "パネル: {title}").filled(title=panel.title),
             toggle.trigger,
-            "view",
+            "view/panels",
             (panel.place.key,) if panel.place.key else (),
             needs_project=True,
         )
