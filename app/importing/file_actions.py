@@ -49,6 +49,8 @@ class FileActions:
         self.simulations = Simulations(parts, projects_folder)
         self.drives = DriveActions(parts)
         self.recent = RecentMenu(parts)
+        self._asked: tuple[str, ImportOptions] | None = None
+        parts.jobs.failed.connect(self._on_jobs_failed)
         self.printing = SheetPrinting(parts, self._dialogs)
         self.existing_maps = ExistingMaps(parts, self._dialogs)
 
@@ -403,17 +405,28 @@ class FileActions:
         except UserError as error:
             self._parts.message_bar.show_error(error)
             return
-        with_columns(
-            self._parts, files_request, lambda clear: self._import_into(request.project, clear)
-        )
 
-    def _import_into(self, folder: Path, request: ImportRequest) -> None:
+        def start(clear: ImportRequest) -> None:
+            self._asked = self._import_into(request.project, clear), request
+
+        with_columns(self._parts, files_request, start)
+
+    def _import_into(self, folder: Path, request: ImportRequest) -> str:
         document = self._parts.document
         is_open = document.project is not None and document.project.folder == folder.resolve()
         if not is_open and not is_project(folder):
-            document.import_into_new(folder, request)
-        elif is_open or document.open(folder):
-            document.import_files(request)
+            return document.import_into_new(folder, request)
+        return document.import_files(request) if is_open or document.open(folder) else ""
+
+    def _on_jobs_failed(self, job: str) -> None:
+        """What was chosen for an import that failed stands in the form again."""
+        if self._asked is None or self._asked[0] != job:
+            return
+        asked, self._asked = self._asked[1], None
+        self.choose_import(asked.files)
+        for form in self._parts.window.findChildren(ImportForm):
+            if form.isVisible():
+                form.use_options(asked)
 
     def _on_form_export_requested(self, request: ExportOptions) -> None:
         self._parts.document.export(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from PySide6.QtCore import QByteArray, QEvent, QSize, Qt, QTimer, Signal
@@ -62,6 +62,7 @@ class MainWindow(QMainWindow):
         self._area: ViewArea | None = None
         self._pages = QStackedWidget()
         self._is_open = False
+        self._may_close: Callable[[], bool] | None = None
         self._docks_when_open: QByteArray | None = None
         # Docks take their sizes, and come to the front, only once they are laid out.
         self._when_laid_out = QTimer(self, singleShot=True)
@@ -218,6 +219,15 @@ class MainWindow(QMainWindow):
         if _BESIDE in self.actions_made:
             self.actions_made[_BESIDE].setChecked(self.area.is_beside)
 
+    def ask_before_closing(self, may_close: Callable[[], bool]) -> None:
+        """Close only where this says so."""
+        self._may_close = may_close
+
+    def close_at_once(self) -> None:
+        """Close without asking, as the system wants it or the user has answered."""
+        self._may_close = None
+        self.close()
+
     @override
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
@@ -237,6 +247,9 @@ class MainWindow(QMainWindow):
 
     @override
     def closeEvent(self, event: QCloseEvent) -> None:
+        if self._may_close is not None and not self._may_close():
+            event.ignore()
+            return
         self.closed.emit()
         super().closeEvent(event)
 

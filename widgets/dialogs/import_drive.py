@@ -100,6 +100,12 @@ class ImportForm(QDialog):
                 self._files.addItem(str(file))
         self._tell_files()
 
+    def use_options(self, options: ImportOptions) -> None:
+        """Stand as when these options were asked for."""
+        self._project.setText(str(options.project))
+        self._crs.choose(options.crs)
+        self._as_labels.setChecked(options.classes_as_labels)
+
     @property
     def files(self) -> tuple[Path, ...]:
         """The files in the list."""
