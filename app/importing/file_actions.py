@@ -10,12 +10,12 @@ from PySide6.QtWidgets import QFileDialog
 
 from app.catalogue.catalogue_update import adopt_catalogue
 from app.importing.column_request import with_columns
+from app.importing.delivery_look import DeliveryLook
 from app.importing.drive_actions import DriveActions
 from app.importing.existing_maps import ExistingMaps
 from app.importing.recent_menu import RecentMenu
 from app.importing.sheet_printing import SheetPrinting
 from app.importing.source_watch import SourceWatch
-from app.importing.trajectory_offer import TrajectoryOffer
 from app.simulation.simulate_wiring import Simulations
 from app.window.action import Action, grouped
 from app.window.project_dialogs import ProjectDialogs
@@ -249,7 +249,7 @@ class FileActions:
                 kinds=kinds.in_language(self._parts.language),
             )
             form.import_requested.connect(self._on_form_import_requested)
-            TrajectoryOffer(form, self._parts.jobs)
+            DeliveryLook(form, self._parts.jobs, self._parts.language)
             return form
 
         self._dialogs.show(ImportForm, make).add_files(files)
