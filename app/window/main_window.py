@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 
 from PySide6.QtCore import QByteArray, QEvent, QSize, Qt, QTimer, Signal
@@ -57,6 +58,7 @@ class MainWindow(QMainWindow):
         self._in_front: list[QDockWidget] = []
         self._waiting: list[QDockWidget] = []
         self._panels: tuple[DockPanel, ...] = ()
+        self._had_room: set[str] = set()
         self._toolbar: QToolBar | None = None
         self._tools: QAction | None = None
         self._area: ViewArea | None = None
@@ -161,6 +163,8 @@ class MainWindow(QMainWindow):
             if panel.place.is_hidden:
                 self._waiting.append(dock)
             self._docks[panel.id] = dock
+            if panel.place.worked_in_px:
+                dock.visibilityChanged.connect(partial(self._give_room, panel))
             self._adopt_toggle(panel, dock)
 
     def show_panel(self, id_: str) -> None:
@@ -269,6 +273,15 @@ class MainWindow(QMainWindow):
         if self._actions is not None:
             self._actions.deleteLater()
 
+    def _give_room(self, panel: DockPanel, is_visible: object) -> None:
+        """Let a panel that comes to the front for the first time be as high as its work needs."""
+        is_first = panel.id not in self._had_room
+        if not (is_visible and is_first and self._is_open) or self.width() >= _NARROW_PX:
+            return
+        self._had_room.add(panel.id)
+        if self._docks[panel.id].height() < panel.place.worked_in_px:
+            make_room(self, panel.id, panel.place.worked_in_px)
+
     def _adopt_toggle(self, panel: DockPanel, dock: QDockWidget) -> None:
         toggle = dock.toggleViewAction()
         toggle.triggered.connect(dock.raise_)
@@ -325,4 +338,5 @@ class MainWindow(QMainWindow):
         elif self._is_open:
             for dock in self._in_front:
                 dock.raise_()
+        self._had_room.clear()
         hide_stray_tabs(self)
