@@ -40,6 +40,7 @@ from app.views.view_actions import view_actions
 from app.volumes.earthwork import Earthwork
 from app.volumes.volume_exports import VOLUME_EXPORTS
 from app.window.main_window import MainWindow
+from app.window.quitting import Quitting
 from app.window.window_contents import WindowContents
 from app.window.window_parts import LastingParts, WindowParts
 from app.window_change import WindowChange
@@ -93,7 +94,7 @@ def _close_on_signals(window: MainWindow) -> None:
     """Let the system's request to end close the window as its button does."""
 
     def close(_signal: int, _frame: FrameType | None) -> None:
-        window.close()
+        window.close_at_once()
 
     for number in (signal.SIGTERM, signal.SIGINT):
         signal.signal(number, close)
@@ -137,6 +138,7 @@ def build_window(settings: Settings, projects_folder: Path) -> WindowParts:
     parts = _make_parts(lasting, settings.language)
     files = FileActions(parts, projects_folder)
     connect_lasting(parts)
+    parts.window.ask_before_closing(Quitting(parts).may_close)
     parts.window.files_dropped.connect(files.open_files)
 
     def furnish() -> None:
@@ -274,6 +276,7 @@ def _add_actions(parts: WindowParts, files: FileActions, change: WindowChange) -
         *help_.actions(),
     )
     parts.window.add_actions(actions)
+    files.recent.connect()
     adopt_view_toggles(parts)
     parts.window.show_in_corner("language-en" if parts.language == "ja" else "language-ja")
     parts.start_page.open_requested.connect(files.choose_project)

@@ -52,6 +52,7 @@ def _right(
     narrow_behind: str = "attributes",
     is_hidden: bool = False,
     front_px: tuple[tuple[ViewLayout, int], ...] = (),
+    worked_in_px: int = 0,
 ) -> PanelPlace:
     """At the right of a wide window; in a narrow one with the layers or below them.
 
@@ -65,6 +66,7 @@ def _right(
         narrow_behind=narrow_behind,
         is_hidden=is_hidden,
         front_px=front_px,
+        worked_in_px=worked_in_px,
     )
 
 
@@ -105,7 +107,7 @@ PANELS: tuple[Panel, ...] = (
         "processing",
         Text("Processing", "処理"),
         lambda parts: parts.processing_panel,
-        _right(behind=""),
+        _right(behind="", worked_in_px=480),
     ),
     Panel(
         "jobs",
@@ -117,7 +119,7 @@ PANELS: tuple[Panel, ...] = (
         "review",
         Text("Review", "確認"),
         lambda parts: parts.review_panel,
-        _right(behind="attributes", front_px=((ViewLayout.CHECKING, 600),)),
+        _right(behind="attributes", front_px=((ViewLayout.CHECKING, 600),), worked_in_px=600),
     ),
     Panel(
         "labels",

@@ -25,6 +25,8 @@ from processing.tools.running.runner import check_needs, tool_of
 from widgets.parts.job_view import JobView
 from widgets.parts.literal_text import literal
 
+_CANCELLED = Text("Cancelled: {title}", "中止しました: {title}")
+
 
 def connect_lasting(parts: WindowParts) -> None:
     """Connect what stays through changes of language with each other, once."""
@@ -73,6 +75,7 @@ def _connect_document(parts: WindowParts, wiring: _Wiring) -> None:
     document.undo_stack.changed.connect(wiring.on_undo_stack_changed)
     document.shared.sketch.changed.connect(wiring.on_sketch_changed)
     parts.jobs.changed.connect(wiring.on_jobs_changed)
+    parts.jobs.forgotten.connect(wiring.on_jobs_forgotten)
     document.shared.view_settings.image_changed.connect(parts.processing_panel.refresh)
     document.shared.map_changes.drives_changed.connect(parts.processing_panel.refresh)
     parts.processing_panel.ask_reasons_from(wiring.reason_against_tool)
@@ -204,10 +207,21 @@ class _Wiring(QObject):
             seconds_left=status.seconds_left,
             state=status.state.value,
             error="" if status.error is None else status.error.line(language),
+            started="" if status.started_at is None else f"{status.started_at:%H:%M}",
+            seconds=status.seconds,
+            result=status.result.in_language(language),
         )
         self._parts.jobs_panel.show_job(view)
         running = status.state in (JobState.WAITING, JobState.RUNNING)
         self._parts.status_line.show_job(view if running else None)
+        if status.state is JobState.CANCELLED:
+            self._parts.status_line.show_message(_CANCELLED.filled(title=status.title))
+
+    def on_jobs_forgotten(self, job: str) -> None:
+        self._parts.jobs_panel.forget_job(job)
+        at_work = [one for one in self._parts.jobs.statuses if not one.is_over]
+        if not at_work:
+            self._parts.status_line.show_job(None)
 
     def on_window_closed(self) -> None:
         self._parts.settings.remember_layout(self._parts.window.layout_to_keep())

@@ -66,6 +66,8 @@ class Document(QObject):
         Something the user wanted can't be done; everything is as it was.
     reported(text: Text)
         Something was done that is worth a line.
+    exported(written: WrittenFiles, folder: Path)
+        The map was written to files.
     step_coming(change: Change)
         A step about drives or files is undone or done again in a moment.
     """
@@ -76,6 +78,7 @@ class Document(QObject):
     catalogue_changed = Signal()
     refused = Signal(object)
     reported = Signal(object)
+    exported = Signal(object, object)
     step_coming = Signal(object)
 
     def __init__(self, jobs: JobQueue, parent: QObject | None = None) -> None:
@@ -95,6 +98,7 @@ class Document(QObject):
         self._bundled_catalogue = read_catalogue(path_of("catalogue/level500.toml"))
         self._job_results = JobResultApplier(jobs, self)
         self._job_results.refused.connect(self.refused)
+        self.reported.connect(self._job_results.note_result)
         self._label_steps = LabelSteps(
             self._job_results, self.undo_stack, self._change_history, self
         )
@@ -367,6 +371,7 @@ class Document(QObject):
 
         def take(written: WrittenFiles) -> None:
             self.reported.emit(exported_words(written, request.folder))
+            self.exported.emit(written, request.folder)
 
         return self._job_results.start(project, title, work, take)
 

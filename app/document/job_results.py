@@ -41,6 +41,8 @@ class JobResultApplier(QObject):
         super().__init__(parent)
         self._jobs = jobs
         self._waiting: dict[str, _Adoption] = {}
+        self._of_project: list[str] = []
+        self._taken = ""
         jobs.finished.connect(self._on_jobs_finished)
         jobs.failed.connect(self._on_jobs_failed)
         jobs.cancelled.connect(self._on_jobs_cancelled)
@@ -66,6 +68,8 @@ class JobResultApplier(QObject):
         """
         job = self._jobs.start(title, work, lane=lane)
         self._waiting[job] = _Adoption(project, take, otherwise)
+        if lane is not JobLane.INTERACTIVE:  # these are on no list
+            self._of_project.append(job)
         return job
 
     def start_at_hand(
@@ -84,20 +88,34 @@ class JobResultApplier(QObject):
         for job in self._waiting:
             self._jobs.interrupt(job)
         self._waiting.clear()
+        for job in self._of_project:
+            self._jobs.forget(job)
+        self._of_project.clear()
+
+    def note_result(self, result: Text) -> None:
+        """What is said while a job's result is taken over is what the job made."""
+        if self._taken:
+            self._jobs.note_result(self._taken, result)
 
     def _on_jobs_finished(self, job: str, result: object) -> None:
         adoption = self._waiting.pop(job, None)
         if adoption is None:
             return
+        self._taken = job
         try:
             adoption.take(result)
         except UserError as error:
             adoption.otherwise()
             self.refused.emit(error)
+        finally:
+            self._taken = ""
 
     def _on_jobs_failed(self, job: str, error: UserError) -> None:
         adoption = self._waiting.pop(job, None)
         if adoption is not None:
+            # Why it failed stays on the list, also where its new project goes with it.
+            if job in self._of_project:
+                self._of_project.remove(job)
             adoption.otherwise()
             self.refused.emit(error)
 

@@ -9,7 +9,7 @@ from app.classes.label_actions import choose_class, label_actions
 from app.drawing.map_edits import MapEdits
 from app.drawing.tool_entries import SNAP_HINTS, TOOL_ENTRIES, ToolEntry
 from app.drawing.working_planes import level_plane, plane_of_points
-from app.window.action import Action, map_action
+from app.window.action import Action, grouped, map_action
 from app.window.window_parts import WindowParts
 from processing.core.text import Text
 from widgets.mouse_tools.drawing.measure import MeasureTool
@@ -17,20 +17,31 @@ from widgets.shared.snap_state import SNAP_NAMES, SnapMode
 
 _draw = partial(map_action, menu="draw")
 _plane = partial(map_action, menu="draw/plane")
+_widths = partial(map_action, menu="draw/widths")
+_DRAWING, _CHANGING, _MEASURING = "point", "edit", "measure"
+"""Tools with which a group of the menu begins."""
 
 NUMBER_KEYS = ("1", "2", "3", "4", "5", "6", "7", "8", "9", "0")
 
 
 def draw_actions(parts: WindowParts) -> tuple[Action, ...]:
     """The draw menu: tools, the drawing at hand, kinds, snapping, the working plane."""
-    return (
-        *(_tool_action(parts, entry) for entry in TOOL_ENTRIES),
-        *_at_hand_actions(parts),
-        *_kind_actions(parts),
-        *_snap_actions(parts),
-        *_plane_actions(parts),
-        *label_actions(parts),
+    return grouped(
+        *_tool_groups(parts),
+        _at_hand_actions(parts),
+        _kind_actions(parts),
+        (*_snap_actions(parts), *_plane_actions(parts), *label_actions(parts)),
     )
+
+
+def _tool_groups(parts: WindowParts) -> tuple[list[Action], ...]:
+    """Those that choose, draw, change, measure and paint."""
+    groups: list[list[Action]] = [[]]
+    for entry in TOOL_ENTRIES:
+        if entry.name in (_DRAWING, _CHANGING, _MEASURING):
+            groups.append([])
+        groups[-1].append(_tool_action(parts, entry))
+    return tuple(groups)
 
 
 def _tool_action(parts: WindowParts, entry: ToolEntry) -> Action:
@@ -82,7 +93,7 @@ def _at_hand_actions(parts: WindowParts) -> tuple[Action, ...]:
             "Shift+C",
             Text("Goes on at the end nearest to the cursor.", "カーソルに近い端から続けます。"),
         ),
-        _draw(
+        _widths(
             "measure-width",
             Text("Width between two chosen lines", "選択した2本の線の幅"),
             MapEdits(document).report_width,
@@ -92,7 +103,7 @@ def _at_hand_actions(parts: WindowParts) -> tuple[Action, ...]:
                 "1本目の線に直角に測った、平面上の最小・平均・最大幅を表示します。",
             ),
         ),
-        _draw(
+        _widths(
             "keep-width",
             Text("Keep the width between two chosen lines", "選択した2本の線の幅を保存"),
             MapEdits(document).keep_width,
@@ -102,7 +113,7 @@ def _at_hand_actions(parts: WindowParts) -> tuple[Action, ...]:
                 "平均幅を持つ計測線として保存します。",
             ),
         ),
-        _draw(
+        _widths(
             "keep-measurement",
             Text("Keep the measurement as a feature", "計測結果を地物として保存"),
             keep,

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import partial
 
 from app.drawing.map_edits import MapEdits
-from app.window.action import NOTHING, Action, map_action
+from app.window.action import NOTHING, Action, grouped, map_action
 from app.window.window_parts import WindowParts
 from processing.core.text import Text
 from processing.map.feature import Feature, Status
@@ -28,23 +28,25 @@ _STATUSES = (
 def edit_actions(parts: WindowParts) -> tuple[Action, ...]:
     """The edit menu, from top to bottom."""
     edits = MapEdits(parts.document)
-    return (
-        *_steps(parts),
-        *_clipboard(edits),
-        *_selections(parts, edits),
-        *_line_edits(edits),
-        *_statuses(edits),
-        _edit(
-            "number-along-routes",
-            Text("Number along the route", "路線に沿って番号・測点を記入"),
-            edits.number_along_routes,
-            "",
-            Text(
-                "Fills in number, route, station and side of what ledgers list; from the road's"
-                " centre line. What is written stays.",
-                "道路中心線をもとに、台帳の地物の整理番号・路線名・測点・左右を記入します。"
-                "記入済みの値は変わりません。",
-            ),
+    return grouped(
+        _steps(parts),
+        _clipboard(edits),
+        (*_selections(parts, edits), *_line_edits(edits), *_statuses(edits)),
+        (_numbering(edits),),
+    )
+
+
+def _numbering(edits: MapEdits) -> Action:
+    return _edit(
+        "number-along-routes",
+        Text("Number along the route", "路線に沿って番号・測点を記入"),
+        edits.number_along_routes,
+        "",
+        Text(
+            "Fills in number, route, station and side of what ledgers list; from the road's"
+            " centre line. What is written stays.",
+            "道路中心線をもとに、台帳の地物の整理番号・路線名・測点・左右を記入します。"
+            "記入済みの値は変わりません。",
         ),
     )
 
@@ -71,6 +73,7 @@ def _steps(parts: WindowParts) -> tuple[Action, ...]:
                 "再起動後も含めて何回でも戻せます。作図中は最後の頂点を戻します。",
             ),
             needs_project=True,
+            why_disabled=Text("There is nothing to undo.", "元に戻す操作がありません。"),
         ),
         Action(
             "redo",
@@ -81,6 +84,7 @@ def _steps(parts: WindowParts) -> tuple[Action, ...]:
             "mdi6.redo",
             2,
             needs_project=True,
+            why_disabled=Text("Nothing was undone.", "やり直す操作がありません。"),
         ),
     )
 

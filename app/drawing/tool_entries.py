@@ -160,6 +160,7 @@ TOOL_ENTRIES: tuple[ToolEntry, ...] = (
         "mdi6.content-cut",
         Text("Click where the line is to be two.", "線を分ける位置をクリックします。"),
         toolbar=0,
+        menu="edit/lines",
     ),
     ToolEntry(
         "extend",
@@ -171,6 +172,7 @@ TOOL_ENTRIES: tuple[ToolEntry, ...] = (
             "延ばす線の端の近く、次に延伸先の線をクリックします。",
         ),
         toolbar=0,
+        menu="edit/lines",
     ),
     ToolEntry(
         "trim",
@@ -182,6 +184,7 @@ TOOL_ENTRIES: tuple[ToolEntry, ...] = (
             "境界となる線、次に残す部分をクリックします。",
         ),
         toolbar=0,
+        menu="edit/lines",
     ),
     ToolEntry(
         "measure",

@@ -7,7 +7,7 @@ from PySide6.QtCore import QUrl
 from app.help.manual import open_outside, show_manual
 from app.jobs.error_log import log_path
 from app.keys.shortcut_editing import edit_shortcuts
-from app.window.action import Action
+from app.window.action import Action, grouped
 from app.window.window_parts import WindowParts
 from processing.core.text import Text
 from widgets.parts.command_palette import CommandPalette, NamedAction
@@ -21,6 +21,10 @@ class HelpActions:
 
     def actions(self) -> tuple[Action, ...]:
         """The help menu, from top to bottom."""
+        manual, *keys, log = self._entries()
+        return grouped((manual,), keys, (log,))
+
+    def _entries(self) -> tuple[Action, ...]:
         return (
             Action(
                 "manual",

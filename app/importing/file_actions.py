@@ -10,13 +10,14 @@ from PySide6.QtWidgets import QFileDialog
 
 from app.catalogue.catalogue_update import adopt_catalogue
 from app.importing.column_request import with_columns
+from app.importing.delivery_look import DeliveryLook
 from app.importing.drive_actions import DriveActions
 from app.importing.existing_maps import ExistingMaps
+from app.importing.recent_menu import RecentMenu
 from app.importing.sheet_printing import SheetPrinting
 from app.importing.source_watch import SourceWatch
-from app.importing.trajectory_offer import TrajectoryOffer
 from app.simulation.simulate_wiring import Simulations
-from app.window.action import Action
+from app.window.action import Action, grouped
 from app.window.project_dialogs import ProjectDialogs
 from app.window.window_parts import WindowParts
 from processing.core.errors import UserError
@@ -47,12 +48,23 @@ class FileActions:
         self._dialogs = ProjectDialogs(parts)
         self.simulations = Simulations(parts, projects_folder)
         self.drives = DriveActions(parts)
+        self.recent = RecentMenu(parts)
+        self._asked: tuple[str, ImportOptions] | None = None
+        parts.jobs.failed.connect(self._on_jobs_failed)
         self.printing = SheetPrinting(parts, self._dialogs)
         self.existing_maps = ExistingMaps(parts, self._dialogs)
 
     def actions(self) -> tuple[Action, ...]:
         """The file menu, from top to bottom."""
-        return (*self._of_files(), *self._of_the_project(), *self._of_the_program())
+        opening, *others = self._of_files()
+        adding = 1 + len(self.drives.actions())
+        return grouped(
+            (opening, self.recent.action()),
+            others[:adding],
+            others[adding:],
+            self._of_the_project(),
+            self._of_the_program(),
+        )
 
     def _of_files(self) -> tuple[Action, ...]:
         return (
@@ -237,7 +249,7 @@ class FileActions:
                 kinds=kinds.in_language(self._parts.language),
             )
             form.import_requested.connect(self._on_form_import_requested)
-            TrajectoryOffer(form, self._parts.jobs)
+            DeliveryLook(form, self._parts.jobs, self._parts.language)
             return form
 
         self._dialogs.show(ImportForm, make).add_files(files)
@@ -393,17 +405,28 @@ class FileActions:
         except UserError as error:
             self._parts.message_bar.show_error(error)
             return
-        with_columns(
-            self._parts, files_request, lambda clear: self._import_into(request.project, clear)
-        )
 
-    def _import_into(self, folder: Path, request: ImportRequest) -> None:
+        def start(clear: ImportRequest) -> None:
+            self._asked = self._import_into(request.project, clear), request
+
+        with_columns(self._parts, files_request, start)
+
+    def _import_into(self, folder: Path, request: ImportRequest) -> str:
         document = self._parts.document
         is_open = document.project is not None and document.project.folder == folder.resolve()
         if not is_open and not is_project(folder):
-            document.import_into_new(folder, request)
-        elif is_open or document.open(folder):
-            document.import_files(request)
+            return document.import_into_new(folder, request)
+        return document.import_files(request) if is_open or document.open(folder) else ""
+
+    def _on_jobs_failed(self, job: str) -> None:
+        """What was chosen for an import that failed stands in the form again."""
+        if self._asked is None or self._asked[0] != job:
+            return
+        asked, self._asked = self._asked[1], None
+        self.choose_import(asked.files)
+        for form in self._parts.window.findChildren(ImportForm):
+            if form.isVisible():
+                form.use_options(asked)
 
     def _on_form_export_requested(self, request: ExportOptions) -> None:
         self._parts.document.export(

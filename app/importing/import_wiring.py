@@ -6,6 +6,7 @@ from PySide6.QtCore import QObject
 from PySide6.QtGui import QAction
 
 from app.document.import_words import offered_words
+from app.importing.written_files import WrittenFilesOffer
 from app.window.window_parts import WindowParts
 from processing.core.errors import UserError
 from processing.core.text import Text
@@ -20,8 +21,9 @@ _MOST_NAMES = 3
 
 
 def connect_imports(parts: WindowParts) -> None:
-    """Connect the message bar with what can be done about imports; again for new widgets."""
+    """Connect the message bar with what can be done about imports and exports; for new widgets."""
     ImportOffer(parts)
+    WrittenFilesOffer(parts)
 
 
 class ImportOffer(QObject):

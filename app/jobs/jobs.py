@@ -6,6 +6,7 @@ import threading
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from datetime import datetime
 from enum import Enum
 from queue import SimpleQueue
 from uuid import uuid4
@@ -59,6 +60,14 @@ class JobStatus:
         None while it isn't known.
     error : UserError or None
         Why it failed.
+    is_asked : bool
+        Whether the user asked for it, and did not get it while doing something else.
+    started_at : datetime or None
+        When it began; None while it waits.
+    seconds : float
+        How long it took; 0 until it is over.
+    result : Text
+        What it made, in one sentence; empty while that isn't known.
     """
 
     id: str
@@ -68,6 +77,15 @@ class JobStatus:
     text: Text = Text("", "")
     seconds_left: float | None = None
     error: UserError | None = None
+    is_asked: bool = True
+    started_at: datetime | None = None
+    seconds: float = 0.0
+    result: Text = Text("", "")
+
+    @property
+    def is_over(self) -> bool:
+        """Whether it has ended in one way or another."""
+        return self.state not in (JobState.WAITING, JobState.RUNNING)
 
 
 class _Stop:
@@ -111,6 +129,7 @@ class JobQueue(QObject):
     finished = Signal(str, object)  # id, what the work gave
     failed = Signal(str, object)  # id, UserError
     cancelled = Signal(str)  # id
+    forgotten = Signal(str)  # id
 
     _progressed = Signal(str, float, object)
     _started = Signal(str)
@@ -125,6 +144,7 @@ class JobQueue(QObject):
             lane: SimpleQueue() for lane in JobLane
         }
         self._quiet: set[str] = set()
+        self._leaving: set[str] = set()
         queued = Qt.ConnectionType.QueuedConnection
         self._progressed.connect(self._on_worker_progressed, queued)
         self._started.connect(self._on_worker_started, queued)
@@ -141,6 +161,11 @@ class JobQueue(QObject):
     def statuses(self) -> tuple[JobStatus, ...]:
         """All jobs of this session that people see, oldest first."""
         return tuple(one for one in self._statuses.values() if one.id not in self._quiet)
+
+    @property
+    def asked_at_work(self) -> tuple[JobStatus, ...]:
+        """Those that the user asked for and that are not over."""
+        return tuple(one for one in self.statuses if one.is_asked and not one.is_over)
 
     @property
     def is_busy(self) -> bool:
@@ -160,7 +185,7 @@ class JobQueue(QObject):
         self._stops[task.id] = task.stop
         if lane is JobLane.INTERACTIVE:
             self._quiet.add(task.id)
-        self._report(JobStatus(task.id, title))
+        self._report(JobStatus(task.id, title, is_asked=lane is JobLane.ASKED))
         self._lanes[lane].put(task)
         return task.id
 
@@ -173,6 +198,19 @@ class JobQueue(QObject):
         """As :meth:`cancel`, but work that can go on another day keeps what is done."""
         if job in self._stops:
             self._stops[job].ask(Interrupted)
+
+    def note_result(self, job: str, result: Text) -> None:
+        """Say what a job made, for those who look at the list later."""
+        if job in self._statuses:
+            self._report(replace(self._statuses[job], result=result))
+
+    def forget(self, job: str) -> None:
+        """Take a job off the list, at its end where it is not over."""
+        if job in self._stops:
+            self._leaving.add(job)
+        elif job in self._statuses:
+            del self._statuses[job]
+            self.forgotten.emit(job)
 
     def close(self) -> None:
         """Interrupt everything and wait for the workers."""
@@ -204,7 +242,8 @@ class JobQueue(QObject):
 
     def _on_worker_started(self, job: str) -> None:
         self._started_at[job] = time.monotonic()
-        self._report(replace(self._statuses[job], state=JobState.RUNNING))
+        now = datetime.now().astimezone()
+        self._report(replace(self._statuses[job], state=JobState.RUNNING, started_at=now))
 
     def _on_worker_progressed(self, job: str, fraction: float, text: Text | None) -> None:
         status = self._statuses[job]
@@ -219,7 +258,8 @@ class JobQueue(QObject):
         del self._stops[job]
         if error is not None:
             self._quiet.discard(job)
-        status = replace(self._statuses[job], seconds_left=None)
+        began = self._started_at.pop(job, time.monotonic())
+        status = replace(self._statuses[job], seconds_left=None, seconds=time.monotonic() - began)
         if error is None:
             self._report(replace(status, state=JobState.FINISHED, fraction=1.0))
             self.finished.emit(job, result)
@@ -233,10 +273,13 @@ class JobQueue(QObject):
         if job in self._quiet:
             self._quiet.discard(job)
             del self._statuses[job]
+        if job in self._leaving:
+            self._leaving.discard(job)
+            self.forget(job)
 
     def _report(self, status: JobStatus) -> None:
         self._statuses[status.id] = status
-        if status.id not in self._quiet:
+        if status.id not in self._quiet and status.id not in self._leaving:
             self.changed.emit(status)
 
 

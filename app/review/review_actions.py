@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import partial
 
 from app.review.review import Review
-from app.window.action import NOTHING, Action
+from app.window.action import NOTHING, Action, grouped
 from app.window.window_parts import WindowParts
 from processing.core.text import Text
 from processing.map.feature import Status
@@ -32,12 +32,12 @@ _NO_QUEUE = Text("Start a review first.", "先に確認を開始してくださ�
 
 def review_actions(parts: WindowParts) -> tuple[Action, ...]:
     """The review menu, from top to bottom."""
-    return (
-        _start(parts),
-        *_judgements(parts),
-        *_line_judgements(parts),
-        *_orders(parts),
-        *_hindsight(parts),
+    return grouped(
+        (_start(parts),),
+        _judgements(parts),
+        _line_judgements(parts),
+        _orders(parts),
+        _hindsight(parts),
     )
 
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from app.classes.class_learning import ClassLearning
-from app.window.action import Action
+from app.window.action import Action, grouped
 from app.window.window_parts import WindowParts
 from processing.core.text import Text
 from processing.operations.learn import LEARN
@@ -16,6 +16,7 @@ from processing.tools.volume import VOLUME
 
 _TOOLBAR = 5
 _HINT = Text("{explanation} {way}", "{explanation}{way}")
+_FORM = Text("{name}…", "{name}…")
 _WAY = Text(
     "Runs as the form in Processing stands; what is found goes to the review.",
     "処理パネルの設定で実行し、結果は確認パネルに候補として並びます。",
@@ -60,11 +61,12 @@ def process_actions(parts: WindowParts) -> tuple[Action, ...]:
             parts.window.show_panel("processing")
             parts.processing_panel.show_tool(tool)
 
+        # What one click runs stands there by that name; its form is one menu further.
         return Action(
             f"process-{tool}",
-            TOOLS[tool].name,
+            _FORM.filled(name=TOOLS[tool].name),
             show,
-            "process",
+            "process" if TOOLS[tool].button is None else "process/settings",
             hint=TOOLS[tool].explanation,
             needs_project=True,
         )
@@ -76,13 +78,14 @@ def process_actions(parts: WindowParts) -> tuple[Action, ...]:
     cancel = Action(
         "cancel-jobs", Text("Cancel all jobs", "すべてのジョブを中止"), cancel_all, "process"
     )
-    return (
-        _find_all_action(parts),
-        *(running(tool, button) for tool, button in one_click_buttons().items()),
-        *(showing(tool) for tool in TOOLS),
-        _learning_action(parts),
-        *_volume_actions(parts),
-        cancel,
+    one_click = [running(tool, button) for tool, button in one_click_buttons().items()]
+    settings = [showing(tool) for tool in one_click_buttons()]
+    others = [showing(tool) for tool in TOOLS if tool not in one_click_buttons()]
+    return grouped(
+        (_find_all_action(parts), *one_click, *settings),
+        (*others, _learning_action(parts)),
+        _volume_actions(parts),
+        (cancel,),
     )
 
 

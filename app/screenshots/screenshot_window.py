@@ -223,7 +223,7 @@ class ScreenshotWindow:
 
     def leave(self) -> None:
         """Close the window for good."""
-        self.parts.window.close()
+        self.parts.window.close_at_once()
         self.parts.window.deleteLater()
 
     @staticmethod

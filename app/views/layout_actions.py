@@ -51,7 +51,14 @@ def layout_actions(parts: WindowParts) -> tuple[Action, ...]:
 
 def adopt_view_toggles(parts: WindowParts) -> None:
     """Put Qt's own switches of the views into the menu of views."""
-    for id_, (title, toggle) in parts.view_docks.toggles().items():
+    for number, (id_, (title, toggle)) in enumerate(parts.view_docks.toggles().items()):
         text = Text("View: {title}", "ビュー: {title}").filled(title=title)
-        action = Action(f"view-{id_}", text, toggle.trigger, "view", needs_project=True)
+        action = Action(
+            f"view-{id_}",
+            text,
+            toggle.trigger,
+            "view",
+            needs_project=True,
+            begins_group=number == 0,
+        )
         parts.window.actions_made.adopt(action, toggle)

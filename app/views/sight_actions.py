@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from app.window.action import Action
+from app.window.action import Action, grouped
 from app.window.window_parts import WindowParts
 from processing.core.text import Text
 from widgets.scene_view.clipping import ClipChoice
@@ -22,7 +22,10 @@ _NOISE_SHOWN = Text("Noise is shown again.", "ノイズを再び表示してい�
 
 def sight_actions(parts: WindowParts) -> tuple[Action, ...]:
     """What images and 3D show of the recording."""
-    return (*_orientations(parts), *_beside(parts), *_clips(parts), _hide_noise(parts))
+    return grouped(
+        (*_orientations(parts), *_beside(parts), *_clips(parts)),
+        (_hide_noise(parts),),
+    )
 
 
 def _orientations(parts: WindowParts) -> tuple[Action, ...]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from app.settings.theme import ThemeChoice
-from app.window.action import Action
+from app.window.action import Action, grouped
 from app.window.window_parts import WindowParts
 from processing.core.text import Language, Text
 from processing.image.attributes.attributes import ATTRIBUTES
@@ -29,13 +29,11 @@ def view_actions(parts: WindowParts, speak: Callable[[Language], None]) -> tuple
     speak : callable
         Changes the language of the window.
     """
-    return (
-        *_positions(parts),
-        *_standings(parts),
-        *_sections(parts),
-        *_themes(parts),
-        *_languages(parts, speak),
-        *_looks(parts),
+    return grouped(
+        _positions(parts),
+        (*_standings(parts), *_sections(parts)),
+        (*_themes(parts), *_languages(parts, speak)),
+        _looks(parts),
     )
 
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 from processing.core.text import Text
 
@@ -38,6 +38,8 @@ class Action:
         It can only be done while a project is open.
     why_disabled : Text
         Why it may be disabled while a project is open; empty where that isn't known.
+    begins_group : bool
+        A line is drawn above it in its menu; above its submenu where it is the first in that.
     """
 
     id: str
@@ -53,6 +55,7 @@ class Action:
     needs_project: bool = False
     is_checked: bool = False
     why_disabled: Text = NOTHING
+    begins_group: bool = False
 
     @property
     def name(self) -> Text:
@@ -70,6 +73,15 @@ class Action:
         """The name of the menu it is in; empty when it is in none."""
         title = dict(MENUS).get(self.menu.partition("/")[0], NOTHING)
         return Text(_bare(title.en), _bare(title.ja))
+
+
+def grouped(*groups: Sequence[Action]) -> tuple[Action, ...]:
+    """All actions of several groups, which a menu shows with a line between them."""
+    return tuple(
+        replace(action, begins_group=True) if number == 0 else action
+        for group in groups
+        for number, action in enumerate(group)
+    )
 
 
 def map_action(
@@ -97,16 +109,20 @@ MENUS: tuple[tuple[str, Text], ...] = (
 """Menus from left to right."""
 
 SUBMENUS: Mapping[str, Text] = {
+    "file/recent": Text("Recent projects", "最近使ったプロジェクト"),
     "view/image": Text("Image", "画像"),
     "view/clip": Text("3D shows", "3Dの表示範囲"),
     "view/layouts": Text("Layouts", "レイアウト"),
     "view/section": Text("Section", "断面"),
+    "view/panels": Text("Panels", "パネル"),
     "view/theme": Text("Theme", "配色"),
     # Both words, so that who can't read the language spoken finds it.
     "view/language": Text("Language / 言語", "言語 / Language"),
     "edit/select": Text("Select", "選択"),
     "edit/lines": Text("Lines", "線の編集"),
     "edit/status": Text("Status", "状態"),
+    "draw/widths": Text("Widths and measurements", "幅と計測結果"),
+    "process/settings": Text("Settings of a tool", "ツールの設定"),
     "draw/templates": Text("Templates", "テンプレート"),
     "draw/kinds": Text("Kinds by number key", "数字キーの種別"),
     "draw/snap": Text("Snap", "スナップ"),

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
 
 from PySide6.QtCore import QByteArray, QEvent, QSize, Qt, QTimer, Signal
@@ -57,11 +58,13 @@ class MainWindow(QMainWindow):
         self._in_front: list[QDockWidget] = []
         self._waiting: list[QDockWidget] = []
         self._panels: tuple[DockPanel, ...] = ()
+        self._had_room: set[str] = set()
         self._toolbar: QToolBar | None = None
         self._tools: QAction | None = None
         self._area: ViewArea | None = None
         self._pages = QStackedWidget()
         self._is_open = False
+        self._may_close: Callable[[], bool] | None = None
         self._docks_when_open: QByteArray | None = None
         # Docks take their sizes, and come to the front, only once they are laid out.
         self._when_laid_out = QTimer(self, singleShot=True)
@@ -151,7 +154,6 @@ class MainWindow(QMainWindow):
 
     def add_panels(self, panels: Sequence[DockPanel], language: Language) -> None:
         """Put panels into docks; docks of one area stand above each other."""
-        self.actions_made.divide("view")
         self._panels = tuple(panels)
         for panel in panels:
             dock = QDockWidget(panel.title.in_language(language), self)
@@ -161,6 +163,8 @@ class MainWindow(QMainWindow):
             if panel.place.is_hidden:
                 self._waiting.append(dock)
             self._docks[panel.id] = dock
+            if panel.place.worked_in_px:
+                dock.visibilityChanged.connect(partial(self._give_room, panel))
             self._adopt_toggle(panel, dock)
 
     def show_panel(self, id_: str) -> None:
@@ -219,6 +223,15 @@ class MainWindow(QMainWindow):
         if _BESIDE in self.actions_made:
             self.actions_made[_BESIDE].setChecked(self.area.is_beside)
 
+    def ask_before_closing(self, may_close: Callable[[], bool]) -> None:
+        """Close only where this says so."""
+        self._may_close = may_close
+
+    def close_at_once(self) -> None:
+        """Close without asking, as the system wants it or the user has answered."""
+        self._may_close = None
+        self.close()
+
     @override
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
@@ -238,6 +251,9 @@ class MainWindow(QMainWindow):
 
     @override
     def closeEvent(self, event: QCloseEvent) -> None:
+        if self._may_close is not None and not self._may_close():
+            event.ignore()
+            return
         self.closed.emit()
         super().closeEvent(event)
 
@@ -257,6 +273,15 @@ class MainWindow(QMainWindow):
         if self._actions is not None:
             self._actions.deleteLater()
 
+    def _give_room(self, panel: DockPanel, is_visible: object) -> None:
+        """Let a panel that comes to the front for the first time be as high as its work needs."""
+        is_first = panel.id not in self._had_room
+        if not (is_visible and is_first and self._is_open) or self.width() >= _NARROW_PX:
+            return
+        self._had_room.add(panel.id)
+        if self._docks[panel.id].height() < panel.place.worked_in_px:
+            make_room(self, panel.id, panel.place.worked_in_px)
+
     def _adopt_toggle(self, panel: DockPanel, dock: QDockWidget) -> None:
         toggle = dock.toggleViewAction()
         toggle.triggered.connect(dock.raise_)
@@ -264,7 +289,7 @@ class MainWindow(QMainWindow):
             f"panel-{panel.id}",
             Text("Panel: {title}", "パネル: {title}").filled(title=panel.title),
             toggle.trigger,
-            "view",
+            "view/panels",
             (panel.place.key,) if panel.place.key else (),
             needs_project=True,
         )
@@ -313,4 +338,5 @@ class MainWindow(QMainWindow):
         elif self._is_open:
             for dock in self._in_front:
                 dock.raise_()
+        self._had_room.clear()
         hide_stray_tabs(self)

@@ -49,6 +49,8 @@ class WindowActions(QObject):
         self._menus: dict[str, QMenu] = {
             id_: window.menuBar().addMenu(title.in_language(language)) for id_, title in MENUS
         }
+        for menu in self._menus.values():
+            menu.setToolTipsVisible(True)  # which say why an entry is grey
 
     @property
     def entries(self) -> tuple[ActionEntry, ...]:
@@ -91,15 +93,17 @@ class WindowActions(QObject):
         """Take in an action that a widget has made itself."""
         self._entries[action.id] = ActionEntry(action, made)
         if action.menu:
+            if action.begins_group:
+                self._divide(action.menu)
             self._menu(action.menu).addAction(made)
         self._window.addAction(made)  # its key works though no menu may show it
+        self._enable(self._entries[action.id])
         self._give_keys(action.id, action.keys)
         self._colour(self._entries[action.id])
-        self._enable(self._entries[action.id])
 
-    def divide(self, menu: str) -> None:
-        """Draw a line below what a menu holds now."""
-        self._menu(menu).addSeparator()
+    def menu(self, id_: str) -> QMenu:
+        """A menu by its id, for entries that come and go."""
+        return self._menu(id_)
 
     def give_keys(self, keys: Mapping[str, tuple[str, ...]]) -> None:
         """Let these actions be reached by these keys from now on."""
@@ -112,6 +116,7 @@ class WindowActions(QObject):
         self._has_project = is_open
         for entry in self._entries.values():
             self._enable(entry)
+            self._explain(entry)
 
     def allow(self, id_: str, *, is_allowed: bool) -> None:
         """Say whether there is anything for an action to do, project or not."""
@@ -138,7 +143,14 @@ class WindowActions(QObject):
         if id_ not in self._menus:
             above = self._menus[id_.partition("/")[0]]
             self._menus[id_] = above.addMenu(SUBMENUS[id_].in_language(self._language))
+            self._menus[id_].setToolTipsVisible(True)
         return self._menus[id_]
+
+    def _divide(self, id_: str) -> None:
+        """Draw a line below what a menu holds, or below what stands above a new submenu."""
+        menu = self._menus.get(id_, self._menus[id_.partition("/")[0]])
+        if menu.actions():
+            menu.addSeparator()
 
     def _give_keys(self, id_: str, keys: tuple[str, ...]) -> None:
         self._entries[id_].made.setShortcuts([QKeySequence(key) for key in keys])
@@ -148,7 +160,7 @@ class WindowActions(QObject):
         """Tell name, key, what it does and why it can't be done, as far as there is any."""
         keys = [key.toString(_NATIVE) for key in entry.made.shortcuts()]
         name = entry.action.name.in_language(self._language)
-        why_not = self._forbidden.get(entry.action.id, NOTHING)
+        why_not = self.why_disabled(entry)
         reported = (
             f"{name} ({keys[0]})" if keys else name,
             entry.action.hint.in_language(self._language),

@@ -34,6 +34,8 @@ class PanelPlace:
         The key of that action.
     front_px : tuple of (ViewLayout, int)
         The layouts that bring it to the front, and how high it is then, in pixels.
+    worked_in_px : int
+        How high its work wants it in a narrow window, where it shares a column; 0: as it comes.
     """
 
     area: Qt.DockWidgetArea
@@ -44,6 +46,7 @@ class PanelPlace:
     is_hidden: bool = False
     key: str = ""
     front_px: tuple[tuple[ViewLayout, int], ...] = ()
+    worked_in_px: int = 0
 
 
 @dataclass(frozen=True)

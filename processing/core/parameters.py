@@ -53,6 +53,8 @@ class Parameter:
         Limits, both allowed; only numbers and counts have them.
     picture : str
         What shows its meaning, ``NAME`` or ``NAME/PART``; empty without one.
+    zero : Text
+        What 0 stands for and is shown as, where it stands for something else than a number.
     """
 
     id: str
@@ -65,6 +67,7 @@ class Parameter:
     high: float = 0.0
     choices: tuple[ParameterChoice, ...] = ()
     picture: str = ""
+    zero: Text = _NONE
 
     @property
     def is_typed(self) -> bool:
@@ -86,10 +89,13 @@ def length(
     name: Text,
     explanation: Text = _NONE,
     picture: str = "",
+    zero: Text = _NONE,
 ) -> Any:
     """A length in metres."""
     return _declare_field(
-        Parameter("", "number", default, name, explanation, "m", low, high, picture=picture)
+        Parameter(
+            "", "number", default, name, explanation, "m", low, high, picture=picture, zero=zero
+        )
     )
 
 

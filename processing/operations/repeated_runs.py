@@ -71,7 +71,12 @@ def with_earlier_decisions(found: FoundFeatures, project: Project) -> FoundFeatu
     earlier = _Earlier.of(found, project, runs)
     is_known = are_known(found.change.added, earlier.decided)
     added = tuple(one for one, known in zip(found.change.added, is_known, strict=True) if not known)
-    beside = Beside(replaced=len(earlier.replaced), decided=sum(is_known))
+    beside = Beside(
+        replaced=len(earlier.replaced),
+        decided=sum(is_known),
+        kept=sum(are_known(earlier.replaced, added)),
+        new=len(added) - sum(are_known(added, earlier.replaced)),
+    )
     summary = summary_of(found.tool, len(added), found.note, beside)
     change = replace(found.change, added=added, removed=earlier.replaced)
     return replace(found, run=replace(found.run, summary=summary), change=change)

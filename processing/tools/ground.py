@@ -72,6 +72,7 @@ class GroundParameters:
             "格子の一辺の長さです。0では点群から自動で決まります。「論文の方法」と「最下点」では、"
             "0は論文と同じ3m（取り除く機械の幅の約1.5倍）です。",
         ),
+        zero=Text("Automatic", "自動"),
     )
     steep_deg: float = angle(
         80.0,

@@ -51,7 +51,7 @@ def shown_window(qtbot: QtBot, folder: Path) -> Iterator[WindowParts]:
     parts.window.show()
     qtbot.waitExposed(parts.window)
     yield parts
-    parts.window.close()
+    parts.window.close_at_once()
     parts.window.deleteLater()
 
 

@@ -99,5 +99,5 @@ def surveyor(qtbot, tmp_path, sample_project) -> Iterator[Surveyor]:
     parts.window.show()
     qtbot.waitExposed(parts.window)
     yield Surveyor(qtbot, parts, sample_project)
-    parts.window.close()
+    parts.window.close_at_once()
     parts.window.deleteLater()

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from PySide6.QtCore import Signal
+from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import (
     QCheckBox,
     QDialog,
@@ -15,12 +16,13 @@ from PySide6.QtWidgets import (
     QHBoxLayout,
     QLabel,
     QLineEdit,
-    QListWidget,
     QPushButton,
     QVBoxLayout,
     QWidget,
 )
 
+from widgets.dialogs.delivery_map import DeliveryMap, DeliveryShapes
+from widgets.dialogs.delivery_table import DeliveredRow, DeliveryTable
 from widgets.dialogs.reference_systems import ReferenceSystemBox
 from widgets.parts.plain_buttons import remove_icons
 
@@ -65,18 +67,24 @@ class ImportForm(QDialog):
         super().__init__(parent)
         self._kinds = kinds
         self.setWindowTitle(self.tr("Import a drive"))
-        self.resize(620, 380)
-        self._files = QListWidget(self)
-        self._files.setSelectionMode(QListWidget.SelectionMode.ExtendedSelection)
+        self.resize(940, 560)
+        self._files = DeliveryTable(self)
+        self._map = DeliveryMap(self)
+        self._summary = QLabel(self)
+        self._summary.setWordWrap(True)
+        self._summary.setAlignment(Qt.AlignmentFlag.AlignTop)
         self._project = QLineEdit(str(project), self)
         self._crs = ReferenceSystemBox(self)
         self._as_labels = QCheckBox(self.tr("Take the delivered classes as labels"), self)
         self._as_labels.setToolTip(
             self.tr("Labels can be corrected by hand and are exported to LAS again.")
         )
-        self._beside = QCheckBox(self)
-        self._beside.hide()
+        self._beside, self._images, self._into = QCheckBox(self), QCheckBox(self), QCheckBox(self)
+        for offer in (self._beside, self._images, self._into):
+            offer.hide()
         self._offered: tuple[Path, ...] = ()
+        self._offered_images: tuple[Path, ...] = ()
+        self._offered_project: Path | None = None
         self._lacking = QLabel(self)
         self._lacking.setWordWrap(True)
         self._lacking.hide()
@@ -94,16 +102,19 @@ class ImportForm(QDialog):
 
     def add_files(self, files: tuple[Path, ...]) -> None:
         """Add files to the list; those that are there already stay once."""
-        listed = {self._files.item(row).text() for row in range(self._files.count())}
-        for file in files:
-            if str(file) not in listed:
-                self._files.addItem(str(file))
+        self._files.add_files(files)
         self._tell_files()
+
+    def use_options(self, options: ImportOptions) -> None:
+        """Stand as when these options were asked for."""
+        self._project.setText(str(options.project))
+        self._crs.choose(options.crs)
+        self._as_labels.setChecked(options.classes_as_labels)
 
     @property
     def files(self) -> tuple[Path, ...]:
         """The files in the list."""
-        return tuple(Path(self._files.item(row).text()) for row in range(self._files.count()))
+        return self._files.files
 
     @property
     def crs(self) -> str:
@@ -133,8 +144,34 @@ class ImportForm(QDialog):
         )
         self._lacking.setVisible(is_lacking and not beside)
 
+    def offer_images(self, beside: tuple[Path, ...]) -> None:
+        """Offer image lists that lie beside the files; they are ticked at first."""
+        self._offered_images = beside
+        names = ", ".join(path.name for path in beside)
+        words = self.tr("Take the list of camera images beside them: {name}")
+        self._images.setText(words.format(name=names))
+        self._images.setChecked(bool(beside))
+        self._images.setVisible(bool(beside))
+
+    def offer_project(self, project: Path | None) -> None:
+        """Offer to import into a project that lies beside the files instead of a new one."""
+        self._offered_project = project
+        name = "" if project is None else project.name
+        self._into.setText(self.tr("Add to the project beside them: {name}").format(name=name))
+        self._into.setChecked(False)
+        self._into.setVisible(project is not None)
+
+    def show_delivery(
+        self, rows: Sequence[DeliveredRow], shapes: DeliveryShapes, summary: str
+    ) -> None:
+        """Show what the files hold, where they lie and what of them belongs together."""
+        self._files.show_rows(rows)
+        self._map.show_shapes(shapes)
+        self._summary.setText(summary)
+
     def _tell_files(self) -> None:
-        self._import.setEnabled(self._files.count() > 0)
+        self._import.setEnabled(bool(self.files))
+        self._summary.setText(self.tr("Looking at the files…") if self.files else "")
         self.files_changed.emit(self.files)
 
     def ask_for_files(self) -> None:
@@ -173,15 +210,20 @@ class ImportForm(QDialog):
         layout = QVBoxLayout(self)
         layout.addWidget(hint)
         layout.addLayout(files, 1)
-        layout.addWidget(self._beside)
-        layout.addWidget(self._lacking)
+        below = QHBoxLayout()
+        below.addWidget(self._map)
+        said = QVBoxLayout()
+        said.addWidget(self._summary, 1)
+        for offer in (self._beside, self._images, self._lacking, self._into):
+            said.addWidget(offer)
+        below.addLayout(said, 1)
+        layout.addLayout(below)
         layout.addLayout(form)
         layout.addWidget(self._trouble)
         layout.addWidget(self._buttons)
 
     def _on_remove_clicked(self) -> None:
-        for item in self._files.selectedItems():
-            self._files.takeItem(self._files.row(item))
+        self._files.remove_selected()
         self._tell_files()
 
     def _on_position_clicked(self) -> None:
@@ -201,7 +243,11 @@ class ImportForm(QDialog):
         files = self.files
         if self._beside.isVisible() and self._beside.isChecked():
             files += self._offered
+        if self._images.isVisible() and self._images.isChecked():
+            files += self._offered_images
         project = Path(self._project.text().strip())
+        if self._into.isChecked() and self._offered_project is not None:
+            project = self._offered_project
         if project.suffix != ".zuka":
             project = project.with_name(project.name + ".zuka")
         request = ImportOptions(files, project, code, self._as_labels.isChecked())

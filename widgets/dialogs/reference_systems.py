@@ -45,6 +45,14 @@ class ReferenceSystemBox(QComboBox):
             name = self.tr("{code}  Plane rectangular system {zone} (JGD2011)")
             self.addItem(name.format(code=code, zone=zone), code)
 
+    def choose(self, code: str) -> None:
+        """Stand at a code; empty for the first entry."""
+        found = self.findData(code)
+        if found >= 0:
+            self.setCurrentIndex(found)
+        else:
+            self.setEditText(code)
+
     @property
     def code(self) -> str | None:
         """``EPSG:n``; empty for the files' own; None when what was typed is neither."""
@@ -68,11 +76,7 @@ class ReferenceSystemForm(QDialog):
         self.setWindowTitle(self.tr("Reference system"))
         self._box = ReferenceSystemBox(self)
         self._box.removeItem(0)
-        found = self._box.findData(code)
-        if found >= 0:
-            self._box.setCurrentIndex(found)
-        else:
-            self._box.setEditText(code)
+        self._box.choose(code)
         self._trouble = QLabel(self)
         kinds = QDialogButtonBox.StandardButton
         buttons = QDialogButtonBox(kinds.Ok | kinds.Cancel, self)

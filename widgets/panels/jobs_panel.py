@@ -14,6 +14,7 @@ from PySide6.QtWidgets import (
 )
 
 from processing.core.text import Language
+from widgets.parts.elided_label import ElidedLabel
 from widgets.parts.job_view import JobView, time_left
 from widgets.parts.progress_bar import ProgressBar
 
@@ -70,6 +71,14 @@ class JobsPanel(QWidget):
         row.show_job(job)
         self._forget_oldest()
 
+    def forget_job(self, id_: str) -> None:
+        """Take a job off the list."""
+        row = self._jobs.pop(id_, None)
+        if row is not None:
+            self._rows.removeWidget(row)
+            row.deleteLater()
+        self._empty.setVisible(not self._jobs)
+
     def shown(self) -> tuple[JobView, ...]:
         """The jobs in the list, oldest first."""
         return tuple(row.job for row in self._jobs.values() if row.job is not None)
@@ -77,9 +86,7 @@ class JobsPanel(QWidget):
     def _forget_oldest(self) -> None:
         ended = [job.id for job in self.shown() if job.is_over]
         for id_ in ended[: max(0, len(ended) - _MOST_ENDED)]:
-            row = self._jobs.pop(id_)
-            self._rows.removeWidget(row)
-            row.deleteLater()
+            self.forget_job(id_)
 
 
 class _JobRow(QFrame):
@@ -92,7 +99,7 @@ class _JobRow(QFrame):
         self._locale = locale
         self.job: JobView | None = None
         self.setFrameShape(QFrame.Shape.StyledPanel)
-        self._title = QLabel(self)
+        self._title = ElidedLabel(self)
         self._state = QLabel(self)
         self._bar = ProgressBar(self)
         self._bar.setRange(0, _STEPS)
@@ -124,7 +131,9 @@ class _JobRow(QFrame):
         self._bar.setVisible(not job.is_over)
         self._cancel.setVisible(not job.is_over)
         words = "\n".join(job.error.split(" | ")) if job.error else job.text
-        self._words.setText("" if job.is_over and not job.error else words)
+        self._words.setText(job.result if job.is_over and not job.error else words)
+        began = self.tr("Began at {time}").format(time=job.started) if job.started else ""
+        self.setToolTip("\n".join(line for line in (job.title, began) if line))
         self._words.setVisible(bool(self._words.text()))
 
     def _state_words(self, job: JobView) -> str:
@@ -133,12 +142,16 @@ class _JobRow(QFrame):
             percent = f"{self._locale.toString(int(job.fraction * 100))} %"
             both = self.tr("{percent}, {left} left").format(percent=percent, left=left)
             return both if left else percent
-        return {
+        state = {
             "waiting": self.tr("waiting"),
             "finished": self.tr("done"),
             "failed": self.tr("failed"),
             "cancelled": self.tr("cancelled"),
         }[job.state]
+        if not (job.is_over and job.started):
+            return state
+        # The time of day at which it began, and how long it took.
+        return f"{job.started} · {time_left(job.seconds)} · {state}"
 
     def _on_cancel_clicked(self) -> None:
         if self.job is not None:

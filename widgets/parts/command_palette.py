@@ -25,7 +25,7 @@ from processing.core.text import Language, Text
 _NAME, _OTHER, _KEY = range(3)
 _ROW = Qt.ItemDataRole.UserRole
 _WHOLE_NAME = -1
-"""Before everything that only begins like what was typed."""
+"""Before everything that only begins like what was typed; so does a whole key."""
 _NATIVE = QKeySequence.SequenceFormat.NativeText
 _STEPS = {
     Qt.Key.Key_Down: 1,
@@ -83,7 +83,7 @@ class CommandPalette(QDialog):
         self._actions = sorted(actions, key=lambda named: order.get(named.id, len(order)))
         self._language = language
         self._words = QLineEdit(self)
-        self._words.setPlaceholderText(self.tr("Type part of a name"))
+        self._words.setPlaceholderText(self.tr("Type part of a name, or a key such as F9"))
         self._list = QTreeWidget(self)
         self._list.setColumnCount(3)
         self._list.setHeaderHidden(True)
@@ -137,8 +137,12 @@ class CommandPalette(QDialog):
     @staticmethod
     def _rank(words: str, named: NamedAction) -> int | None:
         ranks = [match_rank(words, name) for name in (named.name.en, named.name.ja)]
-        if any(words.casefold() == name.casefold() for name in (named.name.en, named.name.ja)):
+        typed = _plain(words).replace(" ", "")
+        keys = [_plain(key.toString(_NATIVE)) for key in named.action.shortcuts()]
+        if typed in keys or typed in (_plain(name) for name in (named.name.en, named.name.ja)):
             return _WHOLE_NAME
+        if "+" in typed and any(key.startswith(typed) for key in keys):
+            return 0
         return min((rank for rank in ranks if rank is not None), default=None)
 
     def _item(self, named: NamedAction) -> QTreeWidgetItem:

@@ -20,6 +20,12 @@ class JobView:
     state : {"waiting", "running", "finished", "failed", "cancelled"}
     error : str
         What, where, what to do, divided by bars; empty unless it failed.
+    started : str
+        The time of day when it began; empty while it waits.
+    seconds : float
+        How long it took; 0 until it is over.
+    result : str
+        What it made; empty while that isn't known.
     """
 
     id: str
@@ -29,6 +35,9 @@ class JobView:
     seconds_left: float | None
     state: str
     error: str = ""
+    started: str = ""
+    seconds: float = 0.0
+    result: str = ""
 
     @property
     def is_over(self) -> bool:

@@ -7,7 +7,10 @@ from PySide6.QtGui import QAction
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QToolButton, QVBoxLayout, QWidget
 
 from processing.core.errors import UserError
-from processing.core.text import Language
+from processing.core.text import Language, Text
+
+_TROUBLE = "#7a2e16"
+_NEWS = "#1d4f6e"
 
 
 class MessageBar(QFrame):
@@ -18,9 +21,6 @@ class MessageBar(QFrame):
         self._language = language
         self._error: UserError | None = None
         self.setObjectName("messageBar")
-        self.setStyleSheet(
-            "#messageBar { background: #7a2e16; } #messageBar QLabel { color: #ffffff; }"
-        )
         self._what = QLabel(self)
         self._rest = QLabel(self)
         for label in (self._what, self._rest):
@@ -67,14 +67,39 @@ class MessageBar(QFrame):
         remedy, other : QAction, optional
             What can be done about it at once; buttons for it are shown.
         """
-        for button, action in ((self._remedy, remedy), (self._other, other)):
-            for old in button.actions():
-                button.removeAction(old)
-            button.setVisible(action is not None)
-            if action is not None:
-                button.setDefaultAction(action)
+        self._offer(remedy, other)
+        self._paint(_TROUBLE)
         self._error = error
         self._what.setText(error.what.in_language(self._language))
         where, advice = (part.in_language(self._language) for part in (error.where, error.remedy))
         self._rest.setText(f"{where}\n{advice}")
+        self._rest.show()
         self.show()
+
+    def show_news(
+        self, news: Text, action: QAction | None = None, other: QAction | None = None
+    ) -> None:
+        """Say what was done, with what one may want to do next, until something else is said."""
+        self._offer(action, other)
+        self._paint(_NEWS)
+        self._error = None
+        self._what.setText(news.in_language(self._language))
+        self._rest.clear()
+        self._rest.hide()
+        self.show()
+
+    def _offer(self, action: QAction | None, other: QAction | None) -> None:
+        for button, shown in ((self._remedy, action), (self._other, other)):
+            for old in button.actions():
+                button.removeAction(old)
+            button.setVisible(shown is not None)
+            if shown is not None:
+                button.setDefaultAction(shown)
+                has_menu = shown.menu() is not None
+                modes = QToolButton.ToolButtonPopupMode
+                button.setPopupMode(modes.InstantPopup if has_menu else modes.DelayedPopup)
+
+    def _paint(self, background: str) -> None:
+        self.setStyleSheet(
+            f"#messageBar {{ background: {background}; }} #messageBar QLabel {{ color: #ffffff; }}"
+        )

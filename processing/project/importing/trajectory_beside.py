@@ -49,6 +49,13 @@ def trajectories_beside(inputs: Sequence[Path], crs: str) -> tuple[Path, ...]:
     return tuple(chosen)
 
 
+def images_beside(inputs: Sequence[Path]) -> tuple[Path, ...]:
+    """The image lists in the folders of point files."""
+    homes = dict.fromkeys(path.resolve().parent for path in inputs)
+    files = [path for home in homes for path in _list_files(home)[:_MOST_FILES]]
+    return tuple(path for path in files if _holds(path, Content.IMAGES))
+
+
 def wants_trajectory(inputs: Sequence[Path]) -> bool:
     """Whether a scanner that moved recorded one of the point files, as far as their times tell."""
     return any(_times_of(path) is not None for path in inputs)
@@ -77,7 +84,11 @@ def _candidates(inputs: Sequence[Path]) -> Iterator[Path]:
     for home in dict.fromkeys(path.resolve().parent for path in inputs):
         for folder in (home, *_folders_in(home), *_folders_in(home.parent)):
             for path in _list_files(folder)[: 4 * _MOST_FILES]:
-                if len(seen) < _MOST_FILES and path not in seen and _is_trajectory(path):
+                if (
+                    len(seen) < _MOST_FILES
+                    and path not in seen
+                    and _holds(path, Content.TRAJECTORY)
+                ):
                     seen.add(path)
                     yield path
 
@@ -93,11 +104,11 @@ def _list_files(folder: Path) -> list[Path]:
         return []
 
 
-def _is_trajectory(path: Path) -> bool:
-    if path.suffix.lower() not in FORMATS.endings_read(Content.TRAJECTORY):
+def _holds(path: Path, content: Content) -> bool:
+    if path.suffix.lower() not in FORMATS.endings_read(content):
         return False
     with suppress(UserError), report_as_user_error(path):
-        return path.is_file() and content_of(path) is Content.TRAJECTORY
+        return path.is_file() and content_of(path) is content
     return False
 
 

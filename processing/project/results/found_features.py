@@ -35,6 +35,10 @@ _REPLACED = Text(
     "{count} earlier undecided ones were replaced", "以前の未判定候補{count}件を置き換え"
 )
 _REPLACED_ONE = Text("1 earlier undecided one was replaced", "以前の未判定候補1件を置き換え")
+_COMPARED = Text(
+    "{replaced}: {kept} found again, {new} new, {gone} gone",
+    "{replaced}: 同じ位置{kept}件・新規{new}件・消失{gone}件",
+)
 _DECIDED = Text("{count} places had been decided", "判定済みの{count}か所を除外")
 _DECIDED_ONE = Text("1 place had been decided", "判定済みの1か所を除外")
 _BESIDE = Text("{summary}; {told}", "{summary}（{told}）")
@@ -79,10 +83,16 @@ class Beside:
         Undecided candidates of earlier runs that went.
     decided : int
         Candidates left out, since a person had decided about their places.
+    kept : int
+        Of those that went, how many were found again at the same place.
+    new : int
+        Candidates where the earlier runs had none.
     """
 
     replaced: int = 0
     decided: int = 0
+    kept: int = 0
+    new: int = 0
 
 
 _ALONE = Beside()
@@ -146,6 +156,13 @@ def summary_of(tool: Tool, count: int, note: Text = _NO_NOTE, beside: Beside = _
     text = _FOUND if count > 1 else (_FOUND_ONE if count else nothing)
     summary = text.filled(tool=tool.name, count=f"{count:,}")
     replaced = _write_count(beside.replaced, _REPLACED_ONE, _REPLACED)
+    if replaced is not None:
+        replaced = _COMPARED.filled(
+            replaced=replaced,
+            kept=f"{beside.kept:,}",
+            new=f"{beside.new:,}",
+            gone=f"{beside.replaced - beside.kept:,}",
+        )
     decided = _write_count(beside.decided, _DECIDED_ONE, _DECIDED)
     reported = _BOTH.filled(replaced=replaced, decided=decided) if replaced and decided else None
     if reported := reported or replaced or decided:

@@ -313,7 +313,8 @@ def test_the_queue_goes_on_with_what_a_second_run_put_in_the_place_of_the_undeci
     assert (progress.accepted, progress.rejected, progress.left) == (1, 1, COUNT - 2)
     assert desk.current().provenance.run == again.run.id
     assert desk.reported[-1] == (
-        "Curbs: 48 candidates; 48 earlier undecided ones were replaced, 2 places had been decided"
+        "Curbs: 48 candidates; 48 earlier undecided ones were replaced: "
+        "48 found again, 0 new, 0 gone, 2 places had been decided"
     )
     desk.document.undo()
     assert desk.review.progress.left == COUNT - 2

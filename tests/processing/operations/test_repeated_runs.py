@@ -77,8 +77,11 @@ def test_a_second_run_takes_the_place_of_what_was_undecided(project: Project) ->
     second = store(project, lines(*APART))
     assert {one.provenance.run for one in project.features.all()} == {second.run.id}
     assert len(project.features) == len(APART)
-    told = "Curbs: 4 candidates; 4 earlier undecided ones were replaced"
-    assert second.run.summary == Text(told, "縁石: 候補4件（以前の未判定候補4件を置き換え）")
+    told = (
+        "Curbs: 4 candidates; 4 earlier undecided ones were replaced: 4 found again, 0 new, 0 gone"
+    )
+    told_ja = "縁石: 候補4件（以前の未判定候補4件を置き換え: 同じ位置4件・新規0件・消失0件）"
+    assert second.run.summary == Text(told, told_ja)
     assert project.history.undo_label == second.run.summary
     project.features.undo()
     assert {one.id for one in project.features.all()} == {one.id for one in first.change.added}
@@ -94,7 +97,8 @@ def test_what_was_decided_stays_and_is_not_proposed_again(project: Project) -> N
     assert positions(project) == [0, 10, 20, 30, 40]
     assert {one.id for one in project.features.all()} >= {one.id for one in kept}
     assert second.run.summary.en == (
-        "Curbs: 3 candidates; 2 earlier undecided ones were replaced, 2 places had been decided"
+        "Curbs: 3 candidates; 2 earlier undecided ones were replaced: "
+        "2 found again, 1 new, 0 gone, 2 places had been decided"
     )
 
 
@@ -117,7 +121,8 @@ def test_a_candidate_that_was_moved_by_hand_is_known_where_it_was_and_where_it_i
     second = store(project, lines(0))
     assert [one.id for one in project.features.all()] == [before.id]
     assert second.run.summary.en == (
-        "Curbs: nothing new; 1 earlier undecided one was replaced, 1 place had been decided"
+        "Curbs: nothing new; 1 earlier undecided one was replaced: "
+        "0 found again, 0 new, 1 gone, 1 place had been decided"
     )
     third = store(project, lines(0))
     assert third.change.is_empty
@@ -235,3 +240,11 @@ def test_a_run_is_not_asked_for_what_was_decided_before_it(project: Project) -> 
     runs = project.runs.all()
     assert runs_before(second, runs) == (first,)
     assert runs_before(first, runs) == runs_before(elsewhere, runs) == ()
+
+
+def test_a_second_run_tells_what_it_found_again_what_is_new_and_what_is_gone(
+    project: Project,
+) -> None:
+    store(project, lines(0, 10, 20))
+    second = store(project, lines(0, 10, 50, 60))
+    assert "2 found again, 2 new, 1 gone" in second.run.summary.en

@@ -122,3 +122,8 @@ def test_what_was_used_last_comes_first_among_what_fits_as_well(qtbot: QtBot) ->
 def test_a_beginning_fits_better_than_a_middle_and_letters_in_order() -> None:
     ranks = [match_rank(typed, "Open project") for typed in ("op", "pro", "ject", "opj", "jo")]
     assert ranks == [0, 1, 2, 3, None]
+
+
+def test_a_key_finds_the_command_that_has_it(bench: Bench) -> None:
+    bench.type("ctrl+e")
+    assert bench.lines()[0][0] == "書き出し"

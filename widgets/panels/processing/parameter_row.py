@@ -86,7 +86,7 @@ class ParameterRow(QWidget):
         """Set the default; tells nobody."""
         self.set_value(self._parameter.default)
 
-    def _make_number(self, language: Language) -> None:  # noqa: ARG002 - as the others are called
+    def _make_number(self, language: Language) -> None:
         parameter = self._parameter
         is_count = parameter.kind == "count"
         default = float(parameter.default)
@@ -94,6 +94,8 @@ class ParameterRow(QWidget):
         field = NumberField(
             parameter.low, parameter.high, unit=parameter.unit, decimals=decimals, parent=self
         )
+        if parameter.zero.en:
+            field.setSpecialValueText(parameter.zero.in_language(language))
         field.valueChanged.connect(self._on_field_changed)
 
         def get() -> ParameterValue:

@@ -5,17 +5,20 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from PySide6.QtCore import Qt, Signal
+from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import (
     QLabel,
-    QLineEdit,
     QPushButton,
     QScrollArea,
+    QSizePolicy,
     QSplitter,
+    QToolButton,
     QTreeWidget,
     QTreeWidgetItem,
     QVBoxLayout,
     QWidget,
 )
+from typing_extensions import override
 
 from processing.core.parameters import ParameterValue
 from processing.core.text import Language, Text
@@ -24,6 +27,8 @@ from processing.tools.tool import Tool
 from widgets.panels.processing.parameter_form import ParameterForm
 from widgets.panels.processing.parameter_picture import ParameterPicture
 from widgets.panels.tree_items import children_of
+from widgets.parts.literal_text import literal
+from widgets.parts.search_field import SearchField
 
 Reason = Callable[[str], Text | None]
 """From a tool's id to why it can't run now, or None."""
@@ -31,6 +36,12 @@ Reason = Callable[[str], Text | None]
 _ID = Qt.ItemDataRole.UserRole
 _LEAST_HIGH_PX = 40
 """Of list and form: both can be scrolled, and low screens have other panels too."""
+
+_PICTURE_PX = 380
+"""In a lower panel the fields need the room of the pictures."""
+
+_BOTH_PX = 560
+"""From this height on the list stays open above the form; below it is opened to choose."""
 
 
 class ProcessingPanel(QWidget):
@@ -65,10 +76,17 @@ class ProcessingPanel(QWidget):
         self._reason: Reason | None = None
         self._remark: Reason | None = None
         self._forms: dict[str, ParameterForm] = {}
-        self._search = QLineEdit(self)
-        self._search.setPlaceholderText(self.tr("Search for a tool"))
-        self._search.setClearButtonEnabled(True)
+        self._has_pictures = False
+        self._open_list = QToolButton(self)
+        self._open_list.setToolTip(self.tr("Choose another tool"))
+        self._open_list.setArrowType(Qt.ArrowType.DownArrow)
+        self._open_list.setToolButtonStyle(Qt.ToolButtonStyle.ToolButtonTextBesideIcon)
+        self._open_list.setCheckable(True)
+        self._open_list.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+        self._open_list.toggled.connect(self._share_room)
         self._list = QTreeWidget(self)
+        self._search = SearchField(self._list, self)
+        self._search.setPlaceholderText(self.tr("Search for a tool"))
         self._list.setHeaderHidden(True)
         self._list.setRootIsDecorated(False)
         self._list.setIndentation(12)
@@ -89,6 +107,7 @@ class ProcessingPanel(QWidget):
         self._fill()
         self._search.textChanged.connect(self._on_search_text_changed)
         self._list.currentItemChanged.connect(self._on_list_current_item_changed)
+        self._list.itemClicked.connect(self._on_list_item_clicked)
         self._choose_first()
 
     @property
@@ -153,16 +172,29 @@ class ProcessingPanel(QWidget):
     def show_tool(self, tool: str) -> None:
         """Choose a tool, as if it had been clicked."""
         self._search.clear()
+        self._open_list.setChecked(False)
         for item in self._items():
             if item.data(0, _ID) == tool:
                 self._list.setCurrentItem(item)
 
     def _lay_out(self) -> None:
-        below = QWidget(self)
-        layout = QVBoxLayout(below)
+        inside = QWidget(self)
+        self._inside = QVBoxLayout(inside)
+        self._inside.setContentsMargins(0, 0, 4, 0)
+        self._inside.setSpacing(8)
+        self._inside.addWidget(self._explanation)
+        self._inside.addStretch(1)
+        self._scroll.setWidget(inside)
+        self._choosing = QWidget(self)
+        choosing = QVBoxLayout(self._choosing)
+        choosing.setContentsMargins(0, 0, 0, 0)
+        choosing.setSpacing(4)
+        choosing.addWidget(self._search)
+        choosing.addWidget(self._list, 1)
+        self._form_side = QWidget(self)
+        layout = QVBoxLayout(self._form_side)
         layout.setContentsMargins(0, 4, 0, 0)
-        layout.setSpacing(8)
-        layout.addWidget(self._explanation)
+        layout.setSpacing(4)
         layout.addWidget(self._scroll, 1)
         # Below what scrolls: it stays in sight whatever field is at hand.
         layout.addWidget(self._picture)
@@ -170,16 +202,32 @@ class ProcessingPanel(QWidget):
         layout.addWidget(self._run)
         halves = QSplitter(Qt.Orientation.Vertical, self)
         halves.setChildrenCollapsible(False)
-        halves.addWidget(self._list)
-        halves.addWidget(below)
+        halves.addWidget(self._choosing)
+        halves.addWidget(self._form_side)
         halves.setStretchFactor(0, 1)
         halves.setStretchFactor(1, 2)
         halves.setSizes([100, 200])
         whole = QVBoxLayout(self)
         whole.setContentsMargins(8, 8, 8, 8)
         whole.setSpacing(4)
-        whole.addWidget(self._search)
+        whole.addWidget(self._open_list)
         whole.addWidget(halves, 1)
+
+    @override
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._share_room()
+
+    def _share_room(self) -> None:
+        """Show list and form above each other, or where that is too low the one or the other."""
+        has_room = self.height() >= _BOTH_PX
+        is_choosing = self._open_list.isChecked()
+        self._picture.setVisible(self._has_pictures and self.height() >= _PICTURE_PX)
+        self._open_list.setVisible(not has_room)
+        self._choosing.setVisible(has_room or is_choosing)
+        self._form_side.setVisible(has_room or not is_choosing)
+        if is_choosing and not has_room:
+            self._search.setFocus()
 
     def _fill(self) -> None:
         groups: dict[Text, QTreeWidgetItem] = {}
@@ -209,17 +257,16 @@ class ProcessingPanel(QWidget):
             self.refresh()
             return
         self._explanation.setText(tool.explanation.in_language(self._language))
+        self._open_list.setText(literal(tool.name.in_language(self._language)))
         if tool.id not in self._forms:
             self._forms[tool.id] = ParameterForm(tool.parameters, self._language)
             self._forms[tool.id].changed.connect(self.values_changed)
             self._forms[tool.id].pictured.connect(self._show_picture)
-        self._scroll.takeWidget()
+            self._inside.insertWidget(1, self._forms[tool.id])
         for form in self._forms.values():
             # Forms keep what was typed while another tool is looked at.
-            form.setParent(self)
-            form.hide()
-        self._scroll.setWidget(self._forms[tool.id])
-        self._forms[tool.id].show()
+            form.setVisible(form is self._forms[tool.id])
+        self._scroll.verticalScrollBar().setValue(0)
         self._show_picture(self._forms[tool.id].picture)
         self.refresh()
 
@@ -227,7 +274,8 @@ class ProcessingPanel(QWidget):
         self._picture.show_picture(name)
         form = self.form
         # Room is kept for a form that has pictures at all, so that nothing jumps under the mouse.
-        self._picture.setVisible(form is not None and form.has_pictures)
+        self._has_pictures = form is not None and form.has_pictures
+        self._picture.setVisible(self._has_pictures and self.height() >= _PICTURE_PX)
 
     def _on_search_text_changed(self, words: str) -> None:
         wanted = words.lower().split()
@@ -244,6 +292,10 @@ class ProcessingPanel(QWidget):
     def _on_list_current_item_changed(self) -> None:
         if self.tool:
             self._show_form()
+
+    def _on_list_item_clicked(self) -> None:
+        if self.tool:
+            self._open_list.setChecked(False)
 
     def _on_run_clicked(self) -> None:
         form = self.form

@@ -5,7 +5,6 @@ from __future__ import annotations
 from PySide6.QtCore import QSignalBlocker, Qt, Signal
 from PySide6.QtWidgets import (
     QHeaderView,
-    QLineEdit,
     QTreeWidget,
     QTreeWidgetItem,
     QVBoxLayout,
@@ -17,6 +16,7 @@ from processing.map.catalogue import FeatureKind
 from widgets.feature_drawing.swatch import swatch_of
 from widgets.panels.feature_tally import FeatureTally
 from widgets.panels.tree_items import children_of
+from widgets.parts.search_field import SearchField
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
 
@@ -55,10 +55,9 @@ class LayersPanel(QWidget):
         self._language = language
         self._tally = FeatureTally(source)
         self._marked = ""
-        self._search = QLineEdit(self)
-        self._search.setPlaceholderText(self.tr("Search for a kind"))
-        self._search.setClearButtonEnabled(True)
         self._list = QTreeWidget(self)
+        self._search = SearchField(self._list, self)
+        self._search.setPlaceholderText(self.tr("Search for a kind"))
         self._list.setColumnCount(4)
         self._list.setHeaderHidden(True)
         self._list.setIndentation(8)

@@ -274,17 +274,13 @@ class ReviewPanel(QWidget):
         undo.setSizePolicy(QSizePolicy.Policy.Ignored, QSizePolicy.Policy.Preferred)
         page = QWidget(self)
         layout = QVBoxLayout(page)
-        layout.setContentsMargins(8, 8, 8, 8)
+        layout.setContentsMargins(0, 0, 0, 0)
         layout.setSpacing(8)
-        for one in (self._chooser, self._left, self._bar, self._facts):
+        for one in (self._card, self._done, self._facts):
             layout.addWidget(one)
-        # Above the card, whose height changes: buttons stay under the mouse.
-        layout.addLayout(judging)
-        layout.addWidget(self._card)
-        layout.addWidget(self._done)
         layout.addLayout(many)
-        layout.addWidget(self._rejected)
-        layout.addWidget(undo)
+        for one in (self._chooser, self._rejected, undo):
+            layout.addWidget(one)
         layout.addStretch(1)
         layout.addWidget(self._end)
         scroll = QScrollArea(self)
@@ -294,7 +290,16 @@ class ReviewPanel(QWidget):
         scroll.setWidget(page)
         room = scroll.verticalScrollBar().sizeHint().width()
         scroll.setMinimumWidth(page.minimumSizeHint().width() + room)
-        return scroll
+        whole = QWidget(self)
+        around = QVBoxLayout(whole)
+        around.setContentsMargins(8, 8, 8, 8)
+        around.setSpacing(8)
+        around.addWidget(self._left)
+        around.addWidget(self._bar)
+        around.addWidget(scroll, 1)
+        # Below what scrolls: buttons stay under the mouse, whatever is said of the candidate.
+        around.addLayout(judging)
+        return whole
 
     def _facts_words(self, progress: ReviewProgress) -> str:
         words = self.tr("{accepted} accepted · {rejected} rejected").format(

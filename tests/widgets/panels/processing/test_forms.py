@@ -24,6 +24,7 @@ from processing.tools.registry import TOOLS
 from widgets.panels.processing.parameter_form import ParameterForm
 from widgets.panels.processing.processing_panel import ProcessingPanel
 from widgets.parts.number_field import NumberField
+from widgets.parts.search_field import SearchField
 
 
 @dataclass(frozen=True)
@@ -191,7 +192,7 @@ def test_what_a_tool_must_be_given_is_said_and_it_can_run(panel: ProcessingPanel
 
 def test_the_search_finds_tools_in_both_languages(qtbot: QtBot, panel: ProcessingPanel) -> None:
     wanted = list(TOOLS.values())[-1]
-    search = panel.findChild(QLineEdit)
+    search = panel.findChild(SearchField)
     assert search is not None
     search.setText(wanted.name.ja)
     assert panel.tool == wanted.id
@@ -212,3 +213,40 @@ def test_forms_keep_what_was_set_while_another_tool_is_looked_at(
     panel.show_tool(first)
     assert panel.form is form
     assert getattr(form.value(), parameter.id) == parameter.high
+
+
+def test_a_low_panel_opens_its_list_to_choose_and_then_shows_the_whole_form(
+    qtbot: QtBot, panel: ProcessingPanel
+) -> None:
+    panel.resize(270, 420)
+    panel.show()
+    qtbot.waitExposed(panel)
+    (button,) = [
+        one
+        for one in panel.findChildren(QToolButton)
+        if one.isVisible() and one.toolTip() == "Choose another tool"
+    ]
+    search = panel.findChild(SearchField)
+    assert search is not None
+    assert not search.isVisible()
+    qtbot.mouseClick(button, Qt.MouseButton.LeftButton)
+    assert search.isVisible()
+    qtbot.keyClicks(search, "noise")
+    qtbot.keyClick(search, Qt.Key.Key_Return)
+    assert panel.tool == "noise"
+    assert not search.isVisible()
+    assert panel.form is not None
+    assert panel.form.isVisible()
+    panel.resize(270, 700)
+    assert search.isVisible()
+    assert panel.form.isVisible()
+
+
+def test_zero_is_shown_as_what_it_stands_for(qtbot: QtBot) -> None:
+    form = ParameterForm(TOOLS["ground"].parameters, "en")
+    qtbot.addWidget(form)
+    field = form.field("grid_m")
+    assert isinstance(field, NumberField)
+    assert field.text() == "Automatic"
+    field.setValue(0.5)
+    assert field.text() == "0.5 m"
