@@ -66,6 +66,7 @@ def read_arguments(arguments: Sequence[str]) -> tuple[Command, argparse.Namespac
         _add_map,
         _add_run,
         _add_extract,
+        _add_batch,
         _add_simulate,
     ):
         add(commands)
@@ -233,6 +234,15 @@ def _add_extract(commands: _Commands[_Parser]) -> None:
     )
     extracting.add_argument("--accept-above", type=float, metavar="CONFIDENCE")
     extracting.set_defaults(module="extract")
+
+
+def _add_batch(commands: _Commands[_Parser]) -> None:
+    working = commands.add_parser("batch", help="the same operations over many drives")
+    working.add_argument("job", type=Path, metavar="JOB.toml")
+    working.add_argument(
+        "--scheduler", default="", metavar="ADDRESS", help="of a Dask cluster, tcp://HOST:8786"
+    )
+    working.set_defaults(module="automation.batch")
 
 
 def _add_simulate(commands: _Commands[_Parser]) -> None:

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import os
 import threading
 import time
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Self
 
+from processing.core.process_memory import memory_of_tree
+
 _EVERY_S = 0.02
-_PROC = Path("/proc")
 
 
 @dataclass(frozen=True)
@@ -73,33 +72,3 @@ class MemoryWatch:
             held = memory_of_tree(self._process)
             if held[0]:
                 self.samples.append(MemorySample(time.monotonic(), *held))
-
-
-def memory_of_tree(process: int) -> tuple[int, int]:
-    """Resident and anonymous bytes of a process and all that it started; zeros when it is gone."""
-    resident, anonymous = _memory_of(process)
-    for child in _children_of(process):
-        more = memory_of_tree(child)
-        resident, anonymous = resident + more[0], anonymous + more[1]
-    return resident, anonymous
-
-
-def _memory_of(process: int) -> tuple[int, int]:
-    try:
-        lines = (_PROC / str(process) / "status").read_text().splitlines()
-    except OSError:  # it has ended, or the system tells such things otherwise
-        return 0, 0
-    sizes = {line.split(":")[0]: line.split()[1] for line in lines if line.endswith(" kB")}
-    kibibytes = [int(sizes.get(name, 0)) for name in ("VmRSS", "RssAnon", "RssShmem")]
-    return 1024 * kibibytes[0], 1024 * (kibibytes[1] + kibibytes[2])
-
-
-def _children_of(process: int) -> list[int]:
-    tasks = _PROC / str(process) / "task"
-    children: list[int] = []
-    try:
-        for task in os.listdir(tasks):  # noqa: PTH208 - many times a second
-            children += map(int, (tasks / task / "children").read_text().split())
-    except OSError:  # as above
-        return children
-    return children
