@@ -10,7 +10,7 @@ from app.window.action import Action
 from app.window.window_parts import WindowParts
 from processing.core.text import Text
 from processing.operations.learn import LEARN
-from processing.tools.registry import TOOLS, extractors
+from processing.tools.registry import TOOLS, extractors, tools_of_drives
 from processing.tools.tool import ToolButton
 from processing.tools.volume import VOLUME
 
@@ -38,6 +38,7 @@ def run_action_of(tool: str) -> str:
 
 def process_actions(parts: WindowParts) -> tuple[Action, ...]:
     """The process menu, from top to bottom."""
+    shown = tools_of_drives()
 
     def running(tool: str, button: ToolButton) -> Action:
         def run() -> None:
@@ -62,10 +63,10 @@ def process_actions(parts: WindowParts) -> tuple[Action, ...]:
 
         return Action(
             f"process-{tool}",
-            TOOLS[tool].name,
+            shown[tool].name,
             show,
             "process",
-            hint=TOOLS[tool].explanation,
+            hint=shown[tool].explanation,
             needs_project=True,
         )
 
@@ -79,7 +80,7 @@ def process_actions(parts: WindowParts) -> tuple[Action, ...]:
     return (
         _find_all_action(parts),
         *(running(tool, button) for tool, button in one_click_buttons().items()),
-        *(showing(tool) for tool in TOOLS),
+        *(showing(tool) for tool in shown),
         _learning_action(parts),
         *_volume_actions(parts),
         cancel,
