@@ -12,6 +12,7 @@ from app.importing.drive_wiring import connect_drives
 from app.importing.import_wiring import connect_imports
 from app.jobs.jobs import JobState, JobStatus
 from app.review.review_wiring import connect_review
+from app.runs.point_making import ask_and_make_points
 from app.runs.process_actions import FIND_ALL, one_click_buttons, run_action_of
 from app.templates.template_wiring import connect_templates
 from app.views.view_wiring import connect_views
@@ -20,8 +21,8 @@ from app.window.window_parts import WindowParts, take_down
 from processing.core.errors import Unsuitable
 from processing.core.text import Text
 from processing.map.change import Change
-from processing.tools.registry import extractors
-from processing.tools.running.runner import check_needs, tool_of
+from processing.tools.registry import POINT_MAKERS, extractors, tools_of_drives
+from processing.tools.running.runner import check_needs
 from widgets.parts.job_view import JobView
 from widgets.parts.literal_text import literal
 
@@ -119,7 +120,7 @@ class _Wiring(QObject):
         if not drive_id:
             return Text("Open a drive first.", "先に走行データを開いてください。")
         try:
-            check_needs(tool_of(tool), self._parts.document.drive(drive_id))
+            check_needs(tools_of_drives()[tool], self._parts.document.drive(drive_id))
         except Unsuitable as reason:
             return reason.what
         return None
@@ -136,7 +137,9 @@ class _Wiring(QObject):
     def remark_on_tool(self, tool: str) -> Text | None:
         """What must be given for a tool on the drive shown; None where nothing must."""
         drive_id = self._parts.document.shared.view_settings.drive_id
-        return tool_of(tool).remark(self._parts.document.drive(drive_id)) if drive_id else None
+        if not drive_id:
+            return None
+        return tools_of_drives()[tool].remark(self._parts.document.drive(drive_id))
 
     def on_document_opened(self) -> None:
         project = self._parts.document.project
@@ -194,7 +197,9 @@ class _Wiring(QObject):
 
     def on_processing_run_requested(self, tool: str, parameters: object) -> None:
         drive_id = self._parts.document.shared.view_settings.drive_id
-        if drive_id:
+        if drive_id and tool in POINT_MAKERS:
+            ask_and_make_points(self._parts, tool, drive_id, parameters)
+        elif drive_id:
             self._parts.document.start_run(tool, drive_id, parameters)
 
     def on_jobs_changed(self, status: JobStatus) -> None:

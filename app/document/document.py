@@ -14,7 +14,7 @@ from app.document.drive_results import DriveResults
 from app.document.job_results import JobResultApplier
 from app.document.label_news import report_labels
 from app.document.label_steps import LabelSteps
-from app.document.long_work import exported_words
+from app.document.long_work import exported_words, points_work, written_words
 from app.document.preparation import Preparation
 from app.document.run_results import RunResultApplier
 from app.document.undo import UndoStack
@@ -29,6 +29,7 @@ from processing.map.change import Change
 from processing.map.feature import Feature
 from processing.operations.export import ExportRequest
 from processing.operations.finished_runs import FinishedRun
+from processing.operations.new_points import points_operation_on_drive
 from processing.operations.project_export import WrittenFiles, export_of
 from processing.operations.run import operation_on_drive
 from processing.operations.store import StoredRun, store_prepared, store_run
@@ -373,6 +374,17 @@ class Document(QObject):
             self.reported.emit(exported_words(written, request.folder))
             self.exported.emit(written, request.folder)
 
+        return self._job_results.start(project, title, work, take)
+
+    def make_points(self, tool: str, drive_id: str, parameters: object, output: Path) -> str:
+        """Have a tool write points of its own to a file in the background; gives the job's id."""
+        project, drive = self._need_project(), self.drive(drive_id)
+        operation = points_operation_on_drive(tool, parameters, drive, project, output)
+
+        def take(written: Path) -> None:
+            self.reported.emit(written_words(written))
+
+        title, work = points_work(operation, drive)
         return self._job_results.start(project, title, work, take)
 
     def make_pages(self, request: ExportRequest, then: Callable[[], None]) -> str:

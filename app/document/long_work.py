@@ -15,13 +15,17 @@ from processing.image.images_of_drives import image_of
 from processing.operations.finished_runs import FinishedRun
 from processing.operations.import_files import bring_prepared
 from processing.operations.inputs import OpenedInputs
+from processing.operations.new_points import NewPointsOperation, make_points
 from processing.operations.project_export import WrittenFiles
 from processing.operations.run import RunFolders, RunOperation, finish_runs
 from processing.project.additions import Additions, home_of
 from processing.project.importing.import_request import ImportRequest
 from processing.project.project import Project
 from processing.recording.drive import Drive
+from processing.tools.registry import POINT_MAKERS
 from processing.tools.running.runner import tool_of
+
+_TOOL_AND_DRIVE = Text("{tool}: {name}", "{tool}: {name}")
 
 
 def import_work(
@@ -58,10 +62,23 @@ def run_work(
     folders, begin
         As of :func:`processing.operations.run.finish_runs`.
     """
-    title = Text("{tool}: {name}", "{tool}: {name}").filled(
+    title = _TOOL_AND_DRIVE.filled(
         tool=tool_of(operation.tool).name, name=", ".join(one.info.name for one in opened.chosen)
     )
     return title, lambda monitor: finish_runs(operation, opened, folders, monitor, begin=begin)
+
+
+def points_work(
+    operation: NewPointsOperation, drive: Drive
+) -> tuple[Text, Callable[[Monitor], Path]]:
+    """A tool writes points of its own to a file."""
+    title = _TOOL_AND_DRIVE.filled(tool=POINT_MAKERS[operation.tool].name, name=drive.info.name)
+    return title, lambda monitor: make_points(operation, monitor)
+
+
+def written_words(path: Path) -> Text:
+    """What is said after points were written to a file."""
+    return Text("Wrote {path}", "{path} を書き出しました").filled(path=path)
 
 
 def exported_words(written: WrittenFiles, folder: Path) -> Text:

@@ -10,7 +10,7 @@ from app.window.action import Action, grouped
 from app.window.window_parts import WindowParts
 from processing.core.text import Text
 from processing.operations.learn import LEARN
-from processing.tools.registry import TOOLS, extractors
+from processing.tools.registry import TOOLS, extractors, tools_of_drives
 from processing.tools.tool import ToolButton
 from processing.tools.volume import VOLUME
 
@@ -39,6 +39,7 @@ def run_action_of(tool: str) -> str:
 
 def process_actions(parts: WindowParts) -> tuple[Action, ...]:
     """The process menu, from top to bottom."""
+    shown = tools_of_drives()
 
     def running(tool: str, button: ToolButton) -> Action:
         def run() -> None:
@@ -64,10 +65,10 @@ def process_actions(parts: WindowParts) -> tuple[Action, ...]:
         # What one click runs stands there by that name; its form is one menu further.
         return Action(
             f"process-{tool}",
-            _FORM.filled(name=TOOLS[tool].name),
+            _FORM.filled(name=shown[tool].name),
             show,
             "process" if TOOLS[tool].button is None else "process/settings",
-            hint=TOOLS[tool].explanation,
+            hint=shown[tool].explanation,
             needs_project=True,
         )
 
@@ -80,7 +81,7 @@ def process_actions(parts: WindowParts) -> tuple[Action, ...]:
     )
     one_click = [running(tool, button) for tool, button in one_click_buttons().items()]
     settings = [showing(tool) for tool in one_click_buttons()]
-    others = [showing(tool) for tool in TOOLS if tool not in one_click_buttons()]
+    others = [showing(tool) for tool in shown if tool not in one_click_buttons()]
     return grouped(
         (_find_all_action(parts), *one_click, *settings),
         (*others, _learning_action(parts)),

@@ -10,7 +10,7 @@ import numpy as np
 
 from processing.core.errors import MissingInput, OutOfRange
 from processing.core.monitor import Monitor, parts_of
-from processing.core.parameters import ParameterValue, fill_parameters
+from processing.core.parameters import ParameterValue, fill_parameters, parameters_of
 from processing.core.text import Text
 from processing.formats.format import Content
 from processing.formats.points.new_points import Part, write_new_points
@@ -21,6 +21,9 @@ from processing.formats.points.waveform_output import (
 )
 from processing.formats.registry import FORMATS
 from processing.operations.inputs import OpenedInputs, OperationInputs, opened_inputs
+from processing.project.project import Project
+from processing.recording.drive import Drive
+from processing.recording.recorded_together import recorded_together
 from processing.recording.vehicle_path.clock import ClockKind, kind_of
 from processing.recording.waveform_packets.descriptors import WaveformDescriptor
 from processing.tools.registry import POINT_MAKERS
@@ -47,6 +50,33 @@ class NewPointsOperation:
     inputs: OperationInputs
     output: Path | None
     parameters: Mapping[str, ParameterValue] = field(default_factory=dict)
+
+
+def points_operation_on_drive(
+    tool: str, parameters: object, drive: Drive, project: Project, output: Path
+) -> NewPointsOperation:
+    """Points of a drive of a project with all parameters as they are, as the window asks for them.
+
+    What a tool makes of strips together it makes of those that were recorded with the drive.
+
+    Parameters
+    ----------
+    parameters : object
+        An instance of the tool's own parameter class.
+    """
+    made = POINT_MAKERS[tool]
+    values = {one.id: getattr(parameters, one.id) for one in parameters_of(made.parameters)}
+    drives = (drive,)
+    if isinstance(made.method, NewPointsTogether):
+        drives = recorded_together(drive, [one for one in project.drives if one.id != drive.id])
+    inputs = OperationInputs(project.folder, tuple(one.id for one in drives))
+    return NewPointsOperation(tool, inputs, output, values)
+
+
+def points_ending(tool: str) -> str:
+    """How the name of a file ends that a tool's points are written to, as dialogs offer it."""
+    method = POINT_MAKERS[tool].method
+    return _WITH_PACKETS if isinstance(method, NewPointsTogether) else _PACKED
 
 
 def make_points(operation: NewPointsOperation, monitor: Monitor) -> Path:
@@ -94,7 +124,7 @@ def make_points(operation: NewPointsOperation, monitor: Monitor) -> Path:
     return output
 
 
-_WITH_PACKETS = ".las"
+_WITH_PACKETS, _PACKED = ".las", ".laz"
 
 
 def _parts(

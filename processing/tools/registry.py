@@ -71,6 +71,11 @@ POINT_MAKERS: Mapping[str, Tool] = {
 """Those that make points of their own, into a file."""
 
 
+def tools_of_drives() -> Mapping[str, Tool]:
+    """Those that run on a drive: tools, and what makes points."""
+    return {**TOOLS, **POINT_MAKERS}
+
+
 def every_tool() -> Mapping[str, Tool]:
     """Tools, comparisons and what makes points."""
     return {**TOOLS, **COMPARISONS, **POINT_MAKERS}

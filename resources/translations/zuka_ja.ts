@@ -1246,6 +1246,13 @@ kept</source>
     </message>
 </context>
 <context>
+    <name>PointMaking</name>
+    <message>
+        <source>Write the points</source>
+        <translation>点群の書き出し</translation>
+    </message>
+</context>
+<context>
     <name>PrintForm</name>
     <message>
         <source>Print</source>

@@ -11,6 +11,7 @@ from processing.core.disk_room import refuse_small_disk
 from processing.core.errors import UNCHANGED, BadFile, report_as_user_error
 from processing.core.monitor import Monitor
 from processing.core.text import Text
+from processing.formats.format import function_of
 from processing.formats.points.delivered.delivered_waveforms import DeliveredWaveforms
 from processing.project.importing.recording import Recording
 from processing.recording.columns.ordering import chunk_ranges, read_chunk
@@ -106,6 +107,11 @@ def _take_packets(source: DeliveredWaveforms, number: int, folder: Path, monitor
             return
     refuse_small_disk(folder, source.size)
     temporary = target.with_suffix(".part")
+    if source.pack:
+        with report_as_user_error(folder), temporary.open("wb") as made:
+            function_of(source.pack)(source.path, made, monitor)
+        temporary.replace(target)
+        return
     with report_as_user_error(source.path), source.path.open("rb") as file:
         file.seek(source.first_byte)
         with temporary.open("wb") as copy:

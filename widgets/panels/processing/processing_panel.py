@@ -22,7 +22,7 @@ from typing_extensions import override
 
 from processing.core.parameters import ParameterValue
 from processing.core.text import Language, Text
-from processing.tools.registry import TOOLS
+from processing.tools.registry import tools_of_drives
 from processing.tools.tool import Tool
 from widgets.panels.processing.parameter_form import ParameterForm
 from widgets.panels.processing.parameter_picture import ParameterPicture
@@ -50,8 +50,8 @@ class ProcessingPanel(QWidget):
     Parameters
     ----------
     language : Language
-    tools : mapping of str to Tool
-        What can be chosen; every tool of the program.
+    tools : mapping of str to Tool, optional
+        What can be chosen; every tool of the program that runs on a drive.
 
     Signals
     -------
@@ -67,12 +67,12 @@ class ProcessingPanel(QWidget):
     def __init__(
         self,
         language: Language,
-        tools: Mapping[str, Tool] = TOOLS,
+        tools: Mapping[str, Tool] | None = None,
         parent: QWidget | None = None,
     ) -> None:
         super().__init__(parent)
         self._language = language
-        self._tools = tools
+        self._tools = tools_of_drives() if tools is None else tools
         self._reason: Reason | None = None
         self._remark: Reason | None = None
         self._forms: dict[str, ParameterForm] = {}

@@ -7,7 +7,7 @@ of the intensity; the second one gives the chunks.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
 
@@ -16,8 +16,10 @@ from numpy.typing import NDArray
 
 from processing.core.errors import UNCHANGED, BadFile, report_as_user_error
 from processing.core.text import Text
+from processing.formats.points.delivered.delivered_waveforms import DeliveredWaveforms
 from processing.formats.points.delivered.point_chunk import PointChunk, PointFileInfo, Vector3
 from processing.recording.columns.quantisation import Quantisation
+from processing.recording.waveform_packets.descriptors import WAVE_COLUMNS
 
 # Any numeric type as the file has it; what must come is said in FloatFile.
 ColumnBlock = dict[str, NDArray[np.generic]]
@@ -48,19 +50,24 @@ class FloatFile:
         uint16, ``origin`` (n, 3) float64. NaN or infinite coordinates: no point. Scans of a
         standing scanner have ``grid`` (n, 2) int64: sweep and place in it, −1 where unknown;
         ``scan`` (n,): number in the file from 1; ``scanner_position`` (n, 3) float64: where the
-        scanner stood, m. A block is of one scan, and scans follow one another.
+        scanner stood, m. A block is of one scan, and scans follow one another. Rows with waveforms
+        have :data:`WAVE_COLUMNS`, a packet for each row, also for those that are no point.
     columns_taken : tuple of str
         As :class:`PointFileInfo` says.
+    waveforms : DeliveredWaveforms or None
+        Of rows with waveforms, of one descriptor; their size follows from the rows.
     """
 
     path: Path
     format: str
     blocks: Callable[[], Iterator[ColumnBlock]]
     columns_taken: tuple[str, ...] = ()
+    waveforms: DeliveredWaveforms | None = None
 
 
 @dataclass(frozen=True)
 class _Summary:
+    rows: int
     count: int
     lowest: Vector3
     highest: Vector3
@@ -97,7 +104,15 @@ def info_of(file: FloatFile) -> PointFileInfo:
         attributes=tuple(name for name in summary.names if name not in _OF_SCANS),
         scanner_positions=summary.scanner_positions,
         columns_taken=file.columns_taken,
+        waveforms=_waveforms(file, summary.rows),
     )
+
+
+def _waveforms(file: FloatFile, rows: int) -> DeliveredWaveforms | None:
+    if file.waveforms is None:
+        return None
+    (descriptor,) = file.waveforms.descriptors.values()
+    return replace(file.waveforms, size=rows * descriptor.packet_bytes)
 
 
 def chunks_of(file: FloatFile, chunk_points: int) -> Iterator[PointChunk]:
@@ -151,7 +166,7 @@ def _chunk_columns(
         columns["time"] = np.where(np.abs(time) < _LONGEST_TIME_S, time, np.nan)
     if "scan_angle_deg" in values:
         columns["scan_angle_deg"] = values["scan_angle_deg"].astype(np.float32)
-    for name in ("color", "origin"):
+    for name in ("color", "origin", *WAVE_COLUMNS):
         if name in values:
             columns[name] = values[name]
     if "grid" in values:
@@ -232,7 +247,7 @@ class _Key:
 @np.errstate(invalid="ignore")
 def _read_summary(key: _Key) -> _Summary:
     """One pass; kept, as the same file is asked for its facts, a sample and its points."""
-    count = 0
+    count = rows = 0
     lowest, highest = np.full(3, np.inf), np.full(3, -np.inf)
     low, high, is_integral = np.inf, -np.inf, True
     names: tuple[str, ...] = ()
@@ -240,6 +255,7 @@ def _read_summary(key: _Key) -> _Summary:
     positions: dict[int, Vector3] = {}
     for block in key.file.blocks():
         names = tuple(name for name in block if name != "xyz")
+        rows += len(block["xyz"])
         good = _usable(block["xyz"])
         xyz = block["xyz"][good].astype(np.float64)
         if xyz.shape[0] == 0:
@@ -259,6 +275,7 @@ def _read_summary(key: _Key) -> _Summary:
             first_time = float(block["time"][good][0])
         count += xyz.shape[0]
     return _Summary(
+        rows=rows,
         count=count,
         lowest=_vector(lowest if count else np.full(3, np.nan)),
         highest=_vector(highest if count else np.full(3, np.nan)),

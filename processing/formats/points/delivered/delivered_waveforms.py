@@ -26,6 +26,9 @@ class DeliveredWaveforms:
         By the number that points name; also those that no packet can have.
     reason : Text
         Why no waveform can be read, to follow "no waveforms: "; empty where they can.
+    pack : str
+        Where packets are not in the file as they are kept: what writes them from it,
+        ``module:function`` of the file, an open file and a monitor. Empty where they are.
     """
 
     path: Path = Path()
@@ -34,6 +37,7 @@ class DeliveredWaveforms:
     has_head: bool = False
     descriptors: Mapping[int, WaveformDescriptor] = field(default_factory=dict)
     reason: Text = Text("", "")
+    pack: str = ""
 
     @property
     def is_readable(self) -> bool:

@@ -8,8 +8,9 @@ from pathlib import Path
 from processing.formats.points.delivered.delivered_floats import ColumnBlock, FloatFile
 from processing.formats.points.delivered.field_names import block_of
 from processing.formats.points.text.column_words import PASSED_OVER
-from processing.formats.points.text.text_header import Heading, read_heading
+from processing.formats.points.text.text_header import Heading, read_beginning, read_heading
 from processing.formats.points.text.text_numbers import TextPart, number_blocks
+from processing.formats.points.text.wave_rows import wave_blocks, wave_rows_of, waveforms_of_rows
 
 
 def open_text_points(path: Path, columns: tuple[str, ...] = ()) -> FloatFile:
@@ -21,7 +22,8 @@ def open_text_points(path: Path, columns: tuple[str, ...] = ()) -> FloatFile:
         Lines of numbers, divided by blanks, tabs, commas or semicolons. A header line names the
         columns; without one they are x y z, x y z intensity, x y z red green blue, or x y z
         intensity red green blue (more are passed over). A first line with one whole number is
-        the number of points (PTS) and passed over.
+        the number of points (PTS) and passed over. Rows with a waveform are x y z label and its
+        samples (:mod:`processing.formats.points.text.wave_rows`).
     columns : tuple of str
         What the columns are, whatever the file says; ``-`` for one that is passed over.
 
@@ -34,6 +36,10 @@ def open_text_points(path: Path, columns: tuple[str, ...] = ()) -> FloatFile:
     MissingInput, NoSpace, BadFile
         It can't be read, is not text, or doesn't begin with points.
     """
+    waves = None if columns else wave_rows_of(read_beginning(path))
+    if waves is not None:
+        delivered = waveforms_of_rows(path, waves)
+        return FloatFile(path, "text", lambda: wave_blocks(path, waves), waveforms=delivered)
     heading = read_heading(path, columns)
     taken = () if heading.is_named else heading.columns
     return FloatFile(path, "text", lambda: _blocks(path, heading), taken)

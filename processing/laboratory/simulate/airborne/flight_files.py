@@ -85,6 +85,8 @@ class WaveformFile:
         samples : (k, m) float32
             Whole counts.
         """
+        if not packet.size:  # pulses that nothing answered, over water
+            return
         location, direction, angle_deg = ray
         nothing = np.zeros(packet.size, np.uint8)
         columns: dict[str, NDArray[Any]] = {  # Any: they differ in type
