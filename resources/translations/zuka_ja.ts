@@ -361,8 +361,8 @@ kept</source>
         <translation>コマンド</translation>
     </message>
     <message>
-        <source>Type part of a name</source>
-        <translation>名前の一部を入力</translation>
+        <source>Type part of a name, or a key such as F9</source>
+        <translation>名前の一部、またはF9などのキーを入力</translation>
     </message>
 </context>
 <context>
@@ -370,6 +370,41 @@ kept</source>
     <message>
         <source>Confidence: how sure the tool is of it, 0 to 1</source>
         <translation>信頼度: ツールの確信の度合い（0～1）</translation>
+    </message>
+</context>
+<context>
+    <name>DeliveryTable</name>
+    <message>
+        <source>File</source>
+        <translation>ファイル</translation>
+    </message>
+    <message>
+        <source>Kind</source>
+        <translation>種類</translation>
+    </message>
+    <message>
+        <source>Number</source>
+        <translation>数量</translation>
+    </message>
+    <message>
+        <source>Extent</source>
+        <translation>範囲</translation>
+    </message>
+    <message>
+        <source>Scanner</source>
+        <translation>スキャナ</translation>
+    </message>
+    <message>
+        <source>Time</source>
+        <translation>計測時間</translation>
+    </message>
+    <message>
+        <source>Reference system</source>
+        <translation>座標参照系</translation>
+    </message>
+    <message>
+        <source>Trajectory</source>
+        <translation>走行軌跡</translation>
     </message>
 </context>
 <context>
@@ -869,6 +904,18 @@ kept</source>
         <translation>走行軌跡のファイルがありません。走行軌跡がないと縁石と蓋付き側溝を抽出できません。後から走行データに追加することもできます。</translation>
     </message>
     <message>
+        <source>Take the list of camera images beside them: {name}</source>
+        <translation>同じ場所にあるカメラ画像一覧 {name} も読み込む</translation>
+    </message>
+    <message>
+        <source>Add to the project beside them: {name}</source>
+        <translation>同じ場所にあるプロジェクト {name} に追加する</translation>
+    </message>
+    <message>
+        <source>Looking at the files…</source>
+        <translation>ファイルを調べています…</translation>
+    </message>
+    <message>
         <source>Add files…</source>
         <translation>ファイルを追加…</translation>
     </message>
@@ -1267,6 +1314,10 @@ kept</source>
 <context>
     <name>ProcessingPanel</name>
     <message>
+        <source>Choose another tool</source>
+        <translation>別のツールを選ぶ</translation>
+    </message>
+    <message>
         <source>Search for a tool</source>
         <translation>ツールを検索</translation>
     </message>
@@ -1439,6 +1490,31 @@ kept</source>
     <message>
         <source>{errors} errors, {others} to look at</source>
         <translation>不適合 {errors}件、要確認 {others}件</translation>
+    </message>
+</context>
+<context>
+    <name>Quitting</name>
+    <message>
+        <source>Quit</source>
+        <translation>終了</translation>
+    </message>
+    <message numerus="yes">
+        <source>%n job(s) are not finished.</source>
+        <translation>
+            <numerusform>%n件のジョブが終了していません。</numerusform>
+        </translation>
+    </message>
+    <message>
+        <source>Imports can go on the next time; other jobs are given up.</source>
+        <translation>インポートは次回に再開できます。その他のジョブは破棄されます。</translation>
+    </message>
+    <message>
+        <source>Wait</source>
+        <translation>待つ</translation>
+    </message>
+    <message>
+        <source>Quit now</source>
+        <translation>終了する</translation>
     </message>
 </context>
 <context>
@@ -2553,10 +2629,25 @@ kept</source>
     </message>
 </context>
 <context>
+    <name>WrittenFilesOffer</name>
+    <message>
+        <source>Open the folder</source>
+        <translation>フォルダを開く</translation>
+    </message>
+    <message>
+        <source>Open a file</source>
+        <translation>ファイルを開く</translation>
+    </message>
+</context>
+<context>
     <name>_JobRow</name>
     <message>
         <source>Cancel this job</source>
         <translation>このジョブを中止</translation>
+    </message>
+    <message>
+        <source>Began at {time}</source>
+        <translation>開始 {time}</translation>
     </message>
     <message>
         <source>{percent}, {left} left</source>
