@@ -21,7 +21,7 @@ _MINOR = QColor("#5b636d")
 
 
 class Ruler(QWidget):
-    """Shows where along the drive the picture is."""
+    """Shows where along the vehicle's path the picture is, by the stations of sections."""
 
     def __init__(self, parent: QWidget) -> None:
         super().__init__(parent)
@@ -47,13 +47,13 @@ class Ruler(QWidget):
     def _paint_ticks(self, painter: QPainter, picture: OrientedImage) -> None:
         span = self._viewport.span
         ends = np.clip([span.left, span.right], 0.0, picture.size[0])
-        start_m, end_m = picture.orientation.distance_m(ends).tolist()
+        start_m, end_m = picture.orientation.station_m(ends).tolist()
         shown_px = (ends[1] - ends[0]) * self._viewport.zoom_u
         if end_m <= start_m or shown_px <= 0:
             return
         step_m = round_step((end_m - start_m) / shown_px * _LABEL_EVERY_PX)
         fifths = np.arange(math.ceil(start_m / step_m * 5), math.floor(end_m / step_m * 5) + 1)
-        positions = picture.orientation.rows_at(fifths * step_m / 5)
+        positions = picture.orientation.rows_at_stations(fifths * step_m / 5)
         digits = max(0, -math.floor(math.log10(step_m)))
         room_px, height = self._turn(painter)
         for fifth, position in zip(fifths.tolist(), positions.tolist(), strict=True):

@@ -13,6 +13,7 @@ from processing.core.text import Language
 from processing.image.attributes.attributes import ATTRIBUTES, most_telling_attribute
 from processing.map.catalogue import Catalogue
 from widgets.feature_drawing.screen_marks import paint_cross, paint_note, paint_outline, paint_snap
+from widgets.image_view.colour_key import paint_colour_key
 from widgets.image_view.features.feature_overlay import FeatureOverlay
 from widgets.image_view.mosaic import Mosaic
 from widgets.image_view.orientation.oriented_image import OrientedImage
@@ -100,7 +101,7 @@ class ScenePainter:
                 painter.setClipRect(viewport.window)
                 is_sharp = self._mosaic.paint(painter, picture, viewport)
                 self._paint_over(painter, picture, viewport, overlays)
-                self._paint_line(painter, self._describe_picture(picture, viewport, overlays.look))
+                self._paint_words(painter, picture, viewport, overlays.look)
                 refusal = self._images.refusal
             if refusal is not None:
                 self._paint_refusal(painter, refusal)
@@ -132,6 +133,23 @@ class ScenePainter:
         if overlays.outline is not None:
             paint_outline(painter, overlays.outline)
 
+    def _paint_words(
+        self, painter: QPainter, picture: OrientedImage, viewport: Viewport, look: PointStyle
+    ) -> None:
+        """Paint the key to the colours, and beside it what the picture is."""
+        clip = painter.clipBoundingRect()
+        shown = most_telling_attribute(picture.drive, look.attribute)
+        key = paint_colour_key(
+            painter,
+            QPointF(clip.right() - 8, clip.bottom() - 8),
+            picture.drive,
+            shown,
+            (look.low_percent, look.high_percent),
+            language=self._language,
+        )
+        words = self._describe_picture(picture, viewport, look)
+        self._paint_line(painter, words, key.left() - 8)
+
     def _describe_picture(
         self, picture: OrientedImage, viewport: Viewport, look: PointStyle
     ) -> str:
@@ -153,9 +171,9 @@ class ScenePainter:
         reported = QCoreApplication.translate("ScenePainter", "no “{name}” in this drive")
         return reported.format(name=ATTRIBUTES[attribute].title.in_language(self._language))
 
-    def _paint_line(self, painter: QPainter, line: str) -> None:
+    def _paint_line(self, painter: QPainter, line: str, end: float) -> None:
         clip = painter.clipBoundingRect()
-        room = clip.width() - 32
+        room = end - clip.left() - 24
         metrics = painter.fontMetrics()
         shown = metrics.elidedText(line, Qt.TextElideMode.ElideRight, int(room))
         width, height = metrics.horizontalAdvance(shown), metrics.height()

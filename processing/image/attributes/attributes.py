@@ -16,6 +16,7 @@ from processing.core.errors import Unsuitable, UserError
 from processing.core.text import Text
 from processing.image.attributes.colour_maps import (
     EMPTY_COLOUR,
+    SHAPE_COLOURS,
     UNKNOWN_COLOUR,
     class_colours,
     confidence_ramp,
@@ -27,6 +28,7 @@ from processing.image.attributes.colour_maps import (
     stretch_values,
 )
 from processing.image.attributes.drive_sample import value_at_percent
+from processing.image.attributes.toned_intensity import toned_intensity
 from processing.image.attributes.waveform_values import (
     BACKSCATTER,
     WAVEFORM_ATTRIBUTES,
@@ -95,7 +97,9 @@ ATTRIBUTES: Mapping[str, Attribute] = {
     attribute.id: attribute
     for attribute in (
         Attribute("intensity", Text("Intensity", "反射強度"), ("intensity",)),
+        Attribute("toned", Text("Intensity, toned", "反射強度（階調補正）"), ("intensity", "xyz")),
         Attribute("height", Text("Height", "高さ"), ("xyz",)),
+        Attribute("relief", Text("Height and intensity", "高さと反射強度"), ("xyz", "intensity")),
         Attribute("normal", Text("Normal direction", "法線方向"), ("xyz",)),
         Attribute("shape", Text("Shape", "形状"), ("xyz",)),
         Attribute(
@@ -209,6 +213,9 @@ def most_telling_attribute(drive: Drive, wanted: str) -> str:
 
 
 _TELLING = ("intensity", "color", "height")
+_LEAST_LIGHT = 0.35
+"""Of a colour of heights where nothing came back: its hue can still be told."""
+
 _PIECES, _PIECE_POINTS = 16, 512
 """Pieces of a column that are looked at for whether it says anything: spread over the drive, read
 in a moment."""
@@ -304,12 +311,35 @@ def _intensity(drive: Drive, points: _Points, low: float, high: float) -> Colour
     return grey_ramp()[stretch_values(values, *ends)]
 
 
+def _toned(drive: Drive, points: _Points, low: float, high: float) -> Colours:
+    return grey_ramp()[toned_intensity(drive, points, low, high)]
+
+
+def _relief(drive: Drive, points: _Points, low: float, high: float) -> Colours:
+    """The colours of heights, lighter and darker by intensity."""
+    light = toned_intensity(drive, points, low, high).astype(np.float32) / np.float32(255)
+    share = _LEAST_LIGHT + (1 - _LEAST_LIGHT) * light
+    return np.asarray(_height(drive, points, low, high) * share[..., None], dtype=np.uint8)
+
+
 def _height(drive: Drive, points: _Points, low: float, high: float) -> Colours:
-    ends = [
-        value_at_percent(drive.folder, "xyz", drive.count, 2, percent) for percent in (low, high)
-    ]
+    ends = _height_ends(drive, (low, high))
     values = np.asarray(drive.coordinates.integers(points)[..., 2], np.float64)
     return height_ramp()[stretch_values(values, *ends)]
+
+
+def height_ends_m(drive: Drive, percents: tuple[float, float]) -> tuple[float, float]:
+    """The heights, m, at the ends of the colours of heights."""
+    low, high = _height_ends(drive, percents)
+    scale, offset = drive.info.scale[2], drive.info.offset[2]
+    return low * scale + offset, high * scale + offset
+
+
+def _height_ends(drive: Drive, percents: tuple[float, float]) -> tuple[float, float]:
+    low, high = (
+        value_at_percent(drive.folder, "xyz", drive.count, 2, percent) for percent in percents
+    )
+    return low, high
 
 
 def _feature(drive: Drive, name: str, points: _Points, percents: tuple[float, float]) -> Colours:
@@ -341,7 +371,8 @@ def _shape(drive: Drive, points: _Points) -> Colours:
         shapes = np.asarray(drive.columns["shape"][points], dtype=np.uint8)
     else:
         shapes = np.rint(_surfaces(drive, points).shapes * 255).astype(np.uint8)
-    shown = np.array(shapes)
+    shares = shapes / np.maximum(shapes.sum(axis=1, dtype=np.float32), 1.0)[:, None]
+    shown: Colours = np.rint(shares @ np.array(SHAPE_COLOURS, np.float32)).astype(np.uint8)
     shown[~shapes.any(axis=1)] = UNKNOWN_COLOUR
     return shown
 
@@ -426,6 +457,8 @@ def _class(drive: Drive, points: _Points) -> Colours:
 
 _STRETCHED: Mapping[str, Callable[[Drive, _Points, float, float], Colours]] = {
     "intensity": _intensity,
+    "toned": _toned,
+    "relief": _relief,
     "height": _height,
     "label": _label,
 }

@@ -47,6 +47,9 @@ _WALL, _SLOPE, _FLOOR = (70, 140, 255), (225, 225, 225), (225, 60, 30)
 """By how upright a surface stands: blue to red, which colour-blind eyes tell apart, through
 grey."""
 
+SHAPE_COLOURS = (230, 159, 0), (86, 180, 233), (204, 121, 167)
+"""Lines, planes and scattered points: orange, sky blue and purple of Okabe and Ito (2008)."""
+
 _DOUBT, _HALF, _SURE = (213, 94, 0), (222, 156, 112), (228, 228, 228)
 """By confidence: the orange of Okabe and Ito (2008) for what should be looked at, fading to a
 light grey as lightness rises."""

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import itertools
+from contextlib import closing
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,12 +13,19 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PySide6.QtCore import QPoint, QPointF, QRectF, Qt
 
+from processing.core.monitor import SilentMonitor
 from processing.image.images_of_drives import image_of
 from processing.map.catalogue import Geometry
+from processing.project.importing.import_request import ImportRequest
+from processing.project.importing.importing import import_drives
+from processing.project.project import Project
 from processing.recording.kinds import ImageKind
+from processing.section.stations import Stations
+from tests.builders import simulated_drive, write_laz, write_trajectory_csv
 from tests.widgets.builders import path_tool, position_on
 from tests.widgets.image_view.conftest import ImageViewUser
 from widgets.image_view.minimap import Minimap
+from widgets.image_view.orientation.drive_orientation import orientation_of
 from widgets.image_view.orientation.oriented_image import Span
 from widgets.image_view.orientation.viewport import Viewport
 from widgets.image_view.ruler import Ruler
@@ -228,3 +237,23 @@ def test_everything_and_the_start_fit_the_window(orientation: ImageOrientation) 
     start = viewport.with_start()
     assert start.span.left == pytest.approx(0)
     assert start.zoom_v * 1000 == pytest.approx(start.across_px)
+
+
+def test_the_rulers_station_is_the_distance_along_the_vehicles_path(tmp_path: Path) -> None:
+    simulated = simulated_drive(length_m=4.0)
+    points = write_laz(simulated, tmp_path / "left.laz")
+    request = ImportRequest((points,), (write_trajectory_csv(simulated, tmp_path / "way.csv"),))
+    with closing(Project.create(tmp_path / "p.zuka", "")) as project:
+        found = import_drives(request, project.temporary_folder(), SilentMonitor())
+        (drive,) = project.adopt_drives(found)
+        assert drive.trajectory is not None
+        image = image_of(drive, ImageKind.TRAJECTORY_CENTER)
+        orientation = orientation_of(drive, image)
+        stations = Stations.of_trajectory(drive.trajectory)
+        rows = np.linspace(0, image.rows - 1, 7).astype(np.int64)
+        times = image.row_times[rows].tolist()
+        expected = [stations.station_at_time(time) or 0.0 for time in times]
+        measured = orientation.station_m(rows.astype(np.float64))
+        np.testing.assert_allclose(measured, np.array(expected), atol=0.05)
+        assert expected[0] > 0.1  # the path begins before the points
+        np.testing.assert_allclose(orientation.rows_at_stations(measured), rows, atol=0.5)

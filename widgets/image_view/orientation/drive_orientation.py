@@ -37,6 +37,9 @@ class DriveOrientation:
         Easting and northing of the way at the sampled rows, m; NaN without a way.
     rows_go_left : bool
         Whether a scanner that stood swept from right to left.
+    start_m : float
+        Where the first row is along the vehicle's path, m: one place has one station in all
+        drives and sections, though recordings begin after their trajectory.
     """
 
     sampled_rows: Floats
@@ -45,6 +48,15 @@ class DriveOrientation:
     left_columns_are_high: bool
     plan: Floats
     rows_go_left: bool = False
+    start_m: float = 0.0
+
+    def station_m(self, rows: Floats) -> Floats:
+        """Metres along the vehicle's path at rows; fractions count."""
+        return self.start_m + self.distance_m(rows)
+
+    def rows_at_stations(self, stations_m: Floats) -> Floats:
+        """Rows at stations of the vehicle's path."""
+        return self.rows_at(stations_m - self.start_m)
 
     @property
     def length_m(self) -> float:
@@ -90,7 +102,19 @@ def orientation_of(drive: Drive, image: PointCloudImage) -> DriveOrientation:
         float(np.clip(stretch, 1 / _MOST_STRETCH, _MOST_STRETCH)),
         left_columns_are_high=turns > 0,
         plan=positions[:, :2],
+        start_m=_start_m(drive, image),
     )
+
+
+def _start_m(drive: Drive, image: PointCloudImage) -> float:
+    """How far the vehicle had come along its path when the first row was measured."""
+    trajectory, first = drive.trajectory, image.row_times[:1]
+    if trajectory is None or not first.size or not np.isfinite(first).all():
+        return 0.0
+    before = trajectory.xyz[trajectory.time <= first[0], :2]
+    here = trajectory.positions_at(np.clip(first, trajectory.time[0], trajectory.time[-1]))
+    way = np.vstack([before, here[:, :2]])
+    return float(np.hypot(*np.diff(way, axis=0).T).sum())
 
 
 def _orientation_of_scan(drive: Drive, image: PointCloudImage) -> DriveOrientation:

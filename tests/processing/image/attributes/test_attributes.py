@@ -18,6 +18,7 @@ from processing.image.attributes.attributes import (
 )
 from processing.image.attributes.colour_maps import (
     EMPTY_COLOUR,
+    SHAPE_COLOURS,
     UNKNOWN_COLOUR,
     class_colours,
     grey_ramp,
@@ -57,8 +58,9 @@ def lightness(rgb: NDArray[np.uint8]) -> NDArray[np.float64]:
     return np.asarray(np.where(y > 0.008856, 116 * np.cbrt(y) - 16, 903.3 * y))
 
 
-def test_the_eight_attributes_of_the_contract_are_there_and_what_an_evaluation_shows() -> None:
-    wanted = ["intensity", "height", "normal", "shape", "segment", "color", "label", "class"]
+def test_the_attributes_of_the_contract_are_there_and_what_an_evaluation_shows() -> None:
+    toned = ["intensity", "toned", "height", "relief"]
+    wanted = [*toned, "normal", "shape", "segment", "color", "label", "class"]
     more = ["confidence", "judged", *POINT_FEATURES, *WAVEFORM_ATTRIBUTES]
     assert list(ATTRIBUTES) == [*wanted, *more]
     for attribute in ATTRIBUTES.values():
@@ -140,11 +142,10 @@ def test_walls_are_blue_and_the_road_is_red_by_normal(tmp_path: Path) -> None:
     assert np.median(road[:, 0] - road[:, 2]) > 100
 
 
-def test_planes_are_green_by_shape(tmp_path: Path) -> None:
+def test_planes_are_blue_by_shape(tmp_path: Path) -> None:
     drive, street = small_drive(tmp_path / "d")
     pixels = colours(drive, np.flatnonzero(street.surface == 0), "shape", 2.0, 98.0)
-    assert np.median(pixels[:, 1]) > 120
-    assert np.median(pixels[:, 2]) < 40
+    assert np.median(pixels[:, 2].astype(int) - pixels[:, 0]) > 40
 
 
 def test_results_of_tools_are_shown_where_they_are_stored(drive: Drive) -> None:
@@ -155,14 +156,22 @@ def test_results_of_tools_are_shown_where_they_are_stored(drive: Drive) -> None:
     drive.columns.add("label", np.full(count, 67, np.uint8))
     points = np.arange(10)
     assert (colours(drive, points, "normal", 2, 98) == normal_ramp()[255]).all()
-    assert (colours(drive, points, "shape", 2, 98) == (0, 0, 255)).all()
+    assert (colours(drive, points, "shape", 2, 98) == SHAPE_COLOURS[2]).all()
     assert len(np.unique(colours(drive, points, "segment", 2, 98), axis=0)) == 5
     assert (colours(drive, points, "label", 2, 98) == class_colours()[67]).all()
     assert "segment" in available(drive)
 
 
 def test_what_is_missing_is_said_with_what_to_do(drive: Drive) -> None:
-    assert available(drive) == ("intensity", "height", "normal", "shape", "label")
+    assert available(drive) == (
+        "intensity",
+        "toned",
+        "height",
+        "relief",
+        "normal",
+        "shape",
+        "label",
+    )
     for attribute in ("segment", "color"):
         with pytest.raises(Unsuitable) as refusal:
             colours(drive, np.array([0]), attribute, 2, 98)
