@@ -44,9 +44,16 @@ def _of_project(folder: Path) -> dict[str, object]:
             "points": sum(drive.count for drive in project.drives),
             "features": len(project.features),
             "drives": [_of_drive(drive) for drive in project.drives],
+            **_of_damage(project),
         }
     finally:
         project.close()
+
+
+def _of_damage(project: Project) -> dict[str, object]:
+    """Drives that can't be opened, where there are any."""
+    errors, language = project.damaged_drives.values(), system_language()
+    return {"damaged": [error.line(language) for error in errors]} if errors else {}
 
 
 def _of_drive(drive: Drive) -> dict[str, object]:

@@ -127,6 +127,13 @@ def _add_working_commands(commands: _Commands[_Parser]) -> None:
         help="where labels of points come from: an extra dimension, or the delivered classes",
     )
     importing.set_defaults(module="import_drives")
+    checking = commands.add_parser("check", help="what is damaged in a project")
+    checking.add_argument("project", type=Path, metavar="PROJECT")
+    checking.add_argument(
+        "--repair", action="store_true", help="make again what the delivered files give"
+    )
+    checking.add_argument("--json", action="store_true")
+    checking.set_defaults(module="projects.check")
     numbering = commands.add_parser("number", help="number what ledgers list along the routes")
     numbering.add_argument("project", type=Path, metavar="PROJECT")
     numbering.set_defaults(module="maps.number")

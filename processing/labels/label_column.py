@@ -9,13 +9,20 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.block_sums import (
+    BLOCK,
+    begin_writing,
+    end_writing,
+    is_whole,
+    settle_sums,
+)
 from processing.core.errors import report_as_user_error
 from processing.recording.columns.columns import column_path
+from processing.recording.columns.replacing import flush_names
 from processing.recording.drive import Drive
 
 LABEL = "label"
 CODES = 256
-_BLOCK = 1 << 20
 
 
 def labels_of(drive: Drive, points: NDArray[np.int64]) -> NDArray[np.uint8]:
@@ -75,12 +82,30 @@ def write_codes(path: Path, points: NDArray[np.int64], codes: NDArray[np.uint8])
         The file can't be written; some of the points may have been.
     """
     with report_as_user_error(path), path.open("rb+", buffering=0) as file:
-        for start, part in _by_block(points):
-            file.seek(start)
-            block = bytearray(file.read(_BLOCK))
-            np.frombuffer(block, np.uint8)[points[part] - start] = codes[part]
-            file.seek(start)
-            _write_all(file.fileno(), block)
+        known, written = begin_writing(path), dict[int, bool]()
+        try:
+            for start, part in _by_block(points):
+                file.seek(start)
+                block = bytearray(file.read(BLOCK))
+                number = start // BLOCK
+                written[number] = known is None or is_whole(block, known, number)
+                np.frombuffer(block, np.uint8)[points[part] - start] = codes[part]
+                file.seek(start)
+                _write_all(file.fileno(), block)
+        finally:
+            end_writing(path, known, written)
+
+
+def settle_labels(drive: Drive, points: NDArray[np.int64]) -> None:
+    """Know the column again by its checksums after a kill while these points were written.
+
+    Raises
+    ------
+    MissingInput, NoSpace
+    """
+    path = column_path(drive.folder, LABEL)
+    with report_as_user_error(path):
+        settle_sums(path, np.unique(points // BLOCK).tolist())
 
 
 def flush(drive: Drive) -> None:
@@ -94,15 +119,17 @@ def flush(drive: Drive) -> None:
     path = column_path(drive.folder, LABEL)
     with report_as_user_error(path), path.open("rb+") as file:
         os.fsync(file.fileno())
+    with report_as_user_error(path):
+        flush_names(drive.folder)
 
 
 def _by_block(points: NDArray[np.int64]) -> Iterator[tuple[int, slice]]:
     """First byte of each block that holds points, and which points they are."""
-    blocks = points // _BLOCK
+    blocks = points // BLOCK
     firsts = np.concatenate([[0], np.flatnonzero(np.diff(blocks)) + 1, [points.size]])
     for first, end in zip(firsts[:-1].tolist(), firsts[1:].tolist(), strict=True):
         if end > first:
-            yield int(blocks[first]) * _BLOCK, slice(first, end)
+            yield int(blocks[first]) * BLOCK, slice(first, end)
 
 
 def _write_all(descriptor: int, block: bytearray) -> None:

@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from processing.core.block_sums import SUFFIX
 from processing.core.errors import UNCHANGED, BadFile, report_as_user_error
 from processing.core.text import Text
 from processing.map.label_change import LabelChange
@@ -122,7 +123,7 @@ class FiledLabels:
 
 def is_file_of_step(name: str) -> bool:
     """Whether a file of such a folder may have this name."""
-    is_column = name.startswith(("before-", "after-")) and name.endswith(".bin")
+    is_column = name.startswith(("before-", "after-")) and name.endswith((".bin", f".bin{SUFFIX}"))
     return name == PARTS or is_column
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from pathlib import Path
 
+from processing.core.block_sums import keep_sums
 from processing.core.errors import report_as_user_error
 from processing.core.monitor import Monitor
 from processing.core.owned_files import make_marked, remove_folder
@@ -73,11 +74,14 @@ class FinishedRun:
                 said = self.kept / drive.id
                 if said.is_file():
                     adopt_finding(drive, self.found.tool, self.found.run.id, said)
-                for column in sorted(self.kept.glob(f"{drive.id}{_BESIDE}*")):
+                for column in sorted(self.kept.glob(f"{drive.id}{_BESIDE}*.bin")):
                     name = column.name.removeprefix(f"{drive.id}{_BESIDE}")
                     files.give(column, name, drive.id)
                 if surface.is_file():
-                    copy_surface(surface, files.expect(SURFACE, drive.id))
+                    copied = files.expect(SURFACE, drive.id)
+                    copy_surface(surface, copied)
+                    with report_as_user_error(copied):
+                        keep_sums(copied)
         finally:
             remove_folder(self.kept)
 
@@ -206,4 +210,7 @@ def _keep_columns(drive: Drive, result: FinishedColumns, kept: Path) -> None:
     for name in result.names:
         if name != _CLASS:
             file = column_path(result.folder, name)
-            file.replace(kept / f"{drive.id}{_BESIDE}{file.name}")
+            place = kept / f"{drive.id}{_BESIDE}{file.name}"
+            with report_as_user_error(place):
+                file.replace(place)
+                keep_sums(place)

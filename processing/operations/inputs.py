@@ -186,8 +186,13 @@ def inputs_in(
     ------
     OutOfRange
         The project has no drive of an id.
+    MissingInput, BadFile
+        All are asked for, and one of them can't be opened.
     """
     known = {drive.id: drive for drive in project.drives}
+    # What is found on some drives only would look like all there is.
+    for error in () if ids else project.damaged_drives.values():
+        raise error
     for id_ in ids:
         if id_ not in known:
             raise OutOfRange(

@@ -15,6 +15,8 @@ from processing.operations.inputs import opened_project
 from processing.project.project import Project
 from processing.project.work_store import WorkStore
 
+_LEFT_OUT = Text("A drive was left out: {line}", "走行データを1つ除外しました: {line}")
+
 
 @dataclass(frozen=True)
 class ExportOperation:
@@ -88,14 +90,15 @@ def export_of(project: Project, request: ExportRequest) -> Callable[[Monitor], W
     """
     features = tuple(project.features.all())
     catalogue, crs, drives = project.catalogue, project.crs, project.drives
-    folder = project.folder
+    folder, damaged = project.folder, project.damaged_drives
     details = WorkStore(project.settings).details()
     work_facts = details.facts(crs, version("zuka"), datetime.now().astimezone().date())
+    left_out = [Text(error.line("en"), error.line("ja")) for error in damaged.values()]
     delivered = (path for drive in drives for path in drive.delivered_files)
     request = replace(request, never=(*request.never, *delivered))
 
     def work(monitor: Monitor) -> WrittenFiles:
-        notes: list[Text] = []
+        notes = [_LEFT_OUT.filled(line=one) for one in left_out]
         paths = export(
             features,
             catalogue,

@@ -62,7 +62,9 @@ from resources import path_of
 _DATABASE = "project.gpkg"
 _FOLDERS = (DRIVES, TEMPORARY, LABEL_STEPS, STEP_FILES)
 _FILES = (*database_files(_DATABASE), *database_files(UNFINISHED), *LOCK_FILES)
-_OWN = (*_FOLDERS, VOLUMES, OWN_MODELS, PHOTOS, *_FILES)
+OWN = (*_FOLDERS, VOLUMES, OWN_MODELS, PHOTOS, *_FILES)
+"""Files and folders that belong to the program in a project's folder."""
+
 _MOST_NAMES = 3
 
 
@@ -86,7 +88,7 @@ class Project:
 
     def __init__(self, folder: Path, *, writing: bool) -> None:
         self.folder = folder
-        refuse_links(folder, _OWN)
+        refuse_links(folder, OWN)
         with ExitStack() as stack:
             if writing:
                 stack.callback(ProjectLock(folder).release)
@@ -111,7 +113,7 @@ class Project:
                 )
                 self.runs = Runs(self._database)
                 self._origin = stored_origin(self.settings, self._database.path)
-            self._drives.open(self._folders.ids)
+            self._drives.open_all()
             self.sources = SourceFiles(folder, self.settings, writing=writing)
             self._drives.tell_opened(self.sources.use_known)
             pending = self.history.pending()
@@ -151,7 +153,7 @@ class Project:
         with report_as_user_error(folder):
             refuse_occupied(folder)
             folder.mkdir(parents=True, exist_ok=True)
-        refuse_links(folder, _OWN)
+        refuse_links(folder, OWN)
         lock = ProjectLock(folder)
         try:
             # The database takes its name when it is whole: until then there is no project.
@@ -227,6 +229,16 @@ class Project:
     def is_empty(self) -> bool:
         """Whether nothing is in it: no drive, no feature, no import that can go on."""
         return not (self.drives or len(self.features) or unfinished_imports(self.folder))
+
+    @property
+    def drive_folders(self) -> tuple[Path, ...]:
+        """Where the drives are, those that can't be opened too."""
+        return tuple(self._folders.path_of(id_) for id_ in self._folders.ids)
+
+    @property
+    def damaged_drives(self) -> Mapping[str, UserError]:
+        """Drives that can't be opened, by id, and why; the rest of the project is open."""
+        return self._drives.damaged
 
     def drive(self, id: str) -> Drive:  # noqa: A002 - the word of the trade
         """One drive; KeyError when there is none of that id."""

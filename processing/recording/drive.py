@@ -11,6 +11,7 @@ from typing import Any, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.block_sums import refuse_damaged
 from processing.core.errors import BadFile, report_as_user_error
 from processing.core.text import Text
 from processing.recording.camera_images.calibration import CameraOffset, apply_offsets
@@ -146,9 +147,8 @@ class Drive:
     @property
     def trajectory(self) -> Trajectory | None:
         """Where the vehicle was; None when the drive has no trajectory."""
-        path = self._folder / "trajectory.npy"
-        if self._trajectory is None and path.is_file():
-            self._trajectory = _read_trajectory(path)
+        if self._trajectory is None:
+            self._trajectory = read_kept_trajectory(self._folder)
         return self._trajectory
 
     @property
@@ -284,7 +284,18 @@ def write_trajectory(folder: Path, trajectory: Trajectory) -> None:
         np.save(path, table)
 
 
-def _read_trajectory(path: Path) -> Trajectory:
+def read_kept_trajectory(folder: Path) -> Trajectory | None:
+    """The trajectory in a drive's folder; None where there is none.
+
+    Raises
+    ------
+    BadFile
+        It is damaged.
+    """
+    path = folder / TRAJECTORY_FILE
+    if not path.is_file():
+        return None
+    refuse_damaged(path)
     with report_as_user_error(path):
         try:
             table = read_array(path)

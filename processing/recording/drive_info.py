@@ -9,8 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from processing.core.block_sums import refuse_damaged, write_with_sums
 from processing.core.errors import BadFile, report_as_user_error
-from processing.core.owned_files import new_file
 from processing.core.text import Text
 from processing.recording.columns.source_order import SourceRun
 
@@ -112,13 +112,10 @@ class DriveInfo:
 def write_drive_info(folder: Path, info: DriveInfo) -> None:
     """Write a drive's facts into its folder, whole or not at all."""
     path = folder / FILE_NAME
-    temporary = path.with_suffix(".part")
     with report_as_user_error(path):
         text = json.dumps(dataclasses.asdict(info), ensure_ascii=False, indent=1)
-        with new_file(temporary) as file:
-            # Names of files may be no text; JSON reads them back.
-            file.write(text.encode("utf-8", errors="backslashreplace"))
-        temporary.replace(path)
+        # Names of files may be no text; JSON reads them back.
+        write_with_sums(path, text.encode("utf-8", errors="backslashreplace"))
 
 
 def read_drive_info(folder: Path) -> DriveInfo:
@@ -130,6 +127,7 @@ def read_drive_info(folder: Path) -> DriveInfo:
         There is no such file, or it isn't what was written.
     """
     path = folder / FILE_NAME
+    refuse_damaged(path)
     with report_as_user_error(path):
         text = path.read_text(encoding="utf-8")
     try:

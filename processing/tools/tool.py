@@ -16,6 +16,8 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.block_sums import keep_sums
+from processing.core.errors import report_as_user_error
 from processing.core.monitor import Monitor
 from processing.core.owned_files import remove_folder
 from processing.core.text import Text
@@ -108,6 +110,18 @@ class FinishedColumns:
     def read(self, name: str, start: int, stop: int) -> NDArray[Any]:
         """Values of the points ``start … stop − 1``: (k,) or (k, width), of the column's dtype."""
         return read_chunk(self.folder, name, start, stop)
+
+    def keep_sums(self) -> None:
+        """Write the checksums of the columns, which then come with them.
+
+        Raises
+        ------
+        NoSpace
+        """
+        for name in self.names:
+            path = column_path(self.folder, name)
+            with report_as_user_error(path):
+                keep_sums(path)
 
     def hand_over(self, columns: Columns) -> None:
         """Make them the columns of a drive on the same disk; the folder is gone afterwards.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import unicodedata
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
@@ -12,7 +13,8 @@ from processing.map.feature import AttributeValue, Feature, Position
 from processing.map.measured_fields import field_of
 from processing.map.measures import length_m, plan_area_m2, plan_length_m
 
-_GUARDED = tuple("=+-@'\t\r＝＋－＠")
+_GUARDED = tuple("=+-@'＝＋－＠")
+_UNSEEN = ("Cc", "Cf", "Zl", "Zp", "Cn", "Cs")
 _MEASURED_UNITS = frozenset({"m", "㎡", "°"})
 _SHAPES = {
     Geometry.POINT: Text("point", "点"),
@@ -121,10 +123,13 @@ def unguarded(text: str) -> str:
 def guard_text(text: str) -> str:
     """A text that no spreadsheet takes for a formula.
 
-    One apostrophe is put before ``= + - @``, their full-width twins, tabs, and before an apostrophe
-    itself, so that taking one off gives the text back.
+    One apostrophe is put before ``= + - @``, their full-width twins, before line feeds, blanks and
+    characters without a picture, which programs pass over, and before an apostrophe itself, so that
+    taking one off gives the text back.
     """
-    return f"'{text}" if text.startswith(_GUARDED) else text
+    first = text[:1]
+    is_passed_over = first.isspace() or unicodedata.category(first or "x") in _UNSEEN
+    return f"'{text}" if is_passed_over or text.startswith(_GUARDED) else text
 
 
 def identity_columns() -> tuple[LedgerColumn, ...]:

@@ -20,6 +20,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.block_sums import refuse_damaged
 from processing.core.errors import BadFile, report_as_user_error
 from processing.core.text import Text
 from processing.methods.ground.filters.band import heights_at
@@ -28,6 +29,7 @@ from processing.recording.drive import Drive
 
 FILE_NAME = "ground_surface.tiles"
 _START = struct.Struct("<8sQ")
+_CHECKED_AT_ONCE = 1 << 26  # bytes: a moment, before a section is drawn
 _MAGIC = b"ZUKAGND1"
 _KEPT_TILES = 8
 """Tiles held in memory, of 10 MB at most each: a section or a view crosses a few."""
@@ -155,6 +157,7 @@ class StoredSurface:
 
     def __init__(self, path: Path) -> None:
         self._path = path
+        refuse_damaged(path, 0, _CHECKED_AT_ONCE)
         with report_as_user_error(path), path.open("rb") as file:
             start = file.read(_START.size)
             size = os.fstat(file.fileno()).st_size

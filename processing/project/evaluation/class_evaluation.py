@@ -125,7 +125,9 @@ def error_map_columns(
             monitor.report(start / drive.count)
             stop = min(start + _AT_ONCE, drive.count)
             writer.append({ERROR_MAP: evaluations_of(drive, truth, evaluation, start, stop)})
-    return FinishedColumns(into, (ERROR_MAP,), drive.count)
+    judged = FinishedColumns(into, (ERROR_MAP,), drive.count)
+    judged.keep_sums()
+    return judged
 
 
 def evaluations_of(

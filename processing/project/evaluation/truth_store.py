@@ -16,6 +16,7 @@ from uuid import uuid4
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.block_sums import keep_sums, record_of
 from processing.core.errors import report_as_user_error
 from processing.core.owned_files import holds_only, remove_emptied, remove_folder
 from processing.core.text import Text
@@ -125,6 +126,7 @@ class TruthStore:
             for drive_id, folder in folders.items():
                 target = truth_folder(drive_of(drive_id), truth.id)
                 with report_as_user_error(target):
+                    keep_sums(column_path(folder, TRUTH))
                     target.parent.mkdir(exist_ok=True)
                     folder.rename(target)
                 moved.append(target)
@@ -162,7 +164,9 @@ class TruthStore:
         for drive in drives:
             home = drive.folder / _FOLDER
             for folder in tuple(home.iterdir()) if home.is_dir() else ():
-                is_column = holds_only(folder, {column_path(folder, TRUTH).name}.__contains__)
+                column = column_path(folder, TRUTH)
+                own = {column.name, record_of(column).name}
+                is_column = holds_only(folder, own.__contains__)
                 if folder.name not in known and is_column:
                     remove_folder(folder, drive.folder)
 

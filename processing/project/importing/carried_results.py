@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.block_sums import forget_sums, refuse_damaged
 from processing.core.errors import report_as_user_error
 from processing.core.monitor import Monitor
 from processing.recording.columns.columns import COLUMN_TYPES, column_path
@@ -51,8 +52,10 @@ def carry_results(drive: Drive, folder: Path, positions: Path | None, monitor: M
     for path in _files(drive):
         monitor.check()
         target = folder / path.relative_to(drive.folder)
+        refuse_damaged(path)
         with report_as_user_error(target):
             target.parent.mkdir(parents=True, exist_ok=True)
+            forget_sums(target)
             if before is None or path.name in _WHOLE:
                 shutil.copy2(path, target)
             elif path.suffix == ".bits":

@@ -39,6 +39,7 @@ from processing.recording.columns.ordering import (
 )
 from processing.recording.columns.replacing import new_columns, replace_columns
 from processing.recording.drive import SCAN, Drive, write_trajectory
+from processing.recording.drive_files import sum_drive
 from processing.recording.drive_info import BY_ORDER, DriveInfo, SourceFile, write_drive_info
 from processing.recording.measurement_order.rows_by_order import NoOrder, find_rows_by_order
 from processing.recording.revolutions.revolutions import (
@@ -172,7 +173,7 @@ def build_drive(
         _order_for_top_view(recording, found.view, steps, PartMonitor(monitor, 0.7, 1.0))
     remove_grid_column(recording.folder)
     keep_waveforms(recording, plan.waveforms, name, monitor)
-    return _finish_folder(recording, plan, found, steps, taken)
+    return _finish_folder(recording, plan, found, steps, taken=taken, monitor=monitor)
 
 
 def _finish_folder(
@@ -180,7 +181,9 @@ def _finish_folder(
     plan: BuildPlan,
     found: _FoundRows,
     steps: BuildSteps,
+    *,
     taken: Collection[str],
+    monitor: Monitor,
 ) -> Path:
     """Write the facts down and give the folder its name."""
     folder = recording.folder
@@ -210,6 +213,7 @@ def _finish_folder(
     )
     write_drive_info(folder, info)
     _find_rows_of_first_image(folder)
+    sum_drive(folder, monitor.check)
     steps.note(NAMED, {"id": info.id})
     final = steps.home / info.id
     with report_as_user_error(final):

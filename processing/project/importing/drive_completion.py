@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.block_sums import refuse_damaged
 from processing.core.disk_room import refuse_small_disk
 from processing.core.errors import UNCHANGED, OutOfRange, report_as_user_error
 from processing.core.monitor import Monitor, PartMonitor
@@ -36,6 +37,7 @@ from processing.recording.columns.ordering import chunk_ranges, read_chunk, sort
 from processing.recording.columns.quantisation import Quantisation
 from processing.recording.columns.source_order import FILE, INDEX
 from processing.recording.drive import Drive
+from processing.recording.drive_files import sum_drive
 from processing.recording.drive_info import read_drive_info, write_drive_info
 from processing.recording.waveform_packets.descriptors import PACKET, WAVE_COLUMNS
 from processing.recording.waveform_packets.kept_packets import link_packets
@@ -133,6 +135,7 @@ def carry_results_again(
     """
     mark = results_mark(drive)
     carry_results(drive, completed.folder, completed.places_before, monitor)
+    sum_drive(completed.folder, monitor.check)
     return replace(completed, mark=mark)
 
 
@@ -184,12 +187,14 @@ def _complete_drive_folder(
     carry_results(drive, built, positions, PartMonitor(monitor, 0.9, 1.0))
     if drive.noted_images is not None:
         write_images(built, drive.noted_images)
+    sum_drive(built, monitor.check)
     return CompletedDrive(drive.id, drive.info.name, drive.count, built, positions, mark)
 
 
 def _copy(drive: Drive, folder: Path, names: tuple[str, ...], monitor: Monitor) -> None:
     for name in names:
         monitor.check()
+        refuse_damaged(column_path(drive.folder, name))
         with report_as_user_error(folder):
             shutil.copyfile(column_path(drive.folder, name), column_path(folder, name))
     with report_as_user_error(folder), column_path(folder, POSITION).open("wb") as file:

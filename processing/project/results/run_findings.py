@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.block_sums import keep_sums, place_with_sums, refuse_damaged
 from processing.core.errors import report_as_user_error
 from processing.labels.label_column import labels_of
 from processing.recording.columns.ordering import read_chunk
@@ -51,6 +52,8 @@ def write_finding(result: FinishedColumns, codes: Collection[int], path: Path) -
             stop = min(start + _AT_ONCE, result.count)
             found = is_one_of(result.read(_CLASS, start, stop), codes)
             file.write(np.packbits(found).tobytes())
+    with report_as_user_error(path):
+        keep_sums(path)
 
 
 def write_given(drive: Drive, result: FinishedColumns, path: Path) -> None:
@@ -69,6 +72,8 @@ def write_given(drive: Drive, result: FinishedColumns, path: Path) -> None:
             labels = labels_of(drive, points)
             given[set_by_hand(drive, points, labels)] = 0
             file.write(given.tobytes())
+    with report_as_user_error(path):
+        keep_sums(path)
 
 
 def new_labels(drive: Drive, result: FinishedColumns, start: int, stop: int) -> NDArray[np.uint8]:
@@ -90,7 +95,7 @@ def adopt_finding(drive: Drive, tool: Tool, run: str, file: Path) -> None:
     path = (given_path if tool.asked is None else finding_path)(drive, tool.id, run)
     with report_as_user_error(path):
         path.parent.mkdir(parents=True, exist_ok=True)
-        file.replace(path)
+        place_with_sums(file, path)
 
 
 def has_finding(drive: Drive, tool: str, run: str) -> bool:
@@ -196,6 +201,7 @@ def _read_given(drive: Drive, path: Path, points: NDArray[np.int64]) -> NDArray[
     if path.stat().st_size != drive.count:
         return np.zeros(points.size, np.uint8)
     first = int(points[0])
+    refuse_damaged(path, first, int(points[-1]) + 1)
     with report_as_user_error(path):
         read = np.fromfile(path, np.uint8, count=int(points[-1]) + 1 - first, offset=first)
     given: NDArray[np.uint8] = read[points - first]
@@ -208,6 +214,7 @@ def _is_whole(drive: Drive, path: Path) -> bool:
 
 def _read(path: Path, start: int, stop: int) -> NDArray[np.bool_]:
     first = start // _BYTE
+    refuse_damaged(path, first, -(-stop // _BYTE))
     with report_as_user_error(path):
         packed = np.fromfile(path, np.uint8, count=-(-stop // _BYTE) - first, offset=first)
     bits: NDArray[np.bool_] = np.unpackbits(packed).view(np.bool_)

@@ -12,6 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 from uuid import uuid4
 
+from processing.core.block_sums import bring_sums, place_with_sums
 from processing.core.errors import UserError, report_as_user_error
 from processing.core.owned_files import is_link, make_marked, refuse_link, remove_marked
 from processing.map.step_files import STEP_FILES, StepFile, StepFiles
@@ -60,6 +61,7 @@ class NewStepFiles:
         path = self.expect(name, drive)
         with report_as_user_error(path):
             file.rename(path)
+            bring_sums(file, path)
 
     def take_away(self, name: str, drive: str = "") -> None:
         """Let there be no file of a name any more.
@@ -179,13 +181,15 @@ def _exchange_files(place: Path, coming: Path | None, leaving: Path | None) -> N
                 place.unlink()
         else:
             leaving.parent.mkdir(parents=True, exist_ok=True)
+            bring_sums(place, leaving)
             place.rename(leaving)
     if coming is None:
         return
     try:
         place.parent.mkdir(parents=True, exist_ok=True)
-        coming.replace(place)
+        place_with_sums(coming, place)
     except OSError:
         if leaving is not None and leaving.exists():
             leaving.rename(place)
+            bring_sums(leaving, place)
         raise

@@ -16,6 +16,7 @@ from typing import BinaryIO
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.block_sums import keep_sums
 from processing.core.errors import report_as_user_error
 from processing.core.monitor import Monitor
 from processing.core.owned_files import holds_only, is_link, remove_folder, unmark
@@ -105,6 +106,8 @@ def make_columns(filed: FiledLabels, drive_of: DriveOf, monitor: Monitor) -> boo
             points = one.unpacked_points()
             fits &= bool((labels_of(drive, points) == one.codes_before()).all())
             write_codes(file, points, one.codes_after())
+        with report_as_user_error(file):
+            keep_sums(file)
     _flush(filed.folder)
     return fits
 

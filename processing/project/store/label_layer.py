@@ -9,7 +9,14 @@ import numpy as np
 
 from processing.core.errors import BadFile, UserError, report_as_user_error
 from processing.core.monitor import SilentMonitor
-from processing.labels.label_column import LABEL, flush, labels_of, make_column, write_labels
+from processing.labels.label_column import (
+    LABEL,
+    flush,
+    labels_of,
+    make_column,
+    settle_labels,
+    write_labels,
+)
 from processing.map.change import Change
 from processing.map.filed_labels import FiledLabels
 from processing.map.label_change import LabelChange
@@ -104,6 +111,8 @@ class LabelLayer:
         for one in labels:
             with suppress(UserError, KeyError):
                 drive, points = self._drive_of(one.drive), one.unpacked_points()
+                if writing:
+                    settle_labels(drive, points)
                 codes = one.codes_after()
                 if (labels_of(drive, points) == codes).all():
                     continue

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import sqlite3
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 
+from processing.core.errors import UserError
 from processing.map.change import Change
 from processing.map.step_files import StepFiles
 from processing.project.store.drive_folders import DriveFolders
@@ -27,6 +28,7 @@ class OpenDrives:
         self._pages = MappedPages()
         self._drives: dict[str, Drive] = {}
         self._removed: dict[str, Drive] = {}
+        self._damaged: dict[str, UserError] = {}
         self._on_open: Callable[[Iterable[Drive]], None] | None = None
 
     @property
@@ -50,6 +52,19 @@ class OpenDrives:
         if self._on_open is not None:
             self._on_open(opened)
         return tuple(opened)
+
+    @property
+    def damaged(self) -> Mapping[str, UserError]:
+        """Drives that :meth:`open_all` left out, and why."""
+        return dict(self._damaged)
+
+    def open_all(self) -> None:
+        """Open all drives of the project, but for those that are damaged or gone."""
+        for id_ in self.folders.ids:
+            try:
+                self.open((id_,))
+            except UserError as error:
+                self._damaged[id_] = error
 
     def tell_opened(self, to: Callable[[Iterable[Drive]], None]) -> None:
         """Have a function called with drives that are opened from now on, and with those open."""
@@ -91,4 +106,6 @@ class OpenDrives:
                 self._drives[one.id] = self._removed.pop(one.folder)
             else:
                 self.open((one.id,))
-        self._drives = {id_: self._drives[id_] for id_ in self.folders.ids}
+        for id_ in change.drive_ids:
+            self._damaged.pop(id_, None)
+        self._drives = {id_: self._drives[id_] for id_ in self.folders.ids if id_ in self._drives}

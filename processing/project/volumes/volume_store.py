@@ -9,14 +9,15 @@ from __future__ import annotations
 
 import json
 import os
+from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from processing.core.errors import BadFile, MissingInput, report_as_user_error
-from processing.core.owned_files import make_marked, remove_folder
+from processing.core.errors import BadFile, MissingInput, UserError, report_as_user_error
+from processing.core.owned_files import is_link, make_marked, remove_folder
 from processing.methods.earthwork.maps.change_grid import ChangeGrid
 from processing.methods.earthwork.volumes.volume_result import VolumeResult
 from processing.methods.ground.filters.cells import CellGrid
@@ -94,6 +95,15 @@ class VolumeStore:
             with suppress(BadFile, MissingInput):
                 found.append(kept_of(_read_facts(folder), folder))
         return tuple(sorted(found, key=lambda one: (one.made, one.id)))
+
+    def damage(self) -> Iterator[tuple[str, UserError]]:
+        """Names of volumes that can't be read, and why."""
+        for folder in sorted(self._home.iterdir()) if self._home.is_dir() else ():
+            if folder.is_dir() and not is_link(folder):
+                try:
+                    self.read_result(kept_of(_read_facts(folder), folder))
+                except UserError as error:
+                    yield folder.name, error
 
     def read_map(self, id_: str) -> ChangeGrid:
         """The map of a volume; its arrays stay on the disk until they are looked at.

@@ -6,8 +6,8 @@ import dataclasses
 import json
 from pathlib import Path
 
+from processing.core.block_sums import refuse_damaged, write_with_sums
 from processing.core.errors import BadFile, report_as_user_error
-from processing.core.owned_files import new_file
 from processing.core.text import Text
 from processing.recording.camera_images.image_list import CameraImage, ImageList
 
@@ -19,13 +19,10 @@ def write_images(folder: Path, images: ImageList) -> None:
     """Note a drive's images in its folder, whole or not at all."""
     noted = [{**dataclasses.asdict(image), "path": str(image.path.absolute())} for image in images]
     path = folder / IMAGES
-    temporary = path.with_suffix(".part")
     with report_as_user_error(path):
         text = json.dumps(noted, ensure_ascii=False)
-        with new_file(temporary) as file:
-            # Names of files may be no text; JSON reads them back.
-            file.write(text.encode("utf-8", errors="backslashreplace"))
-        temporary.replace(path)
+        # Names of files may be no text; JSON reads them back.
+        write_with_sums(path, text.encode("utf-8", errors="backslashreplace"))
 
 
 def read_images(folder: Path) -> ImageList | None:
@@ -39,6 +36,7 @@ def read_images(folder: Path) -> ImageList | None:
     path = folder / IMAGES
     if not path.is_file():
         return None
+    refuse_damaged(path)
     with report_as_user_error(path):
         text = path.read_text(encoding="utf-8")
     try:

@@ -8,8 +8,8 @@ import math
 from collections.abc import Mapping
 from pathlib import Path
 
+from processing.core.block_sums import refuse_damaged, write_with_sums
 from processing.core.errors import BadFile, report_as_user_error
-from processing.core.owned_files import new_file
 from processing.core.text import Text
 from processing.recording.camera_images.calibration import CameraOffset
 
@@ -30,14 +30,8 @@ def write_offsets(folder: Path, offsets: Mapping[str, CameraOffset]) -> None:
         for camera, offset in offsets.items()
         if not offset.is_zero
     }
-    temporary = path.with_suffix(".part")
     with report_as_user_error(path):
-        try:
-            with new_file(temporary) as file:
-                file.write(json.dumps(noted, ensure_ascii=False).encode())
-            temporary.replace(path)
-        finally:
-            temporary.unlink(missing_ok=True)
+        write_with_sums(path, json.dumps(noted, ensure_ascii=False).encode())
 
 
 def read_offsets(folder: Path) -> dict[str, CameraOffset]:
@@ -51,6 +45,7 @@ def read_offsets(folder: Path) -> dict[str, CameraOffset]:
     path = folder / _FILE_NAME
     if not path.is_file():
         return {}
+    refuse_damaged(path)
     with report_as_user_error(path):
         text = path.read_bytes()
     try:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import mmap
 import threading
+import weakref
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -15,7 +16,15 @@ from typing import Any, BinaryIO, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.core.errors import UNCHANGED, BadFile, report_as_user_error
+from processing.core.block_sums import (
+    CHECK_REMEDY,
+    forget_sums,
+    keep_sums,
+    place_with_sums,
+    record_of,
+    refuse_damaged,
+)
+from processing.core.errors import BadFile, UserError, report_as_user_error
 from processing.core.owned_files import new_file
 from processing.core.text import Text
 from processing.recording.columns.mapped_pages import MappedPages
@@ -54,10 +63,28 @@ COLUMN_TYPES: Mapping[str, tuple[str, int]] = {
 }
 """Column name to dtype and values per point."""
 
+_CHECKED_AT_ONCE = 1 << 26
+"""Bytes whose checksums are compared before a column is handed out: 30 ms, no wait for a hand."""
+
+_one_column_at_a_time = threading.Lock()
+
 
 def column_path(folder: Path, name: str) -> Path:
     """Where a column of a drive folder lies."""
     return folder / f"{name}.bin"
+
+
+def wrong_length(path: Path) -> BadFile:
+    """The error for a column that is not as long as its drive has points."""
+    size = path.stat().st_size if path.is_file() else 0
+    return BadFile(
+        Text(
+            "A column of the drive is not as long as the drive has points.",
+            "走行データの列データの長さが点数と一致しません。",
+        ),
+        Text.same(f"{path}, byte {size}"),
+        CHECK_REMEDY,
+    )
 
 
 class ColumnWriter:
@@ -133,6 +160,7 @@ class Columns:
         self._maps: dict[str, NDArray[Any]] = {}
         self._files: dict[str, mmap.mmap] = {}
         self._held: dict[str, NDArray[Any]] = {}
+        self._damage: dict[str, UserError] = {}
         self._opening = threading.Lock()
 
     @property
@@ -152,10 +180,13 @@ class Columns:
     def __getitem__(self, name: str) -> NDArray[Any]:
         """A whole column: (n,) or (n, k), mapped, not to be written.
 
+        Its checksums are compared when it is first asked for; those of a large one beside what is
+        done with it, so that damage may be refused only when it is asked for again.
+
         Raises
         ------
         BadFile
-            The file is not as long as the drive has points.
+            The file is not as long as the drive has points, or is damaged.
         MissingInput
             There is no such column.
         """
@@ -208,10 +239,12 @@ class Columns:
             try:
                 with new_file(temporary) as part:
                     part.write(np.ascontiguousarray(values, dtype=dtype).data)
+                keep_sums(temporary)
                 with self.replacing(name):
-                    temporary.replace(path)
+                    place_with_sums(temporary, path)
             finally:
                 temporary.unlink(missing_ok=True)
+                forget_sums(temporary)
 
     def take_over(self, name: str, file: Path) -> None:
         """Let a finished file be a column, by a rename; replaces an older one.
@@ -233,7 +266,7 @@ class Columns:
                 message = f"column {name}: a file for other points than {self._count}"
                 raise ValueError(message)
             with self.replacing(name):
-                file.replace(path)
+                place_with_sums(file, path)
 
     def hold(self, name: str, values: NDArray[Any]) -> None:
         """Let a column be these values, in memory only: (n,) or (n, k), not to be changed."""
@@ -257,30 +290,59 @@ class Columns:
         with self._opening:
             self._maps.pop(name, None)
             self._files.pop(name, None)
+            self._damage.pop(name, None)
             yield
+
+    def refuse(self, name: str, error: UserError) -> None:
+        """Let a column be refused from now on: it was found to be damaged."""
+        with self._opening:
+            self._damage[name] = error
+            self._maps.pop(name, None)
+            self._files.pop(name, None)
 
     def _map_column(self, name: str) -> NDArray[Any]:
         dtype, width = COLUMN_TYPES[name]
         shape = (self._count,) if width == 1 else (self._count, width)
         path = column_path(self._folder, name)
+        if name in self._damage:
+            raise self._damage[name]
         with report_as_user_error(path):
             size = path.stat().st_size
             if size != self._count * width * np.dtype(dtype).itemsize:
-                raise BadFile(
-                    Text(
-                        "A column of the drive is not as long as the drive has points.",
-                        "走行データの列データの長さが点数と一致しません。",
-                    ),
-                    Text.same(f"{path}, byte {size}"),
-                    Text(
-                        "Import the drive again from the delivered files. {unchanged}",
-                        "納品ファイルから走行データを再インポートしてください。{unchanged}",
-                    ).filled(unchanged=UNCHANGED),
-                )
+                raise wrong_length(path)
             if self._count == 0:
                 return np.empty(shape, dtype=dtype)
+            self._check_sums(name, path, size)
             with path.open("rb") as file:
                 mapped = mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ)
             self._pages.add(mapped)
             self._files[name] = mapped
             return np.frombuffer(mapped, dtype=dtype).reshape(shape)
+
+    def _check_sums(self, name: str, path: Path, size: int) -> None:
+        if size <= _CHECKED_AT_ONCE:
+            refuse_damaged(path)
+        elif record_of(path).exists():
+            threading.Thread(
+                target=_check_beside,
+                args=(weakref.ref(self), name, path, size),
+                name=f"checksums of {name}",
+                daemon=True,
+            ).start()
+
+
+def _check_beside(columns: weakref.ref[Columns], name: str, path: Path, size: int) -> None:
+    """Compare the checksums of a large column while it is used; ends when nobody has it open."""
+    for start in range(0, size, _CHECKED_AT_ONCE):
+        with _one_column_at_a_time:
+            if columns() is None:
+                return
+            try:
+                refuse_damaged(path, start, start + _CHECKED_AT_ONCE)
+            except BadFile as error:
+                still = columns()
+                if still is not None:
+                    still.refuse(name, error)
+                return
+            except UserError:
+                return  # it went meanwhile: whoever reads it is told

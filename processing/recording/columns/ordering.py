@@ -9,9 +9,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.block_sums import refuse_damaged
 from processing.core.errors import report_as_user_error
 from processing.core.monitor import Monitor
-from processing.recording.columns.columns import COLUMN_TYPES, ColumnWriter, column_path
+from processing.recording.columns.columns import (
+    COLUMN_TYPES,
+    ColumnWriter,
+    column_path,
+    wrong_length,
+)
 from processing.recording.columns.replacing import new_columns, replace_columns
 
 POINTS_AT_ONCE = 8_000_000
@@ -76,13 +82,17 @@ def read_chunk(folder: Path, name: str, start: int, stop: int) -> NDArray[Any]:
     """
     dtype, width = COLUMN_TYPES[name]
     item = np.dtype(dtype).itemsize * width
+    path = column_path(folder, name)
+    refuse_damaged(path, start * item, stop * item)
     with report_as_user_error(folder):
         values: NDArray[Any] = np.fromfile(
-            column_path(folder, name),
+            path,
             dtype=dtype,
             count=(stop - start) * width,
             offset=start * item,
         )
+    if values.size != (stop - start) * width:
+        raise wrong_length(path)
     return values if width == 1 else values.reshape(-1, width)
 
 

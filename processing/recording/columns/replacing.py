@@ -11,6 +11,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from pathlib import Path
 
+from processing.core.block_sums import place_with_sums
 from processing.core.errors import report_as_user_error
 from processing.core.owned_files import refuse_link, remove_folder
 
@@ -71,7 +72,7 @@ def finish_replacing(folder: Path, note: Callable[[], object] = _nothing) -> boo
     refuse_link(whole)
     with report_as_user_error(folder):
         for path in sorted(whole.iterdir()):
-            path.replace(folder / path.name)
+            place_with_sums(path, folder / path.name)
     note()
     with report_as_user_error(folder):
         whole.rmdir()

@@ -113,6 +113,8 @@ def run(
             other.remove()
     else:
         result = found
+    if isinstance(result, FinishedColumns):
+        result.keep_sums()
     monitor.report(1.0, text)
     return result
 

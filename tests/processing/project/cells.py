@@ -13,6 +13,7 @@ from processing.recording.columns.ordering import sort_points
 from processing.recording.drive import Drive
 from processing.recording.drive_info import write_drive_info
 from processing.recording.without_revolutions.top_view import top_view_of
+from tests.older_project import forget_all_sums
 
 
 def order_by_cells(folder: Path) -> None:
@@ -25,6 +26,7 @@ def order_by_cells(folder: Path) -> None:
         np.array(drive.info.highest),
     )
     files, indices = drive.sources(0, drive.count)
+    forget_all_sums(folder)
     cells = view.cells_of(drive.xyz(slice(None)))
     files.astype("<u2").tofile(folder / "source_file.bin")
     indices.astype("<i8").tofile(folder / "source_index.bin")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 import sqlite3
+from contextlib import closing
 
 import numpy as np
 import pyogrio
@@ -126,13 +127,15 @@ def test_a_damaged_database_is_refused_in_one_sentence_and_left_as_it_was(folder
     assert path.read_bytes() == before
 
 
-def test_a_missing_drive_is_named(folder):
+def test_a_missing_drive_is_named_and_the_map_opens(folder):
     with sqlite3.connect(folder / "project.gpkg") as connection:
         connection.execute("INSERT INTO zuka_drives VALUES ('left-1', 0)")
     connection.close()
-    with pytest.raises(MissingInput) as refusal:
-        Project.open(folder)
-    assert "left-1" in refusal.value.where.en
+    with closing(Project.open(folder)) as project:
+        (refusal,) = project.damaged_drives.values()
+        assert list(project.features.all()) == [LINE]
+    assert isinstance(refusal, MissingInput)
+    assert "left-1" in refusal.where.en
 
 
 def test_a_copied_project_opens_elsewhere(folder, tmp_path):

@@ -28,6 +28,7 @@ from processing.recording.drive_part import write_part
 from processing.section.points_in_cut import points_in_cut, section_points
 from processing.section.stations import Stations
 from processing.tools.tool import FinishedColumns
+from tests.older_project import forget_all_sums
 from tests.widgets.builders import imported_drive
 
 
@@ -64,6 +65,7 @@ def pair(tmp_path_factory: pytest.TempPathFactory) -> Pair:
     scale = np.array(plain.info.scale)
     shifts = drift.shifts(plain.columns["time"], plain.xyz(slice(None)))
     integers = (plain.columns["xyz"] + np.rint(shifts / scale)).astype("<i4")
+    forget_all_sums(moved)
     column_path(moved, "xyz").write_bytes(integers.tobytes())
     return Pair(Drive(plain.folder, correction=drift), plain, Drive(moved))
 

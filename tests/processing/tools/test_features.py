@@ -29,6 +29,7 @@ from processing.recording.vehicle_path.trajectory import Trajectory
 from processing.tools.features import FeaturesParameters, chosen_features
 from processing.tools.running.runner import RunRequest, run
 from processing.tools.tool import FinishedColumns
+from tests.older_project import forget_all_sums
 from tests.processing.image.recordings import small_drive, without_revolutions
 
 Floats = NDArray[np.float64]
@@ -156,6 +157,7 @@ def cloud_of(drive: Drive, xyz: Floats) -> Drive:
     far = np.column_stack([1000.0 + np.arange(drive.count) * 20.0, np.zeros((drive.count, 2))])
     far[: len(xyz)] = xyz
     integers = np.rint(drive.coordinates.quantisation.in_units(far)).astype("<i4")
+    forget_all_sums(drive.folder)
     integers.tofile(drive.folder / "xyz.bin")
     return Drive(drive.folder)
 

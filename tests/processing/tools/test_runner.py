@@ -25,6 +25,7 @@ from processing.tools.running.runner import RunRequest, check_needs, columns_of,
 from processing.tools.segments import SEGMENTS, SegmentsParameters
 from processing.tools.tool import Needs
 from tests.camera_scene import looking, photograph
+from tests.older_project import forget_all_sums
 from tests.processing.image.recordings import small_drive, without_revolutions
 
 
@@ -139,6 +140,7 @@ def test_a_drive_without_delivered_classes_can_be_processed(drive: Drive) -> Non
 
 def test_a_drive_without_points_gives_empty_columns(drive: Drive) -> None:
     names = ("xyz", "time", "intensity", "pulse")
+    forget_all_sums(drive.folder)
     with ColumnWriter(drive.folder) as writer:
         writer.append({name: np.empty((0, 3) if name == "xyz" else 0) for name in names})
     for path in drive.folder.glob("*.bin"):

@@ -59,6 +59,11 @@ _FAR_SHARE = 1e-3
 _EMPTY_BINS = 64
 """Far points lie beyond so many bins, a sixteenth of the extent; by trial. Nearer ones stay."""
 
+_CORE_SHARE, _CORE_WIDTHS = 0.02, 20.0
+"""All but so many points at either end make the core; so many of its widths away a bin counts only
+where a share of the points is in it that a place of its own would have. A tripod's points, whose
+density falls with the square of the range, reach some ten widths."""
+
 _PERSON_M = 3.0
 """Height above the lowest point within which points above it are counted: as high as a person with
 a tool reaches, and no crown or roof. By trial; ``layers`` takes the same."""
@@ -199,6 +204,7 @@ def _without_far_points(
         counts = np.zeros((3, _PARTS + 1), np.int64)
         for xyz in blocks():
             _profile_kernel(np.ascontiguousarray(xyz), low, np.where(step > 0, step, 1.0), counts)
+        _forget_strewn(counts, step)
         bounds = [_held_bins(counts[axis]) for axis in range(3)]
         first, last = np.array(bounds).T
         kept = (last[:2] + 1 - first[:2]) / _PARTS
@@ -206,6 +212,20 @@ def _without_far_points(
         if np.all(kept > _SHRINK_SHARE):
             break
     return low, high
+
+
+def _forget_strewn(counts: NDArray[np.int64], step: NDArray[np.float64]) -> None:
+    """Take out of the profiles what is strewn far around the cloud, thinly along its whole way."""
+    total = counts.sum(axis=1, keepdims=True)
+    share = np.cumsum(counts, axis=1) / np.maximum(total, 1)
+    first = np.argmax(share > _CORE_SHARE, axis=1)
+    last = np.argmax(share >= 1.0 - _CORE_SHARE, axis=1)
+    reach = _CORE_WIDTHS * float(np.max((last + 1 - first) * step))
+    bins = np.arange(counts.shape[1])
+    for axis in range(3):
+        width = reach / step[axis] if step[axis] > 0.0 else np.inf
+        is_far = (bins < first[axis] - width) | (bins > last[axis] + width)
+        counts[axis, is_far & (counts[axis] < _FAR_SHARE * total[axis])] = 0
 
 
 def _held_bins(counts: NDArray[np.int64]) -> tuple[int, int]:
@@ -250,12 +270,15 @@ def _profile_kernel(
     counts: NDArray[np.int64],
 ) -> None:
     for point in range(xyz.shape[0]):
-        if not np.isfinite(xyz[point, 0] + xyz[point, 1] + xyz[point, 2]):
-            continue
-        for axis in range(3):
-            position = (xyz[point, axis] - low[axis]) / step[axis]
-            if 0.0 <= position <= counts.shape[1] - 1:
-                counts[axis, int(position)] += 1
+        x = (xyz[point, 0] - low[0]) / step[0]
+        y = (xyz[point, 1] - low[1]) / step[1]
+        z = (xyz[point, 2] - low[2]) / step[2]
+        most = counts.shape[1] - 1
+        # A point that is far out along one axis says nothing along the others.
+        if 0.0 <= x <= most and 0.0 <= y <= most and 0.0 <= z <= most:
+            counts[0, int(x)] += 1
+            counts[1, int(y)] += 1
+            counts[2, int(z)] += 1
 
 
 @kernel

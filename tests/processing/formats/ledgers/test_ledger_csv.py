@@ -218,6 +218,8 @@ def test_a_delivered_millimetre_comes_back_as_the_same_number(n: int) -> None:
 
 def test_a_guard_is_taken_off_by_removing_one_apostrophe() -> None:
     assert guard_text("plain") == "plain"
+    for text in ("\n=1+1", " =1", "\u200b=1", "\ufeff@x", "\u3000+1", "\t-1", "\x00=1", "\x1b=1"):
+        assert guard_text(text) == "'" + text
     assert guard_text("=x")[1:] == "=x"
 
 

@@ -100,3 +100,15 @@ def test_a_column_ends_where_four_tenths_of_a_metre_are_empty() -> None:
     bins = np.array([[0b1011, 0b100001, 0, 1 << 10]], np.uint64)
     tops = walls.column_tops(bins)
     np.testing.assert_allclose(tops, [[0.4, 0.1, 0.0, 0.0]], rtol=1e-6)
+
+
+def test_points_strewn_over_all_integers_stretch_no_cells_and_a_second_place_stays() -> None:
+    random = np.random.default_rng(3)
+    street = random.uniform(0, [60.0, 40.0, 3.0], (50_000, 3))
+    strewn = random.uniform(-2_147_483.0, 2_147_483.0, (500, 3))
+    other = [*random.uniform(0, [20.0, 20.0, 3.0], (500, 3)), 5000.0, 0.0, 0.0]
+    alone = cells.choose_cells(lambda: [np.concatenate([street, strewn])])
+    assert alone.rows * alone.size_m < 2_000
+    assert alone.columns * alone.size_m < 2_000
+    both = cells.choose_cells(lambda: [np.concatenate([street, other])])
+    assert both.origin[0] + both.columns * both.size_m > 5_019.0
