@@ -249,7 +249,18 @@ def _add_batch(commands: _Commands[_Parser]) -> None:
     working.add_argument(
         "--scheduler", default="", metavar="ADDRESS", help="of a Dask cluster, tcp://HOST:8786"
     )
+    working.add_argument(
+        "--watch", action="store_true", help="wait for deliveries; until it is ended"
+    )
     working.set_defaults(module="automation.batch")
+    recording = commands.add_parser("macro", help="write what a project was put through as steps")
+    recording.add_argument("project", type=Path, metavar="PROJECT")
+    recording.add_argument("--output", type=Path, required=True, metavar="MACRO.toml")
+    recording.set_defaults(module="automation.macro")
+    replaying = commands.add_parser("replay", help="do the steps of a macro to another project")
+    replaying.add_argument("macro", type=Path, metavar="MACRO.toml")
+    replaying.add_argument("project", type=Path, metavar="PROJECT")
+    replaying.set_defaults(module="automation.replay")
 
 
 def _add_simulate(commands: _Commands[_Parser]) -> None:

@@ -206,7 +206,7 @@ def _write_table(table: Mapping[str, object], name: str, lines: list[str]) -> No
     inner = {key: one for key, one in table.items() if isinstance(one, Mapping)}
     for key, one in table.items():
         if key not in inner:
-            lines.append(f"{_key(key)} = {_toml(one)}")
+            lines.append(f"{_key(key)} = {toml_value(one)}")
     for key, one in inner.items():
         whole = _joined(name, _key(key))
         lines.extend(["", f"[{whole}]"])
@@ -217,13 +217,20 @@ def _key(name: str) -> str:
     return name if _BARE.fullmatch(name) else _quoted(name)
 
 
-def _toml(value: object) -> str:
+def toml_value(value: object) -> str:
+    """A value as TOML, on one line.
+
+    Raises
+    ------
+    OutOfRange
+        As :func:`toml_text`.
+    """
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, (list, tuple)):
-        return f"[{', '.join(map(_toml, value))}]"
+        return f"[{', '.join(map(toml_value, value))}]"
     if isinstance(value, Mapping):
-        return f"{{{', '.join(f'{_key(key)} = {_toml(one)}' for key, one in value.items())}}}"
+        return f"{{{', '.join(f'{_key(key)} = {toml_value(one)}' for key, one in value.items())}}}"
     if isinstance(value, (int, float)):
         return repr(value)
     return _quoted(str(value))

@@ -1,1 +1,1 @@
-"""Commands that work without a person: many drives at once."""
+"""Commands that work without a person: many drives at once, macros."""

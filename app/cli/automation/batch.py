@@ -9,11 +9,14 @@ from app.cli.output import print_lines
 from app.cli.terminal import BAD_INPUT, DEFECT, DONE, say
 from app.settings.language import system_language
 from processing.operations.batch.batch import BatchOperation, BatchOutcome, run_batch
+from processing.operations.batch.watch import watch
 
 
 def command(arguments: argparse.Namespace) -> int:
     """Do a job; drives that failed are told at the end by name."""
     operation = BatchOperation(arguments.job, arguments.scheduler, system_language())
+    if arguments.watch:
+        watch(operation, terminal_monitor(), report)
     return report(run_batch(operation, terminal_monitor()))
 
 

@@ -6,7 +6,7 @@ what the delivery gives: its files, its project, its folder of results.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
@@ -39,6 +39,7 @@ STEP_KINDS = (
 """Operations that a drive may be put through: done a second time they give the same."""
 
 MOST_MEMORY_GIB = 1024.0
+MOST_SETTLED_S = 86_400.0
 
 _KIND, _STEPS = "kind", "steps"
 _DRIVE, _RESULTS = "{drive}", "{results}"
@@ -65,6 +66,10 @@ class BatchJob:
         Drives that are worked on at a time on this machine; 0 for as many as it has cores.
     memory_gib : float
         What the processes of one drive may hold; one that takes more is ended and told.
+    settled_s : float
+        Of a job that waits for deliveries: how long nothing of one must have changed.
+    marker : str
+        The same: the name of a file that is put into a delivery when it is whole; empty without.
     """
 
     deliveries: tuple[str, ...]
@@ -74,6 +79,8 @@ class BatchJob:
     name: str = ""
     workers: int = 0
     memory_gib: float = 4.0
+    settled_s: float = 60.0
+    marker: str = ""
 
 
 @dataclass(frozen=True)
@@ -134,6 +141,7 @@ def read_job(path: Path) -> JobFile:
         content = path.read_bytes()
     table = table_from_text(content.decode("utf-8-sig", errors="replace"), str(path))
     steps = _steps_of(table, path)
+    _check_order(steps, path)
     with _at(str(path)):
         job = replace(value_from(BatchJob, table), steps=steps)
         _check_values(job)
@@ -199,6 +207,21 @@ def _steps_of(table: Table, path: Path) -> tuple[Mapping[str, object], ...]:
                 "[[steps]] の表を1つ以上書き、kind を指定してください。",
             ),
         )
+    return tuple(steps)
+
+
+def steps_of_text(text: str, path: Path) -> tuple[Mapping[str, object], ...]:
+    """The steps of a file that holds nothing else, or a job's.
+
+    Raises
+    ------
+    BadFile
+        It holds none.
+    """
+    return _steps_of(table_from_text(text, str(path)), path)
+
+
+def _check_order(steps: Sequence[Mapping[str, object]], path: Path) -> None:
     if not is_import(steps[0]) or any(is_import(one) for one in steps[1:]):
         raise OutOfRange(
             Text("A job begins with one import.", "ジョブの最初の手順は import です。"),
@@ -208,7 +231,6 @@ def _steps_of(table: Table, path: Path) -> tuple[Mapping[str, object], ...]:
                 '最初の [[steps]] を kind = "import" としてください。',
             ),
         )
-    return tuple(steps)
 
 
 def _check_values(job: BatchJob) -> None:
@@ -226,6 +248,12 @@ def _check_values(job: BatchJob) -> None:
             Text("There can't be so many workers.", "ワーカー数が範囲外です。"),
             Text.same(f"workers={job.workers}"),
             Text("Use 0 (as many as cores) to 256.", "0（コア数と同じ）～256 としてください。"),
+        )
+    if not 0.0 <= job.settled_s <= MOST_SETTLED_S:
+        raise OutOfRange(
+            Text("A delivery can't be waited for so long.", "待ち時間が範囲外です。"),
+            Text.same(f"settled_s={job.settled_s:g}"),
+            Text("Use for instance 60.", "60 などの値を指定してください。"),
         )
     if not 0.0 < job.memory_gib <= MOST_MEMORY_GIB:
         raise OutOfRange(
