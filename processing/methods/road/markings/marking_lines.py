@@ -25,9 +25,9 @@ _BRIDGED_M = 3.0
 _LONGEST_GAP_M = 13.0
 """Of a broken line: 12 m on expressways."""
 
-_TURN_PER_M, _TURN, _OFF_M = math.radians(0.5), math.radians(1.5), 0.05
+_TURN_PER_M, _TURN, _OFF_M, _OFF_SHARE = math.radians(0.5), math.radians(1.5), 0.05, 0.2
 """How much a line bends (a radius of 60 m over half the gap), how sure a direction is, and how far
-off an end may lie."""
+off an end may lie: a share of its width, for wide ones."""
 
 _ALIKE = 0.4
 """Share by which widths of the dashes of one line may differ."""
@@ -47,6 +47,9 @@ _REGULAR = 0.2
 
 _LINE_WIDE_M, _LINE_LONG_M = 0.35, 1.0
 _SOLID_LONG_M = 3.0
+
+_HERMITE_M = 1.0
+"""Between vertices in a gap."""
 
 
 @dataclass(frozen=True)
@@ -201,7 +204,8 @@ def _cost(strokes: Sequence[Stroke], ends: tuple[int, int], ways: Floats, apart:
         return long + 10 * off if off <= 0.1 else math.inf
     first, second = _turn(ways[a], apart), _turn(apart, -ways[b])
     shorter = max(min(one.long_m, other.long_m), 0.5)
-    unsure = _TURN + math.atan(_OFF_M / long) + math.atan(0.01 / shorter)
+    off = max(_OFF_M, _OFF_SHARE * min(one.width_m, other.width_m))
+    unsure = _TURN + math.atan(off / long) + math.atan(0.01 / shorter)
     if (
         abs(first - second) > 2 * unsure
         or max(abs(first), abs(second)) > unsure + _TURN_PER_M * long
@@ -241,7 +245,7 @@ def _joined(chain: Sequence[Stroke]) -> Stroke:
     if len(chain) == 1:
         return chain[0]
     weights = np.array([max(one.long_m, 0.01) for one in chain])
-    line = np.concatenate([one.line for one in chain])
+    line = _connected(chain)
     facts = {
         name: float(np.average([getattr(one, name) for one in chain], weights=weights))
         for name in ("width_m", "width_spread_m", "paint", "beside", "seen_share")
@@ -323,11 +327,30 @@ def _may_stop(one: Stroke) -> bool:
     return _STOP_WIDE_M[0] <= one.width_m <= _STOP_WIDE_M[1] and one.long_m >= _STOP_LONG_M
 
 
+def _connected(chain: Sequence[Stroke]) -> Floats:
+    """One line through strokes; gaps are bent as the strokes on both sides lead (cubic Hermite)."""
+    parts = [chain[0].line]
+    for before, after in itertools.pairwise(chain):
+        start, end = before.line[-1], after.line[0]
+        long = float(np.hypot(*(end - start)))
+        out, into = _ways_out(before.line)[1], -_ways_out(after.line)[0]
+        if long > _HERMITE_M and float(out @ into) > 0.5:
+            t = np.arange(1, math.ceil(long / _HERMITE_M))[:, None] * _HERMITE_M / long
+            parts.append(
+                (2 * t**3 - 3 * t**2 + 1) * start
+                + (t**3 - 2 * t**2 + t) * long * out
+                + (3 * t**2 - 2 * t**3) * end
+                + (t**3 - t**2) * long * into
+            )
+        parts.append(after.line)
+    return np.concatenate(parts)
+
+
 def _lines_of(chain: Sequence[Stroke]) -> list[RoadMarking]:
     """A broken line, or solid ones between the gaps of a chain."""
     pattern = _pattern_of(chain)
     if pattern is not None:
-        line = np.concatenate([one.line for one in chain])
+        line = _connected(chain)
         return [RoadMarking("broken", tuple(chain), line, pattern, len(chain))]
     parts: list[list[Stroke]] = [[chain[0]]]
     for before, after in itertools.pairwise(chain):
@@ -336,7 +359,7 @@ def _lines_of(chain: Sequence[Stroke]) -> list[RoadMarking]:
         parts[-1].append(after)
     found = []
     for part in parts:
-        line = np.concatenate([one.line for one in part])
+        line = _connected(part)
         long = float(np.hypot(*np.diff(line, axis=0).T).sum())
         is_line = long >= _SOLID_LONG_M or (len(parts) > 1 and long >= _LINE_LONG_M)
         found.append(RoadMarking("solid" if is_line else "other", tuple(part), line))

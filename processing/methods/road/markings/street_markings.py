@@ -210,10 +210,13 @@ def _highest_step(raster: PaintRaster, start: Floats, end: Floats) -> float:
     places = start + share * (end - start)
     heights = np.empty(len(places))
     surface_kernel(places, raster.table, raster.heights, heights)
+    known = np.flatnonzero(np.isfinite(heights))
+    if known.size == 0:
+        return float("nan")
+    # Faces of curbs and what they hide aren't seen: what was seen last goes on there.
+    last = np.searchsorted(known, np.arange(len(heights)), "right") - 1
+    heights = heights[known[np.maximum(last, 0)]]
     if len(heights) <= _APART_M:
         return 0.0
     rises = heights[_APART_M:] - heights[:-_APART_M]
-    rises = rises[np.isfinite(rises)]
-    if rises.size == 0:
-        return float("nan")
     return float(np.abs(rises - np.median(rises)).max())
