@@ -13,6 +13,7 @@ from processing.core.text import Text
 from processing.scoring.features.curb_lines import curb_score
 from processing.scoring.features.file_scores import FeatureScorer, VolumeScorer
 from processing.scoring.features.gutters import gutter_score
+from processing.scoring.features.markings import marking_score
 from processing.scoring.features.poles import pole_score
 from processing.scoring.features.signs import sign_score
 from processing.scoring.features.trees import tree_score
@@ -79,6 +80,7 @@ SIGN_SCORER = FeatureScorer("signs", Text("Road signs", "道路標識"), sign_sc
 TREE_SCORER = FeatureScorer("trees", Text("Street trees", "街路樹"), tree_score)
 POLE_SCORER = FeatureScorer("poles", Text("Poles", "柱状物"), pole_score)
 WIRE_SCORER = FeatureScorer("wires", Text("Wires", "架線"), wire_score)
+MARKING_SCORER = FeatureScorer("markings", Text("Road markings", "区画線"), marking_score)
 VOLUME_SCORER = VolumeScorer("volume", Text("Volumes", "土量"), volume_score)
 ECHO_SCORER = EchoScorer(
     "waveform-decompose", Text("Echoes of waveforms", "波形の分解"), flight_echo_score

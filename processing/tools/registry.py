@@ -18,6 +18,7 @@ from processing.tools.curbs import CURBS
 from processing.tools.features import FEATURES
 from processing.tools.ground import GROUND_TOOL
 from processing.tools.gutters import GUTTERS
+from processing.tools.markings import MARKINGS
 from processing.tools.noise import NOISE
 from processing.tools.normals import NORMALS
 from processing.tools.poles import POLES
@@ -39,6 +40,7 @@ _DECLARED = (
     SIGNS,
     POLES,
     WIRES,
+    MARKINGS,
     NOISE,
     GROUND_TOOL,
     CLASSIFY,

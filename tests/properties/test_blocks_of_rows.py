@@ -31,6 +31,7 @@ from processing.tools.curbs import CURBS
 from processing.tools.features import FEATURES, FeaturesParameters
 from processing.tools.ground import GROUND_TOOL, GroundParameters
 from processing.tools.gutters import GUTTERS
+from processing.tools.markings import MARKINGS
 from processing.tools.noise import NOISE, NoiseParameters
 from processing.tools.normals import NORMALS, NormalsParameters
 from processing.tools.poles import POLES
@@ -78,7 +79,7 @@ IN_SPACE = (
     (GROUND_TOOL.id, GroundParameters(method="lowest", tolerance_m=0.1)),
 )
 """Tools that look around in space, whenever a neighbour was measured, by parts of their own."""
-CHUNKS = (TEMPLATE.id, CURBS.id, GUTTERS.id, SIGNS.id, TREES.id, POLES.id, WIRES.id)
+CHUNKS = (TEMPLATE.id, CURBS.id, GUTTERS.id, SIGNS.id, TREES.id, POLES.id, WIRES.id, MARKINGS.id)
 """Tools that find candidates, and read the street a stretch at a time."""
 
 

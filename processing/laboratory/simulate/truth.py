@@ -20,7 +20,7 @@ from processing.laboratory.simulate.scene.mesh import Floats, Integers
 from processing.laboratory.simulate.scene.things import Thing, TrueFeature
 from processing.laboratory.simulate.street.sweep import FACE_PIECE
 
-TRUTH_FILES = ("curbs", "gutters", "trees", "signs", "poles", "wires")
+TRUTH_FILES = ("curbs", "gutters", "trees", "signs", "poles", "wires", "markings")
 CURB_PIECE_M, CURB_SECTION_M = 0.5, 2.0
 BREAST_PIECES, TRUNK_PIECE = range(1, 37), 37
 FRONT_PIECE, BACK_PIECE = 1, 2
@@ -127,6 +127,8 @@ def _member(one: TrueFeature, seen: RecordingEvidence, origin: Floats) -> TruthP
         facts.update(_curb(one, pieces, seen))
     elif one.file == "wires":
         facts.update(_wire(one, pieces, seen))
+    elif one.file == "markings":
+        facts.update(_marking(one, pieces, seen))
     else:
         facts.update(_SHOWN[one.file](pieces))
         passed = seen.passes(one.xyz.mean(axis=0)[None])[0]
@@ -175,6 +177,25 @@ def _wire(one: TrueFeature, pieces: Integers, seen: RecordingEvidence) -> TruthP
     counts = pieces[: len(one.xyz) - 1]
     return {
         "points": int(counts.sum()),
+        "piece_points": counts.tolist(),
+        "piece_in_span": seen.passes((one.xyz[:-1] + one.xyz[1:]) / 2),
+    }
+
+
+def _marking(one: TrueFeature, pieces: Integers, seen: RecordingEvidence) -> TruthProperties:
+    """The same of a marking; a gap of a broken line is shown as well as the worse dash beside."""
+    counts = pieces[: len(one.xyz) - 1]
+    painted = one.facts.get("painted")
+    if isinstance(painted, list):
+        at = np.arange(len(counts))
+        dashes = np.flatnonzero(np.array(painted) > 0)
+        if dashes.size:
+            after = np.searchsorted(dashes, at)
+            before = counts[dashes[np.clip(after - 1, 0, dashes.size - 1)]]
+            behind = counts[dashes[np.clip(after, 0, dashes.size - 1)]]
+            counts = np.where(np.isin(at, dashes), counts, np.minimum(before, behind))
+    return {
+        "points": int(pieces.sum()),
         "piece_points": counts.tolist(),
         "piece_in_span": seen.passes((one.xyz[:-1] + one.xyz[1:]) / 2),
     }

@@ -36,7 +36,9 @@ OVERLAP_SHARE = 0.1
 _SAME_WAY = math.cos(math.radians(30.0))
 """Edges side by side, as of a gutter, end together and look the same way: that is no gap."""
 
-_MAY_CROSS = frozenset({"wire", "width_line", "measurement", "marking_line", "road_marking"})
+_MAY_CROSS = frozenset(
+    {"wire", "width_line", "measurement", "marking_line", "crosswalk_bar", "road_marking"}
+)
 """Wires hang above each other, widths are taken across, markings are painted so."""
 
 

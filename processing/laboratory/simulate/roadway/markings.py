@@ -8,12 +8,13 @@ import numpy as np
 from numpy.random import Generator
 
 from processing.laboratory.simulate.roadway.junctions import street_height, street_sides
-from processing.laboratory.simulate.roadway.paint import Rectangle, add_paint, dashes
+from processing.laboratory.simulate.roadway.paint import Rectangle, dashes
+from processing.laboratory.simulate.roadway.strokes import Stroke, add_strokes, truth_line
 from processing.laboratory.simulate.roadway.transverse import transverse_of
 from processing.laboratory.simulate.scene.chance import chance
 from processing.laboratory.simulate.scene.materials import Material
 from processing.laboratory.simulate.scene.mesh import grid
-from processing.laboratory.simulate.scene.things import NO_THING, SectionBuilder
+from processing.laboratory.simulate.scene.things import SectionBuilder
 from processing.laboratory.simulate.street.corner_track import CornerTrack
 from processing.laboratory.simulate.street.junction_shape import Mouth
 from processing.laboratory.simulate.street.plan import LEFT, RIGHT, SIDES
@@ -39,23 +40,21 @@ def add_markings(section: StreetSection, built: SectionBuilder) -> None:
     random = section.chance("markings")
     habits = chance(section.seed, "markings")
     wear = 0.3 * float(habits.random()) ** 2
-    crossing: list[Rectangle] = []
+    crossing: list[Stroke] = []
     if section.plan.style is URBAN and not section.plan.junctions and random.random() < 0.3:
         crossing = [*_crossing(section, random)]
-    rectangles = [*_lines(section, habits, crossing)]
+    strokes = [*_lines(section, habits, crossing)]
     if section.plan.junctions:
-        add_paint(section, built, rectangles, random, wear)
+        add_strokes(section, built, strokes, (random, wear))
         for side in section.plan.junctions:
             _add_side_street(section, built, side, random, wear)
         return
     if not crossing and random.random() < 0.5:
-        rectangles += symbols_of(section, random)
-    add_paint(section, built, rectangles + crossing, random, wear)
+        strokes += [Stroke((one,), "other") for one in symbols_of(section, random)]
+    add_strokes(section, built, strokes + crossing, (random, wear))
 
 
-def _lines(
-    section: StreetSection, habits: Generator, crossing: list[Rectangle]
-) -> Iterator[Rectangle]:
+def _lines(section: StreetSection, habits: Generator, crossing: list[Stroke]) -> Iterator[Stroke]:
     plan = section.plan
     start, end = plan.start_m, plan.end_m
     has_edges = plan.style is not RURAL or habits.random() < 0.7
@@ -64,7 +63,8 @@ def _lines(
     breaks = [one.mouth for one in section.layout.sides.values() if one.mouth is not None]
     whole = _whole(start, end, breaks)
     if crossing:
-        low, high = min(one[0] for one in crossing), max(one[1] for one in crossing)
+        painted = [one for stroke in crossing for one in stroke.rectangles]
+        low, high = min(one[0] for one in painted), max(one[1] for one in painted)
         whole = [(start, low), (high, end)]
     if plan.median_m <= 0 and plan.lane_m >= _NARROW_M:
         for low, high in whole:
@@ -84,7 +84,7 @@ def _borders(
     stretches: tuple[list[tuple[float, float]], list[tuple[float, float]]],
     *,
     has_edges: bool,
-) -> Iterator[Rectangle]:
+) -> Iterator[Stroke]:
     """The lines along the median and along the road's edge."""
     plan = section.plan
     if plan.median_m > 0:
@@ -105,18 +105,21 @@ def _whole(start: float, end: float, mouths: list[Mouth]) -> list[tuple[float, f
 
 def _line(
     start: float, end: float, offset: float, pattern: tuple[float, float] | None
-) -> Iterator[Rectangle]:
+) -> Iterator[Stroke]:
     right, left = offset - _LINE_M / 2, offset + _LINE_M / 2
     if pattern is None:
-        yield start, end, right, left
+        yield Stroke(((start, end, right, left),), "solid")
         return
-    for first in dashes(start, end, *pattern):
-        low, high = max(float(first), start), min(float(first) + pattern[0], end)
-        if high > low:
-            yield low, high, right, left
+    ends = [
+        (max(float(first), start), min(float(first) + pattern[0], end))
+        for first in dashes(start, end, *pattern)
+    ]
+    rectangles = tuple((low, high, right, left) for low, high in ends if high > low)
+    if rectangles:
+        yield Stroke(rectangles, "broken", pattern)
 
 
-def _crossing(section: StreetSection, random: Generator) -> Iterator[Rectangle]:
+def _crossing(section: StreetSection, random: Generator) -> Iterator[Stroke]:
     """A zebra crossing with its stop lines, where a curb is lowered if there is one."""
     plan = section.plan
     wide = float(random.uniform(3.0, 4.5))
@@ -138,9 +141,11 @@ def _crossing(section: StreetSection, random: Generator) -> Iterator[Rectangle]:
     low, high = middle - wide / 2, middle + wide / 2
     right, left = -plan.right.edge_m + 0.3, plan.left.edge_m - 0.3
     for offset in np.arange(right, left - _STRIPE_M, 2 * _STRIPE_M):
-        yield low, high, float(offset), float(offset) + _STRIPE_M
-    yield low - _STOP_BEFORE_M - _STOP_M, low - _STOP_BEFORE_M, 0.1, left
-    yield high + _STOP_BEFORE_M, high + _STOP_BEFORE_M + _STOP_M, right, -0.1
+        bar = (low, high, float(offset), float(offset) + _STRIPE_M)
+        yield Stroke((bar,), "crosswalk_bar")
+    before, behind = low - _STOP_BEFORE_M, high + _STOP_BEFORE_M
+    yield Stroke(((before - _STOP_M, before, 0.1, left),), "stop_line")
+    yield Stroke(((behind, behind + _STOP_M, right, -0.1),), "stop_line")
 
 
 def symbols_of(section: StreetSection, random: Generator) -> Iterator[Rectangle]:
@@ -235,4 +240,15 @@ def _add_patch(
     chainage, offset = street[1].placed(flat, deep)
     vertices, triangles = grid(section.alignment.at(chainage, offset, height))
     kept = np.repeat(random.random(triangles.shape[0] // 2) >= wear, 2)
-    built.mesh.add((vertices, triangles[kept]), Material.PAINT, ROAD, NO_THING)
+    instance = built.last_thing("marking")
+    is_bar = far - near > high - low
+    middles = (np.full(beside.size, (low + high) / 2), beside)
+    if not is_bar:
+        middles = (along, np.full(along.size, (near + far) / 2))
+    number = np.arange(len(triangles)) // 2
+    piece = number // (along.size - 1) if is_bar else number % (along.size - 1)
+    built.mesh.add((vertices, triangles[kept]), Material.PAINT, ROAD, instance, piece=piece[kept])
+    at, away = street[1].placed(*middles)
+    line = section.alignment.at(at, away, street_height(section, street[0], street[1], *middles))
+    wide = high - low if is_bar else far - near
+    built.truth.append(truth_line(section, instance, line, wide, is_bar=is_bar))

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike
 from processing.laboratory.simulate.scene.mesh import Floats, Mesh, MeshBuilder
 
 Fact = str | int | float | bool | list[float] | None
-TruthFile = Literal["curbs", "gutters", "trees", "signs", "poles", "wires"]
+TruthFile = Literal["curbs", "gutters", "trees", "signs", "poles", "wires", "markings"]
 
 THINGS_PER_SECTION = 20_000
 NO_THING = 0
@@ -43,7 +43,7 @@ class TrueFeature:
     ----------
     file : str
         Whose truth it belongs to: ``curbs``, ``gutters``, ``trees``, ``signs``, ``poles``,
-        ``wires``.
+        ``wires``, ``markings``.
     geometry : str
         ``Point``, ``LineString`` or ``Polygon`` (closed ring).
     xyz : (n, 3) float64
@@ -139,10 +139,20 @@ class SectionBuilder:
     mesh: MeshBuilder = field(default_factory=MeshBuilder)
     things: list[Thing] = field(default_factory=list)
     truth: list[TrueFeature] = field(default_factory=list)
+    _last_things: int = 0
 
     def thing(self, kind: str) -> int:
         """A new thing; its instance."""
-        instance = self.first_instance + len(self.things)
+        instance = self.first_instance + len(self.things) - self._last_things
+        if len(self.things) >= THINGS_PER_SECTION:
+            raise ValueError("too many things in one section")
+        self.things.append(Thing(instance, kind))
+        return instance
+
+    def last_thing(self, kind: str) -> int:
+        """A new thing numbered down from the section's end: it moves no number of the others."""
+        self._last_things += 1
+        instance = self.first_instance + THINGS_PER_SECTION - self._last_things
         if len(self.things) >= THINGS_PER_SECTION:
             raise ValueError("too many things in one section")
         self.things.append(Thing(instance, kind))
