@@ -16,6 +16,7 @@ from widgets.mouse_tools.gesture import REACH_PX
 from widgets.mouse_tools.menu_request import MenuRequest
 from widgets.parts.command_palette import CommandPalette, NamedAction
 from widgets.parts.literal_text import literal
+from widgets.shared.cursor import PickedPosition
 from widgets.shared.mouse_shape import drawing_cursor
 from widgets.shared.snap_state import SnapMode
 
@@ -47,6 +48,7 @@ def connect_drawing(parts: WindowParts) -> None:
     for measure in toolbox.tools_of(MeasureTool):
         measure.measured.connect(bar.show_measures)
     snap.modes_changed.connect(wiring.on_snap_modes_changed)
+    parts.document.shared.sketch.changed.connect(wiring.on_sketch_changed)
     for view in parts.views:
         view.menu_requested.connect(wiring.on_view_menu_requested)
     parts.document.opened.connect(wiring.on_document_opened)
@@ -64,6 +66,19 @@ class _DrawingWiring(QObject):
     def __init__(self, parts: WindowParts) -> None:
         super().__init__(parts.window.centralWidget())  # goes with the widgets
         self._parts = parts
+        self._vertices = 0
+
+    def on_sketch_changed(self) -> None:
+        """Let section, camera and the other views follow each vertex of what is drawn anew."""
+        shared = self._parts.document.shared
+        drawing = shared.sketch.drawing
+        vertices = () if drawing is None or drawing.replaces else drawing.vertices
+        has_grown = len(vertices) > self._vertices
+        self._vertices = len(vertices)
+        if has_grown:
+            last = vertices[-1]
+            position = PickedPosition(last.xyz, last.measured, is_occluded=last.is_occluded)
+            shared.cursor.move_to(position)
 
     def keep_tab_to_views(self) -> None:
         """Tab changes the kind over the views only: in forms it goes from field to field."""

@@ -123,10 +123,10 @@ def look_at_delivery(files: Sequence[Path], crs: str, monitor: Monitor) -> Deliv
     except UserError as error:
         return DeliveryOverview((), crs, error)
     paths, named = _look_at_trajectories(request, crs)
-    points, system, trouble = _look_at_points(request, crs, monitor)
+    looked, system, trouble = _look_at_points(request, crs, monitor)
     points = [
         one if one.trouble is not None else replace(one, trajectory=_state(one, file, named))
-        for one, file in points
+        for one, file in looked
     ]
     images = [_look_at_images(path) for path in request.images]
     return DeliveryOverview((*points, *paths, *images), system, trouble)

@@ -63,9 +63,7 @@ class CameraController:
         moved = position - drag.position
         self._drag = _Drag(drag.turns, drag.pivot, position)
         if drag.turns:
-            return camera.orbited(
-                drag.pivot, moved.x() * _DEGREES_PER_PX, -moved.y() * _DEGREES_PER_PX
-            )
+            return _turned(camera, drag.pivot, moved)
         depth_m = float(projection.in_view(drag.pivot[None])[0, 2])
         metres = projection.metres_per_px(max(depth_m, camera.distance_m * 0.05))
         return camera.panned(-moved.x() * metres, moved.y() * metres)
@@ -73,6 +71,15 @@ class CameraController:
     def end(self) -> None:
         """Let go."""
         self._drag = None
+
+
+def _turned(camera: SceneCamera, pivot: Floats, moved: QPointF) -> SceneCamera:
+    """The camera turned about a place; who looks down on it is not led below it."""
+    right_deg, up_deg = moved.x() * _DEGREES_PER_PX, -moved.y() * _DEGREES_PER_PX
+    turned = camera.orbited(pivot, right_deg, up_deg)
+    if camera.position[2] >= pivot[2] > turned.position[2]:
+        return camera.orbited(pivot, right_deg, 0.0)
+    return turned
 
 
 def zoom_camera(camera: SceneCamera, pivot: Floats, notches: float) -> SceneCamera:

@@ -12,6 +12,7 @@ from processing.map.catalogue import AttributeField, Catalogue, Geometry
 from processing.map.feature import AttributeValue, Feature, Position
 from processing.map.measured_fields import field_of
 from processing.map.measures import length_m, plan_area_m2, plan_length_m
+from processing.tools.registry import TOOLS
 
 _GUARDED = tuple("=+-@'＝＋－＠")
 _UNSEEN = ("Cc", "Cf", "Zl", "Zp", "Cn", "Cs")
@@ -175,8 +176,11 @@ def status_columns(style: TableStyle) -> tuple[LedgerColumn, ...]:
         return style.number(feature.provenance.confidence, 3)
 
     def tool(feature: Feature) -> str:
-        is_by_hand = feature.provenance.tool == "hand"
-        name = Text("hand", "手動") if is_by_hand else Text.same(feature.provenance.tool)
+        made_by = feature.provenance.tool
+        known = TOOLS.get(made_by)
+        # Scripts read the tool's id; who reads Japanese reads its name.
+        name = Text.same(made_by) if known is None else Text(made_by, known.name.ja)
+        name = Text("hand", "手動") if made_by == "hand" else name
         return guard_text(name.in_language(style.language or "en"))
 
     return (

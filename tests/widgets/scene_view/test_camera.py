@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from PySide6.QtCore import QPointF
 
+from widgets.scene_view.camera_controller import CameraController
 from widgets.scene_view.rendering.camera import SceneCamera
 from widgets.scene_view.rendering.projection import SceneProjection
 
@@ -87,3 +89,23 @@ def test_a_segment_behind_the_camera_is_not_seen() -> None:
     behind = np.array(CAMERA.position) - np.array([[1.0], [5.0]]) * CAMERA.axes[2]
     (line,) = projection.segments_on_screen(behind, np.array([[0, 1]]))
     assert np.isnan(line).all()
+
+
+@given(st.floats(-400, 400), st.floats(-400, 400))
+def test_a_drag_about_a_place_on_the_ground_leads_no_eye_below_it(
+    right_px: float, down_px: float
+) -> None:
+    controller = CameraController()
+    controller.begin(QPointF(400.0, 300.0), POSITION, turns=True)
+    projection = SceneProjection(CAMERA, 800, 600)
+    turned = controller.dragged(projection, QPointF(400.0 + right_px, 300.0 + down_px))
+    assert turned.position[2] >= POSITION[2]
+    assert pixel(turned, POSITION) == pytest.approx(pixel(CAMERA, POSITION), abs=1e-6)
+
+
+def test_who_stands_lower_than_a_place_may_turn_about_it_as_before() -> None:
+    roof = np.array([6.0, 2.0, 30.0])
+    controller = CameraController()
+    controller.begin(QPointF(400.0, 300.0), roof, turns=True)
+    turned = controller.dragged(SceneProjection(CAMERA, 800, 600), QPointF(400.0, 340.0))
+    assert turned.pitch_deg != CAMERA.pitch_deg
