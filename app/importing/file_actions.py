@@ -12,6 +12,7 @@ from app.catalogue.catalogue_update import adopt_catalogue
 from app.importing.column_request import with_columns
 from app.importing.drive_actions import DriveActions
 from app.importing.existing_maps import ExistingMaps
+from app.importing.project_checking import ProjectChecking
 from app.importing.sheet_printing import SheetPrinting
 from app.importing.source_watch import SourceWatch
 from app.importing.trajectory_offer import TrajectoryOffer
@@ -49,6 +50,7 @@ class FileActions:
         self.drives = DriveActions(parts)
         self.printing = SheetPrinting(parts, self._dialogs)
         self.existing_maps = ExistingMaps(parts, self._dialogs)
+        self.checking = ProjectChecking(parts)
 
     def actions(self) -> tuple[Action, ...]:
         """The file menu, from top to bottom."""
@@ -164,6 +166,7 @@ class FileActions:
                 ),
                 needs_project=True,
             ),
+            self._check(),
             Action(
                 "adopt-catalogue",
                 Text("Use an office's catalogue…", "事務所のカタログを使う…"),
@@ -186,6 +189,19 @@ class FileActions:
                 ),
                 needs_project=True,
             ),
+        )
+
+    def _check(self) -> Action:
+        return Action(
+            "check-project",
+            Text("Check project", "プロジェクトの検査"),
+            self.checking.choose,
+            "file",
+            hint=Text(
+                "Names damaged files of the project, and makes again what can be made again.",
+                "プロジェクトの壊れたファイルを調べ、作り直せるものを修復します。",
+            ),
+            needs_project=True,
         )
 
     def _of_the_program(self) -> tuple[Action, ...]:
