@@ -13,6 +13,7 @@ from app.importing.column_request import with_columns
 from app.importing.delivery_look import DeliveryLook
 from app.importing.drive_actions import DriveActions
 from app.importing.existing_maps import ExistingMaps
+from app.importing.project_checking import ProjectChecking
 from app.importing.recent_menu import RecentMenu
 from app.importing.sheet_printing import SheetPrinting
 from app.importing.source_watch import SourceWatch
@@ -53,6 +54,7 @@ class FileActions:
         parts.jobs.failed.connect(self._on_jobs_failed)
         self.printing = SheetPrinting(parts, self._dialogs)
         self.existing_maps = ExistingMaps(parts, self._dialogs)
+        self.checking = ProjectChecking(parts)
 
     def actions(self) -> tuple[Action, ...]:
         """The file menu, from top to bottom."""
@@ -176,6 +178,7 @@ class FileActions:
                 ),
                 needs_project=True,
             ),
+            self._check(),
             Action(
                 "adopt-catalogue",
                 Text("Use an office's catalogue…", "事務所のカタログを使う…"),
@@ -198,6 +201,19 @@ class FileActions:
                 ),
                 needs_project=True,
             ),
+        )
+
+    def _check(self) -> Action:
+        return Action(
+            "check-project",
+            Text("Check project", "プロジェクトの検査"),
+            self.checking.choose,
+            "file",
+            hint=Text(
+                "Names damaged files of the project, and makes again what can be made again.",
+                "プロジェクトの壊れたファイルを調べ、作り直せるものを修復します。",
+            ),
+            needs_project=True,
         )
 
     def _of_the_program(self) -> tuple[Action, ...]:

@@ -2688,4 +2688,72 @@ kept</source>
         <translation>ファイルを開く</translation>
     </message>
 </context>
+<context>
+    <name>ProjectCheckForm</name>
+    <message>
+        <source>Check of {name}</source>
+        <translation>{name} の検査</translation>
+    </message>
+    <message>
+        <source>State</source>
+        <translation>状態</translation>
+    </message>
+    <message>
+        <source>File</source>
+        <translation>ファイル</translation>
+    </message>
+    <message>
+        <source>What is wrong</source>
+        <translation>内容</translation>
+    </message>
+    <message>
+        <source>Remedy</source>
+        <translation>対処</translation>
+    </message>
+    <message>
+        <source>damaged</source>
+        <translation>破損</translation>
+    </message>
+    <message>
+        <source>repaired</source>
+        <translation>修復</translation>
+    </message>
+    <message>
+        <source>note</source>
+        <translation>注意</translation>
+    </message>
+    <message>
+        <source>Repair</source>
+        <translation>修復</translation>
+    </message>
+    <message numerus="yes">
+        <source>%n file(s) damaged.</source>
+        <translation>
+            <numerusform>%n ファイルが壊れています。</numerusform>
+        </translation>
+    </message>
+    <message>
+        <source>“Repair” closes the project for a moment and makes again what the delivered files still give; map and labels stay as they are.</source>
+        <translation>「修復」を押すとプロジェクトを一時的に閉じ、納品ファイルから作り直せるものを作り直します。図面とラベルは変わりません。</translation>
+    </message>
+    <message numerus="yes">
+        <source>%n file(s) repaired; nothing is damaged any more.</source>
+        <translation>
+            <numerusform>%n ファイルを修復しました。破損は残っていません。</numerusform>
+        </translation>
+    </message>
+    <message numerus="yes">
+        <source>%n file(s) checked: nothing is damaged.</source>
+        <translation>
+            <numerusform>%n ファイルを検査しました。破損はありません。</numerusform>
+        </translation>
+    </message>
+</context>
+<context>
+    <name>ProjectChecking</name>
+    <message>
+        <source>Check project</source>
+        <translation>プロジェクトを検査</translation>
+    </message>
+</context>
 </TS>
