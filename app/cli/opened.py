@@ -13,6 +13,7 @@ from processing.operations.inputs import (
     inputs_of_paths,
     opened_inputs,
 )
+from processing.operations.run import no_single_input
 from processing.project.importing.dropped_files import is_folder_of_files, request_of_files
 from processing.project.importing.import_request import ImportRequest
 
@@ -76,3 +77,15 @@ def request_of(arguments: argparse.Namespace) -> ImportRequest:
 def columns_of(arguments: argparse.Namespace) -> tuple[str, ...]:
     """What ``--columns`` says of the columns of text files; nothing without it."""
     return tuple(name.strip() for name in arguments.columns.split(",")) if arguments.columns else ()
+
+
+def check_inputs(arguments: argparse.Namespace) -> None:
+    """Refuse a command that names no input, or sides of a comparison.
+
+    Raises
+    ------
+    MissingInput
+    """
+    given = vars(arguments)
+    if not arguments.inputs or any(given.get(name) for name in ("before", "after", "also")):
+        raise no_single_input(arguments.tool)

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import argparse
 
-from app.cli.opened import inputs_of, terminal_monitor
+from app.cli.opened import check_inputs, inputs_of, terminal_monitor
 from app.cli.output import print_lines
 from app.cli.set_option import settings_of_words
 from app.settings.language import system_language
 from processing.operations.new_points import NewPointsOperation, make_points
-from processing.operations.run import RunOperation, no_single_input, run_operation
-from processing.tools.registry import COMPARISONS, POINT_MAKERS
+from processing.operations.run import RunOperation, run_operation
+from processing.tools.registry import COMPARISONS, POINT_MAKERS, REGISTRATIONS
 
 
 def command(arguments: argparse.Namespace) -> int:
@@ -23,6 +23,10 @@ def command(arguments: argparse.Namespace) -> int:
     if arguments.tool in POINT_MAKERS:
         print_lines(str(make_points(points_operation_of(arguments), terminal_monitor())))
         return 0
+    if arguments.tool in REGISTRATIONS:
+        from app.cli import register
+
+        return register.command(arguments)
     outcome = run_operation(operation_of(arguments), terminal_monitor())
     print_lines(*(words.in_language(system_language()) for words in outcome.words))
     return 0
@@ -37,7 +41,7 @@ def operation_of(arguments: argparse.Namespace) -> RunOperation:
         They name no input, or a setting without a value.
     """
     given = vars(arguments)
-    _check_inputs(arguments)
+    check_inputs(arguments)
     return RunOperation(
         arguments.tool,
         inputs_of(arguments),
@@ -55,13 +59,7 @@ def points_operation_of(arguments: argparse.Namespace) -> NewPointsOperation:
     MissingInput, OutOfRange
         They name no input, or a setting without a value.
     """
-    _check_inputs(arguments)
+    check_inputs(arguments)
     return NewPointsOperation(
         arguments.tool, inputs_of(arguments), arguments.output, settings_of_words(arguments.set)
     )
-
-
-def _check_inputs(arguments: argparse.Namespace) -> None:
-    given = vars(arguments)
-    if not arguments.inputs or any(given.get(name) for name in ("before", "after", "also")):
-        raise no_single_input(arguments.tool)

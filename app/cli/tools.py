@@ -10,7 +10,7 @@ from app.settings.language import system_language
 from processing.core.parameters import Parameter, parameters_of
 from processing.tools.registry import every_tool
 from processing.tools.running.runner import any_tool
-from processing.tools.tool import Comparison, NewPoints, NewPointsTogether, Tool
+from processing.tools.tool import Comparison, NewPoints, NewPointsTogether, SurveyCorrection, Tool
 
 
 def command(arguments: argparse.Namespace) -> int:
@@ -47,6 +47,8 @@ def _gives(tool: Tool) -> str:
         return "volumes"
     if isinstance(tool.method, NewPoints | NewPointsTogether):
         return "points"
+    if isinstance(tool.method, SurveyCorrection):
+        return "corrections"
     return "candidates" if tool.gives_candidates else "columns"
 
 

@@ -67,7 +67,7 @@ def process_actions(parts: WindowParts) -> tuple[Action, ...]:
             f"process-{tool}",
             _FORM.filled(name=shown[tool].name),
             show,
-            "process" if TOOLS[tool].button is None else "process/settings",
+            "process" if shown[tool].button is None else "process/settings",
             hint=shown[tool].explanation,
             needs_project=True,
         )

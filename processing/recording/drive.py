@@ -121,6 +121,11 @@ class Drive:
         """Where one of ``info.sources`` is now, as far as is known."""
         return path_now(source.path, self._moves)
 
+    @property
+    def moves(self) -> tuple[FolderMove, ...]:
+        """Where folders of its delivered files are now, as told by :meth:`use_moves`."""
+        return self._moves
+
     def use_moves(self, moves: tuple[FolderMove, ...]) -> bool:
         """Look for delivered files and camera images where their folders are now.
 

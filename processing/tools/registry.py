@@ -22,10 +22,11 @@ from processing.tools.markings import MARKINGS
 from processing.tools.noise import NOISE
 from processing.tools.normals import NORMALS
 from processing.tools.poles import POLES
+from processing.tools.register import REGISTER
 from processing.tools.segments import SEGMENTS
 from processing.tools.signs import SIGNS
 from processing.tools.template import TEMPLATE
-from processing.tools.tool import Comparison, NewPoints, NewPointsTogether, Tool
+from processing.tools.tool import Comparison, NewPoints, NewPointsTogether, SurveyCorrection, Tool
 from processing.tools.trees import TREES
 from processing.tools.volume import VOLUME
 from processing.tools.waveform_classify import WAVEFORM_CLASSIFY
@@ -50,6 +51,7 @@ _DECLARED = (
     COLOUR,
     TEMPLATE,
     VOLUME,
+    REGISTER,
     WAVEFORM_DECOMPOSE,
     WAVEFORM_CLASSIFY,
     WAVEFORM_ESTIMATE,
@@ -58,7 +60,7 @@ _DECLARED = (
 TOOLS: Mapping[str, Tool] = {
     tool.id: tool
     for tool in _DECLARED
-    if not isinstance(tool.method, Comparison | NewPoints | NewPointsTogether)
+    if not isinstance(tool.method, Comparison | NewPoints | NewPointsTogether | SurveyCorrection)
 }
 
 COMPARISONS: Mapping[str, Tool] = {
@@ -73,14 +75,20 @@ POINT_MAKERS: Mapping[str, Tool] = {
 """Those that make points of their own, into a file."""
 
 
+REGISTRATIONS: Mapping[str, Tool] = {
+    tool.id: tool for tool in _DECLARED if isinstance(tool.method, SurveyCorrection)
+}
+"""Those that say how drives are to be moved; they run on all drives of a survey."""
+
+
 def tools_of_drives() -> Mapping[str, Tool]:
     """Those that run on a drive: tools, and what makes points."""
     return {**TOOLS, **POINT_MAKERS}
 
 
 def every_tool() -> Mapping[str, Tool]:
-    """Tools, comparisons and what makes points."""
-    return {**TOOLS, **COMPARISONS, **POINT_MAKERS}
+    """Tools, comparisons, what makes points and what moves drives."""
+    return {**TOOLS, **COMPARISONS, **POINT_MAKERS, **REGISTRATIONS}
 
 
 def point_tools() -> Mapping[str, Tool]:

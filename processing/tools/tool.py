@@ -7,7 +7,7 @@ of a few kinds (:data:`ToolMethod`): no project, no view, no global.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import Enum
 from pathlib import Path
@@ -25,6 +25,8 @@ from processing.image.rows.grid import PixelGrid
 from processing.methods.earthwork.geometry.volume_scope import VolumeScope
 from processing.methods.earthwork.surfaces.sides import Side
 from processing.methods.earthwork.volumes.volume_result import VolumeResult
+from processing.methods.registration.control_points import ControlPoint
+from processing.methods.registration.registration import Registration
 from processing.methods.road.diagnostics import Diagnostic
 from processing.methods.road.requested_position import RequestedPosition
 from processing.recording.columns.columns import Columns, column_path
@@ -432,13 +434,32 @@ class NewPointsTogether:
     descriptor: WaveformDescriptor
 
 
+# Drives of one survey, control points, whom to tell.
+SurveyRegistrar = Callable[[Sequence[Drive], Sequence[ControlPoint], Monitor], Registration]
+
+
+@dataclass(frozen=True)
+class SurveyCorrection:
+    """A method that says how the drives of a survey are to be moved.
+
+    Attributes
+    ----------
+    register : callable
+        The corrections of all drives.
+    """
+
+    register: SurveyRegistrar
+
+
 PointMethod = PerPoint | PerPointOfDrive | PerDrive | Together
 """Says something about every point."""
 
 FindingMethod = Finder | SurveyFinder
 """Finds things, which a person accepts or rejects."""
 
-ToolMethod = PointMethod | FindingMethod | Comparison | NewPoints | NewPointsTogether
+ToolMethod = (
+    PointMethod | FindingMethod | Comparison | NewPoints | NewPointsTogether | SurveyCorrection
+)
 """How a tool works; :mod:`processing.tools.running.runner` knows what each needs."""
 
 

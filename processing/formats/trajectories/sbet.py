@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -135,7 +136,75 @@ def _project_records(
     records: NDArray[np.void], crs: str, path: Path
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """Easting, northing, and the grid bearing of true north (rad) of each record."""
-    from pyproj import CRS, Transformer
+    from pyproj import Transformer
+
+    system = _projected_system(crs, path)
+    transformer = Transformer.from_crs(system.geodetic_crs, system, always_xy=True)
+    longitude, latitude = np.degrees(records["longitude"]), np.degrees(records["latitude"])
+    easting, northing = transformer.transform(longitude, latitude)
+    bearing = _bearings(transformer, longitude, latitude)
+    good = np.isfinite(easting) & np.isfinite(northing) & np.isfinite(bearing)
+    if not good.all():
+        bad = int(np.argmin(good))
+        raise OutOfRange(
+            Text(
+                f"Record {bad + 1:,} lies outside the area of {crs}.",
+                f"{bad + 1:,}番目の記録は {crs} の適用範囲外です。",
+            ),
+            Text.same(str(path)),
+            Text(
+                "Choose the zone of the survey.", "測量区域の座標系（系番号）を指定してください。"
+            ),
+        )
+    return easting, northing, bearing
+
+
+def record_type() -> np.dtype[np.void]:
+    """The type of an SBET's records."""
+    return _RECORD
+
+
+def bearings_of_north(
+    xy: NDArray[np.float64], crs: str, path: Path
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Longitude and latitude, degrees, and the grid bearing of true north, rad, of places.
+
+    Parameters
+    ----------
+    xy : (n, 2) float64
+        m, ``crs``.
+    path : Path
+        Of the file that they are for.
+
+    Raises
+    ------
+    OutOfRange
+        ``crs`` is unknown or not projected.
+    """
+    from pyproj import Transformer
+
+    system = _projected_system(crs, path)
+    transformer = Transformer.from_crs(system.geodetic_crs, system, always_xy=True)
+    longitude, latitude = transformer.transform(xy[:, 0], xy[:, 1], direction="INVERSE")
+    return longitude, latitude, _bearings(transformer, longitude, latitude)
+
+
+# Any: pyproj has no types of its own for its transformers and systems.
+def _bearings(
+    transformer: Any, longitude: NDArray[np.float64], latitude: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    easting, northing = transformer.transform(longitude, latitude)
+    # Towards the pole a step north would leave the sphere; a step south serves as well.
+    step = np.where(latitude > 0, -_NORTH_STEP_DEG, _NORTH_STEP_DEG)
+    east_of_step, north_of_step = transformer.transform(longitude, latitude + step)
+    sign = np.sign(step)
+    return np.asarray(
+        np.arctan2(sign * (east_of_step - easting), sign * (north_of_step - northing))
+    )
+
+
+def _projected_system(crs: str, path: Path) -> Any:  # as above
+    from pyproj import CRS
     from pyproj.exceptions import CRSError
 
     try:
@@ -154,28 +223,7 @@ def _project_records(
                 "EPSG:6677などの平面直角座標系を指定してください。",
             ),
         )
-    transformer = Transformer.from_crs(system.geodetic_crs, system, always_xy=True)
-    longitude, latitude = np.degrees(records["longitude"]), np.degrees(records["latitude"])
-    easting, northing = transformer.transform(longitude, latitude)
-    # Towards the pole a step north would leave the sphere; a step south serves as well.
-    step = np.where(latitude > 0, -_NORTH_STEP_DEG, _NORTH_STEP_DEG)
-    east_of_step, north_of_step = transformer.transform(longitude, latitude + step)
-    sign = np.sign(step)
-    bearing = np.arctan2(sign * (east_of_step - easting), sign * (north_of_step - northing))
-    good = np.isfinite(easting) & np.isfinite(northing) & np.isfinite(bearing)
-    if not good.all():
-        bad = int(np.argmin(good))
-        raise OutOfRange(
-            Text(
-                f"Record {bad + 1:,} lies outside the area of {crs}.",
-                f"{bad + 1:,}番目の記録は {crs} の適用範囲外です。",
-            ),
-            Text.same(str(path)),
-            Text(
-                "Choose the zone of the survey.", "測量区域の座標系（系番号）を指定してください。"
-            ),
-        )
-    return easting, northing, bearing
+    return system
 
 
 def _bad_record(path: Path, record: int, what: Text) -> BadFile:

@@ -13,6 +13,7 @@ import numpy as np
 from processing.core.monitor import Monitor
 from processing.core.parameters import fill_parameters
 from processing.core.text import Text
+from processing.core.whole_folder import write_whole_folder
 from processing.laboratory.simulate.airborne.beam_kernels import FootprintHits, cast_beams
 from processing.laboratory.simulate.airborne.flight_files import ArrayArchive, Columns, WaveformFile
 from processing.laboratory.simulate.airborne.flight_lines import FlightPlan, SentPulses, pulses_of
@@ -42,7 +43,6 @@ from processing.laboratory.simulate.scanning.delivered_files import (
 from processing.laboratory.simulate.scene.chance import chance
 from processing.laboratory.simulate.simulated import Simulated
 from processing.laboratory.simulate.sites.delivery import write_json
-from processing.laboratory.simulate.whole_folder import write_whole_folder
 
 _FIRST_S = 370_000_000.0  # adjusted standard GPS time
 _HALF_WHITE = 0.5

@@ -57,6 +57,10 @@ class StreetRequest:
     attitude_deg, mounting_deg : float
         The same of the angles that the trajectory delivers, and of those at which each head is said
         to be mounted, which don't change during a pass.
+    jumps_m, wander_m : float
+        Steps in the delivered positions, and their random walk within a minute.
+    control_per_km : float
+        Surveyed points along the street.
     wear : float
         What time made of the kerb stones.
     avenue : bool
@@ -149,6 +153,38 @@ class StreetRequest:
             "Standard deviation of the angles by which each head is mounted otherwise than its "
             "calibration says.",
             "各スキャナーの取付け角の、検定値に対する誤差の標準偏差。",
+        ),
+    )
+    jumps_m: float = length(
+        0.0,
+        low=0.0,
+        high=1.0,
+        name=Text("Jumps of the trajectory", "走行軌跡の飛び"),
+        explanation=Text(
+            "Standard deviation of the steps in the delivered positions where GNSS comes back, "
+            "about twice a minute.",
+            "GNSSの再捕捉時に生じる、成果の位置の段差の標準偏差。1分間に約2回起こります。",
+        ),
+    )
+    wander_m: float = length(
+        0.0,
+        low=0.0,
+        high=1.0,
+        name=Text("Wander of the trajectory", "走行軌跡のゆらぎ"),
+        explanation=Text(
+            "How far the delivered positions wander at random within a minute, standard deviation.",
+            "成果の位置が1分間に不規則に変化する量の標準偏差。",
+        ),
+    )
+    control_per_km: float = ratio(
+        0.0,
+        low=0.0,
+        high=1000.0,
+        name=Text("Control points per km", "1 kmあたりの標定点数"),
+        explanation=Text(
+            "Surveyed points on corners of markings and on the road, every third of them a check "
+            "point, in control_points.csv.",
+            "標示の角や路面を測量した点。3点に1点は検証点とし、control_points.csv に書き出します。",
         ),
     )
     wear: float = ratio(

@@ -11,6 +11,7 @@ import numpy as np
 from processing.core.monitor import Monitor, PartMonitor
 from processing.core.parameters import fill_parameters
 from processing.core.text import Text
+from processing.core.whole_folder import write_whole_folder
 from processing.laboratory.simulate.requests import SiteRequest
 from processing.laboratory.simulate.scanning.casting import RaycastScene
 from processing.laboratory.simulate.scanning.returns import Weather
@@ -38,7 +39,6 @@ from processing.laboratory.simulate.sites.recording import (
 from processing.laboratory.simulate.sites.stations import count_for, stations_of
 from processing.laboratory.simulate.sites.terrain import SiteTerrain, terrain_of
 from processing.laboratory.simulate.sites.volumes import SEEN_CELL_M, cut_and_fill
-from processing.laboratory.simulate.whole_folder import write_whole_folder
 
 DATES = ("before", "after")
 _FIRST_S = 350_000_000.0  # adjusted standard GPS time

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from processing.core.monitor import Monitor, PartMonitor
 from processing.core.text import Text
+from processing.core.whole_folder import write_whole_folder
 from processing.laboratory.simulate.assembly.street import Street
 from processing.laboratory.simulate.cameras.photographs import (
     DeliveryFrame,
@@ -22,6 +23,7 @@ from processing.laboratory.simulate.cameras.photographs import (
 )
 from processing.laboratory.simulate.cameras.rigs import poses_of_pass, rig_of
 from processing.laboratory.simulate.cameras.seen_street import SeenStreet
+from processing.laboratory.simulate.control_points import write_control_points
 from processing.laboratory.simulate.moving_traffic.moving import movers_of
 from processing.laboratory.simulate.requests import StreetRequest
 from processing.laboratory.simulate.scanning.beams import ScanPattern
@@ -54,13 +56,16 @@ from processing.laboratory.simulate.truth import (
     write_things,
     write_truth,
 )
-from processing.laboratory.simulate.whole_folder import write_whole_folder
 
 _DRY_SHARE = 0.65
 _SHORTEST_GROWTH = 0.03  # of grass: from a lawn just mown to a meadow, as often short as long
 _POINTS_SHARE = 0.4  # of the progress of a pass; the rest is photographs
 _SHOWN_M = 40.0  # of truth before the beginning and behind the end
 _KMH = 3.6
+DELTA_M = 1e-4
+"""Step of the truth of places: true minus delivered, in tenths of a millimetre."""
+
+_MOST_STEPS = np.iinfo(np.int16).max
 _TRUTH_SHARE = 0.97  # of the progress; the rest is truth
 
 
@@ -113,6 +118,7 @@ class _Files:
     points: PointFile
     labels: ArrayFile
     instances: ArrayFile
+    deltas: ArrayFile
 
 
 class _Work:
@@ -146,6 +152,8 @@ class _Work:
             request.stops,
             request.drift_m,
             request.attitude_deg,
+            request.jumps_m,
+            request.wander_m,
         )
         self.evidence = Evidence()
         self.point_files: list[str] = []
@@ -178,6 +186,7 @@ class _Work:
                 if -_SHOWN_M < one.chainage_m < self.request.length_m + _SHOWN_M:
                     self.truth[one.instance, one.file, position] = one
         self._write_trajectory(driven, number)
+        self._write_true_trajectory(driven, number)
         if self.request.images:
             self._photograph(driven, movers, PartMonitor(monitor, points_share, 1.0))
         self.passes.append(driven)
@@ -192,6 +201,10 @@ class _Work:
         write_rough_positions(
             truth / "sign_initial.csv", features, seen, self.origin, self.request.seed
         )
+        if self.request.control_per_km:
+            write_control_points(
+                self.folder, features, self.origin, self.request.seed, self.request.control_per_km
+            )
         heads = {
             one.name: {
                 "point_source_id": one.source_id,
@@ -227,6 +240,7 @@ class _Work:
                     stack.enter_context(PointFile(self.folder / f"{stem}.laz", self.origin)),
                     stack.enter_context(ArrayFile(truth / f"{stem}.labels.npy", np.uint8)),
                     stack.enter_context(ArrayFile(truth / f"{stem}.instances.npy", np.int32)),
+                    stack.enter_context(ArrayFile(truth / f"{stem}.delta.npy", np.int16, 3)),
                 )
                 self.point_files.append(f"{stem}.laz")
             yield files
@@ -237,12 +251,12 @@ class _Work:
         returns = chunk.returns
         strength: NDArray[np.uint16] = np.empty(returns.pulse.size, np.uint16)
         intensities(returns.strength, self.weather.damping, strength)
+        delivered = delivered_positions(
+            driven, chunk.head, returns, self._mounted_rad(driven, chunk.head)
+        )
         files.points.write(
             DeliveredPoints(
-                delivered_positions(
-                    driven, chunk.head, returns, self._mounted_rad(driven, chunk.head)
-                )
-                + self.origin,
+                delivered + self.origin,
                 self._times(number) + returns.time_s,
                 strength,
                 returns.number,
@@ -250,6 +264,8 @@ class _Work:
                 chunk.head.source_id + number * len(self.sensor.heads),
             )
         )
+        off = np.rint((returns.xyz - delivered) / DELTA_M)
+        files.deltas.write(np.clip(off, -_MOST_STEPS, _MOST_STEPS))
         files.labels.write(returns.label)
         files.instances.write(returns.instance)
         self.evidence.count([returns])
@@ -283,19 +299,26 @@ class _Work:
     def _write_trajectory(self, driven: SimulatedPass, number: int) -> None:
         name = f"{_numbered('trajectory', number)}.csv"
         positions: Floats = driven.positions + driven.errors + self.origin
-        table = np.column_stack(
-            [driven.time_s + self._times(number), positions, driven.delivered_deg]
-        )
+        self._write_table(self.folder / name, driven, positions, driven.delivered_deg)
+        self.trajectories.append(name)
+
+    def _write_true_trajectory(self, driven: SimulatedPass, number: int) -> None:
+        path = self.folder / "truth" / f"{_numbered('trajectory', number)}.csv"
+        self._write_table(path, driven, driven.positions + self.origin, driven.angles_deg)
+
+    def _write_table(
+        self, path: Path, driven: SimulatedPass, positions: Floats, angles_deg: Floats
+    ) -> None:
+        times = driven.time_s + self._times(driven.number)
         np.savetxt(
-            self.folder / name,
-            table,
+            path,
+            np.column_stack([times, positions, angles_deg]),
             fmt=["%.6f", "%.5f", "%.5f", "%.5f", "%.6f", "%.6f", "%.6f"],
             delimiter=",",
             comments="",
             header="time_s,easting_m,northing_m,height_m,roll_deg,pitch_deg,heading_deg",
             encoding="utf-8",
         )
-        self.trajectories.append(name)
 
 
 def _prefix(number: int) -> str:

@@ -57,7 +57,7 @@ def write_labelled_points(
         _check_codes(drive)
     packets = DeliveredPackets(drives)
     sources = sorted(columns)
-    names = _names_of(sources)
+    names = names_of_outputs(sources)
     paths = [position(name) for name in names]
     if not paths:
         return
@@ -102,8 +102,11 @@ def _results_of(order: DeliveredOrder, source: Path) -> Callable[[int, int], Val
     return lambda start, stop: order.values(source, start, stop)
 
 
-def _names_of(sources: Sequence[Path]) -> list[str]:
-    """A name of its own for each: as delivered, numbered where folders have the same names."""
+def names_of_outputs(sources: Sequence[Path]) -> list[str]:
+    """Names of files with the points of delivered ones.
+
+    A name of its own for each: as delivered, numbered where folders have the same names.
+    """
     names: list[str] = []
     for source in sources:
         ending = source.suffix.lower()

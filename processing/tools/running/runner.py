@@ -35,6 +35,7 @@ from processing.tools.tool import (
     PerPoint,
     PerPointOfDrive,
     PointBlock,
+    SurveyCorrection,
     SurveyFinder,
     Together,
     TogetherResult,
@@ -295,7 +296,7 @@ def _result_of(
                 )
                 monitor.check()
             return result
-        case Comparison() | NewPoints() | NewPointsTogether():
+        case Comparison() | NewPoints() | NewPointsTogether() | SurveyCorrection():
             message = f"{tool.id} says nothing about the points of a drive"
             raise ValueError(message)
         case _:

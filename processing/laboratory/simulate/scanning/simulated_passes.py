@@ -22,6 +22,8 @@ _STEP_M = 0.05
 _SLOWEST_M_S = 0.15
 _BRAKING_M_S2 = 1.5
 _WAVES = 5
+_MINUTE_S = 60.0
+_JUMPS_PER_S = 1 / 30.0
 
 
 @dataclass(frozen=True)
@@ -90,12 +92,16 @@ class Driving:
         Whether it waits at junctions, or else once on the way.
     drift_m, attitude_deg : float
         Standard deviations of the delivered positions and angles.
+    jumps_m, wander_m : float
+        Of steps in the delivered positions, and of their random walk within a minute.
     """
 
     speed_m_s: float
     stops: bool
     drift_m: float
     attitude_deg: float = 0.0
+    jumps_m: float = 0.0
+    wander_m: float = 0.0
 
 
 def pass_of(street: Street, number: int, driving: Driving) -> SimulatedPass:
@@ -117,11 +123,24 @@ def pass_of(street: Street, number: int, driving: Driving) -> SimulatedPass:
     errors = driving.drift_m * np.column_stack(
         [_swaying(random, records, (60.0, 600.0)) for _ in range(3)]
     )
+    if driving.jumps_m or driving.wander_m:
+        errors = errors + _unsteady(chance(street.seed, "unsteady", number), records, driving)
     turning = chance(street.seed, "attitude", number)
     turned = math.radians(driving.attitude_deg) * np.column_stack(
         [_swaying(turning, records, (60.0, 600.0)) for _ in range(3)]
     )
     return SimulatedPass(number, records, positions, rotations, at, angles, errors, turned)
+
+
+def _unsteady(random: Generator, records: Floats, driving: Driving) -> Floats:
+    """Errors that walk at random and jump: (m, 3) m, about their mean."""
+    steps = random.normal(size=(records.size, 3)) * driving.wander_m
+    steps /= math.sqrt(_MINUTE_S * RECORDS_PER_S)
+    if driving.jumps_m:
+        is_jump = random.random(records.size) < _JUMPS_PER_S / RECORDS_PER_S
+        steps[is_jump] += random.normal(size=(int(is_jump.sum()), 3)) * driving.jumps_m
+    walked: Floats = np.cumsum(steps, axis=0)
+    return np.asarray(walked - walked.mean(axis=0))
 
 
 def _lane_m(street: Street, chainages: Floats) -> Floats:

@@ -15,9 +15,9 @@ from processing.core.errors import BadFile, InUse
 from processing.core.monitor import SilentMonitor
 from processing.core.owned_files import MARK, is_marked, make_marked, remove_folder
 from processing.core.scratch_folder import scratch_folder
+from processing.core.whole_folder import write_whole_folder
 from processing.image.tiles.tile_files import TileFiles
 from processing.labels.label_column import make_column
-from processing.laboratory.simulate.whole_folder import write_whole_folder
 from processing.project.evaluation.truth_store import TruthStore
 from processing.project.importing.importing import ImportRequest, import_drives
 from processing.project.importing.unfinished_imports import remove_import, remove_litter

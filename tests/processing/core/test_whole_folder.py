@@ -11,7 +11,7 @@ import pytest
 
 from processing.core.errors import Cancelled, InUse
 from processing.core.owned_files import MARK
-from processing.laboratory.simulate.whole_folder import write_whole_folder
+from processing.core.whole_folder import write_whole_folder
 
 ROOT = Path(__file__).parents[4]
 
@@ -54,7 +54,7 @@ def test_what_a_killed_program_left_is_removed_by_the_next_one(tmp_path: Path) -
     script = (
         "import os, signal, sys\n"
         "from pathlib import Path\n"
-        "from processing.laboratory.simulate.whole_folder import write_whole_folder\n"
+        "from processing.core.whole_folder import write_whole_folder\n"
         "with write_whole_folder(Path(sys.argv[1])) as hidden:\n"
         "    (hidden / 'half').write_text('x')\n"
         "    os.kill(os.getpid(), signal.SIGKILL)\n"
@@ -71,7 +71,7 @@ def test_what_a_killed_program_left_is_removed_by_the_next_one(tmp_path: Path) -
 def test_a_folder_that_is_being_made_is_refused_and_made_all_the_same(tmp_path: Path) -> None:
     with write_whole_folder(tmp_path / "one") as hidden:
         (hidden / "file").write_text("x")
-        with pytest.raises(InUse, match="Another simulation"), write_whole_folder(tmp_path / "one"):
+        with pytest.raises(InUse, match="Another program"), write_whole_folder(tmp_path / "one"):
             pass
         with write_whole_folder(tmp_path / "other"):
             pass

@@ -81,8 +81,8 @@ def _locked(folder: Path, path: Path) -> Iterator[None]:
     except Timeout as error:
         raise InUse(
             Text(
-                "Another simulation is writing this folder.",
-                "このフォルダには別の模擬計測が書き込み中です。",
+                "Another program is writing this folder.",
+                "このフォルダには別のプログラムが書き込み中です。",
             ),
             Text.same(str(folder)),
             Text(
