@@ -53,11 +53,14 @@ _DECLARED = (
     WAVEFORM_ESTIMATE,
 )
 
-TOOLS: Mapping[str, Tool] = {
+_TOOLS = {
     tool.id: tool
     for tool in _DECLARED
     if not isinstance(tool.method, Comparison | NewPoints | NewPointsTogether)
 }
+
+TOOLS: Mapping[str, Tool] = _TOOLS
+"""Those that run on drives; plug-ins are among them once they are loaded."""
 
 COMPARISONS: Mapping[str, Tool] = {
     tool.id: tool for tool in _DECLARED if isinstance(tool.method, Comparison)
@@ -69,6 +72,11 @@ POINT_MAKERS: Mapping[str, Tool] = {
     tool.id: tool for tool in _DECLARED if isinstance(tool.method, NewPoints | NewPointsTogether)
 }
 """Those that make points of their own, into a file."""
+
+
+def register(tool: Tool) -> None:
+    """List a tool that runs on drives beside the program's own; before the window is made."""
+    _TOOLS[tool.id] = tool
 
 
 def every_tool() -> Mapping[str, Tool]:
