@@ -69,9 +69,7 @@ def load_plugin(path: Path) -> Tool:
     with report_as_user_error(path):
         content = path.read_bytes()
     _refuse_window(content, path)
-    tool = getattr(_imported(path), "TOOL", None)
-    _check_tool(tool, path)
-    return _guarded(tool, path)
+    return _guarded(_checked(getattr(_imported(path), "TOOL", None), path), path)
 
 
 def _refuse_window(content: bytes, path: Path) -> None:
@@ -81,11 +79,12 @@ def _refuse_window(content: bytes, path: Path) -> None:
         line = getattr(error, "lineno", None) or 1
         raise _fault(f"{type(error).__name__}: {error}", path, line) from error
     for node in ast.walk(tree):
-        names: list[str] = []
         if isinstance(node, ast.Import):
             names = [one.name for one in node.names]
         elif isinstance(node, ast.ImportFrom):
             names = [node.module or ""]
+        else:
+            continue
         for name in names:
             if name.split(".")[0] in _FORBIDDEN:
                 raise PluginFault(
@@ -113,7 +112,7 @@ def _imported(path: Path) -> object:
     return module
 
 
-def _check_tool(tool: object, path: Path) -> None:
+def _checked(tool: object, path: Path) -> Tool:
     if not isinstance(tool, Tool):
         raise _fault("no TOOL = Tool(...)", path, 1)
     if not _ID.fullmatch(tool.id):
@@ -132,6 +131,7 @@ def _check_tool(tool: object, path: Path) -> None:
         tool.parameters()
     except (TypeError, KeyError) as error:
         raise _fault_of(error, path) from error
+    return tool
 
 
 def _guarded(tool: Tool, path: Path) -> Tool:
