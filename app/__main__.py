@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 
+from app.cli.automation.own_tools import load_own_tools
 from app.cli.terminal import end_with_status, run_in_terminal
 from app.jobs.error_log import start_log
 from app.loading import load_without_qt
@@ -16,6 +17,7 @@ def main() -> int:
     write_every_character()
     start_log()
     arguments = sys.argv[1:]
+    load_own_tools()
     request = run_in_terminal(arguments)
     if isinstance(request, int):
         return request

@@ -67,6 +67,7 @@ def read_arguments(arguments: Sequence[str]) -> tuple[Command, argparse.Namespac
         _add_run,
         _add_extract,
         _add_batch,
+        _add_manual,
         _add_simulate,
     ):
         add(commands)
@@ -261,6 +262,12 @@ def _add_batch(commands: _Commands[_Parser]) -> None:
     replaying.add_argument("macro", type=Path, metavar="MACRO.toml")
     replaying.add_argument("project", type=Path, metavar="PROJECT")
     replaying.set_defaults(module="automation.replay")
+
+
+def _add_manual(commands: _Commands[_Parser]) -> None:
+    writing = commands.add_parser("manual", help="the manual as a site, a page for each tool")
+    writing.add_argument("--out", type=Path, required=True, metavar="DIR")
+    writing.set_defaults(module="automation.manual")
 
 
 def _add_simulate(commands: _Commands[_Parser]) -> None:

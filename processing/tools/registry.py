@@ -57,11 +57,14 @@ _DECLARED = (
     WAVEFORM_ESTIMATE,
 )
 
-TOOLS: Mapping[str, Tool] = {
+_TOOLS = {
     tool.id: tool
     for tool in _DECLARED
     if not isinstance(tool.method, Comparison | NewPoints | NewPointsTogether | SurveyCorrection)
 }
+
+TOOLS: Mapping[str, Tool] = _TOOLS
+"""Those that run on drives; plug-ins are among them once they are loaded."""
 
 COMPARISONS: Mapping[str, Tool] = {
     tool.id: tool for tool in _DECLARED if isinstance(tool.method, Comparison)
@@ -84,6 +87,11 @@ REGISTRATIONS: Mapping[str, Tool] = {
 def tools_of_drives() -> Mapping[str, Tool]:
     """Those that run on a drive: tools, and what makes points."""
     return {**TOOLS, **POINT_MAKERS}
+
+
+def register(tool: Tool) -> None:
+    """List a tool that runs on drives beside the program's own; before the window is made."""
+    _TOOLS[tool.id] = tool
 
 
 def every_tool() -> Mapping[str, Tool]:

@@ -11,7 +11,7 @@ from tests.house_rules.sources import ROOT
 
 MANUAL = ROOT / "resources" / "manual"
 LANGUAGES: tuple[Language, ...] = ("en", "ja")
-_WITHOUT_END = {"meta", "link", "input", "br"}
+_WITHOUT_END = {"meta", "link", "input", "br", "img"}
 
 
 @dataclass

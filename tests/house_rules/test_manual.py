@@ -34,7 +34,7 @@ NEEDS_SYSTEM = Text(" (needs the reference system)", "（座標参照系が必�
 _LEAST_WORDS = {"en": 20, "ja": 12}
 COMMANDS = (
     "open", "demo", "info", "import", "image", "tools", "run", "score", "study", "export", "bench",
-    "simulate", "extract", "learn", "number", "map", "batch", "check", "macro", "replay",
+    "simulate", "extract", "learn", "number", "map", "batch", "check", "macro", "replay", "manual",
 )  # fmt: skip
 
 

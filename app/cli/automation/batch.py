@@ -16,8 +16,12 @@ def command(arguments: argparse.Namespace) -> int:
     """Do a job; drives that failed are told at the end by name."""
     operation = BatchOperation(arguments.job, arguments.scheduler, system_language())
     if arguments.watch:
-        watch(operation, terminal_monitor(), report)
+        watch(operation, terminal_monitor(), _tell)
     return report(run_batch(operation, terminal_monitor()))
+
+
+def _tell(outcome: BatchOutcome) -> None:
+    report(outcome)
 
 
 def report(outcome: BatchOutcome) -> int:

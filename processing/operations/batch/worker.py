@@ -22,6 +22,8 @@ from processing.operations.batch.job import job_of_order
 from processing.operations.batch.unit_state import ErrorWords, TaskState, with_trouble
 from processing.operations.batch.unit_work import BatchUnit, work_on
 from processing.operations.written_values import Table
+from processing.tools.plugins.folders import plugin_files, plugin_folders
+from processing.tools.plugins.loading import load_plugins
 
 _EVERY_S = 0.1
 _PREPARING = Text("Preparation", "準備")
@@ -58,6 +60,7 @@ def main() -> None:
     """Work on the drive that is asked for."""
     order = json.loads(sys.stdin.readline())
     threading.Thread(target=_end_with_parent, daemon=True).start()
+    load_plugins(plugin_files(plugin_folders()))  # what stands against one was told by the parent
     file, unit = job_of_order(order), unit_of_order(order)
     try:
         work_on(file, unit, _Telling(), MemoryPeak().taken)

@@ -1,0 +1,1 @@
+"""Tools that an office adds: Python files in a folder."""
