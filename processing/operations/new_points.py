@@ -66,7 +66,7 @@ def points_operation_on_drive(
     """
     made = POINT_MAKERS[tool]
     values = {one.id: getattr(parameters, one.id) for one in parameters_of(made.parameters)}
-    drives = (drive,)
+    drives: tuple[Drive, ...] = (drive,)
     if isinstance(made.method, NewPointsTogether):
         drives = recorded_together(drive, [one for one in project.drives if one.id != drive.id])
     inputs = OperationInputs(project.folder, tuple(one.id for one in drives))

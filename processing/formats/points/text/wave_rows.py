@@ -122,7 +122,7 @@ def _first_returns(samples: NDArray[np.float64]) -> NDArray[np.int64]:
     padded = np.pad(samples, ((0, 0), (1, 1)), constant_values=-np.inf)
     is_peak = (samples >= padded[:, :-2]) & (samples > padded[:, 2:])
     clear = is_peak & (samples >= _CLEAR * samples.max(axis=1, keepdims=True))
-    return clear.argmax(axis=1).astype(np.int64)
+    return np.asarray(clear.argmax(axis=1), np.int64)
 
 
 def _names_samples(text: str, width: int) -> bool:
