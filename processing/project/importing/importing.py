@@ -40,6 +40,7 @@ from processing.formats.points.delivered.delivered_waveforms import DeliveredWav
 from processing.formats.points.delivered.point_chunk import Vector3
 from processing.formats.points.point_files import PointFileInfo
 from processing.formats.trajectories.image_list import read_image_list
+from processing.map.reference_system import other_system
 from processing.project.importing.build_steps import BuildSteps
 from processing.project.importing.delivery import Delivery, read_delivery
 from processing.project.importing.drive_building import BuildPlan, build_drive
@@ -78,7 +79,12 @@ _READING_FILE = Text("Reading {name}", "{name} を読み込み中")
 
 
 def import_drives(
-    request: ImportRequest, into: Path, monitor: Monitor, *, taken: Collection[str] = ()
+    request: ImportRequest,
+    into: Path,
+    monitor: Monitor,
+    *,
+    taken: Collection[str] = (),
+    system: str = "",
 ) -> tuple[Path, ...]:
     """Turn delivered files into drive folders.
 
@@ -91,6 +97,9 @@ def import_drives(
         when the program is killed or the disk is full; the same call goes on there.
     taken : collection of str
         Ids of drives that there are; a drive that would be called so gets a number.
+
+    system : str
+        ``EPSG:n`` of the project they are for: files of another are refused before they are read.
 
     Returns
     -------
@@ -107,6 +116,8 @@ def import_drives(
     """
     marks = marks_of(request)
     delivery = read_delivery(request.inputs, request.crs, monitor, columns=request.columns)
+    if system and delivery.crs and delivery.crs != system:
+        raise other_system(", ".join(path.name for path in request.inputs), delivery.crs, system)
     with report_as_user_error(into):
         _make_own(into)
     journal = ImportJournal(into, is_kept=is_import_folder(into))
