@@ -124,7 +124,7 @@ def bring_in(
         share = PartMonitor(monitor, 0.5 if completes else 0.0, 1.0)
         try:
             into = import_folder(home.folder, new)
-            folders = import_drives(new, into, share, taken=home.taken)
+            folders = import_drives(new, into, share, taken=home.taken, system=home.crs)
         except BaseException:
             _remove(completed)
             raise

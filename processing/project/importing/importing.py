@@ -40,6 +40,7 @@ from processing.formats.points.delivered.delivered_waveforms import DeliveredWav
 from processing.formats.points.delivered.point_chunk import Vector3
 from processing.formats.points.point_files import PointFileInfo
 from processing.formats.trajectories.image_list import read_image_list
+from processing.map.reference_system import other_system
 from processing.project.importing.build_steps import BuildSteps
 from processing.project.importing.delivery import Delivery, read_delivery
 from processing.project.importing.drive_building import BuildPlan, build_drive
@@ -78,7 +79,12 @@ _READING_FILE = Text("Reading {name}", "{name} を読み込み中")
 
 
 def import_drives(
-    request: ImportRequest, into: Path, monitor: Monitor, *, taken: Collection[str] = ()
+    request: ImportRequest,
+    into: Path,
+    monitor: Monitor,
+    *,
+    taken: Collection[str] = (),
+    system: str = "",
 ) -> tuple[Path, ...]:
     """Turn delivered files into drive folders.
 
@@ -92,6 +98,9 @@ def import_drives(
     taken : collection of str
         Ids of drives that there are; a drive that would be called so gets a number.
 
+    system : str
+        ``EPSG:n`` of the project: files of another are refused before they are read.
+
     Returns
     -------
     tuple of Path
@@ -100,13 +109,13 @@ def import_drives(
     Raises
     ------
     UserError
-        For a file that can't be read or doesn't fit; nothing is left behind.
+        For a file that can't be read or doesn't fit; nothing is left.
     Cancelled
-        Nothing is left behind, but for :class:`processing.core.errors.Interrupted`, which keeps
-        what is done as a kill does.
+        Nothing is left behind, but for :class:`Interrupted`, which keeps all as a kill does.
     """
     marks = marks_of(request)
     delivery = read_delivery(request.inputs, request.crs, monitor, columns=request.columns)
+    _refuse_other_system(request, delivery.crs, system)
     with report_as_user_error(into):
         _make_own(into)
     journal = ImportJournal(into, is_kept=is_import_folder(into))
@@ -119,11 +128,7 @@ def import_drives(
             folders = running.run(tuple(taken))
         journal.finish(folder.name for folder in folders)
     except (UserError, Cancelled, KeyboardInterrupt) as end:
-        if isinstance(end, Interrupted):
-            running.keep()
-        journal.close()
-        if not running.is_kept:
-            remove_import(into)
+        _end(running, journal, end)
         raise
     except BaseException:
         journal.close()
@@ -305,6 +310,20 @@ class _Import:
 
     def _is_planned(self, recording: Recording) -> bool:
         return any(recording in planned for planned in self._layout.planned.values())
+
+
+def _end(running: _Import, journal: ImportJournal, end: BaseException) -> None:
+    """Keep what is done where the import can go on, or leave nothing."""
+    if isinstance(end, Interrupted):
+        running.keep()
+    journal.close()
+    if not running.is_kept:
+        remove_import(journal.folder)
+
+
+def _refuse_other_system(request: ImportRequest, crs: str, system: str) -> None:
+    if system and crs and crs != system:
+        raise other_system(", ".join(path.name for path in request.inputs), crs, system)
 
 
 def _make_own(into: Path) -> None:

@@ -306,3 +306,13 @@ def test_a_file_cut_off_while_it_was_copied_is_refused_and_nothing_is_left(tmp_p
         assert "cut.laz" in refusal.value.line("en")
         assert not (tmp_path / "in").exists()
     shutil.rmtree(tmp_path / "in", ignore_errors=True)
+
+
+def test_files_of_another_system_than_the_project_s_are_refused_before_they_are_read(
+    tmp_path, left
+):
+    into = tmp_path / "into"
+    request = ImportRequest((write_laz(left, tmp_path / "a.laz"),), crs="EPSG:6675")
+    with pytest.raises(OutOfRange, match="EPSG:6675"):
+        import_drives(request, into, SilentMonitor(), system="EPSG:6677")
+    assert not into.exists()
