@@ -7,6 +7,7 @@ drives' states.
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Mapping, Sequence
 from importlib import import_module
 from importlib.metadata import version
@@ -63,6 +64,8 @@ class Cluster:
                     "pip install 'zuka[cluster]' でインストールしてください。",
                 ),
             ) from error
+        # The library writes pages when a scheduler goes; what a user has to know is told here.
+        logging.getLogger("distributed").setLevel(logging.CRITICAL + 1)
         self._address = address
         self._futures: dict[str, Any] = {}  # of a library without types
         try:
