@@ -36,6 +36,10 @@ _LEFT_OUT = {
     "unseen_slots": Text(
         "0.6 m slots not shown by the points, not asked for", "点群に写っていない0.6m区間（対象外）"
     ),
+    "unseen_bars": Text(
+        "bars of crossings not shown by the points, not asked for",
+        "点群に写っていない横断歩道の縞（対象外）",
+    ),
     "trunk_arc_too_short": Text(
         "trunks found but seen too little to be measured", "検出したが直径の評価対象外とした幹"
     ),

@@ -85,6 +85,25 @@ def test_a_truth_against_itself_is_all_right_in_a_table_that_lines_up(
     assert len(ends) == 1
 
 
+def test_markings_are_scored_in_a_table_that_names_what_was_left_out(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("ZUKA_LANGUAGE", "en")
+    line = [[0.0, 0.0, 0.0], [20.0, 0.0, 0.0]]
+    bar = [[5.0, 4.0, 0.0], [5.0, 7.0, 0.0]]
+    features = [
+        ("LineString", line, {"kind": "marking_line", "type": "solid", "width_m": 0.15}),
+        ("LineString", bar, {"kind": "crosswalk_bar", "piece_points": [2]}),
+    ]
+    path = write_map(tmp_path / "a.geojson", features)
+    assert run_in_terminal(["score", "markings", str(path), str(path)]) == DONE
+    told = capsys.readouterr().out
+    lines = next(row for row in told.splitlines() if row.startswith("lines"))
+    assert lines.split()[-4:] == ["200", "0", "0", "–"]
+    left = next(row for row in told.splitlines() if row.startswith("bars of crossings not"))
+    assert left.split()[-1] == "1"
+
+
 def test_volumes_are_scored_from_their_json(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

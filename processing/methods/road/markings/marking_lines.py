@@ -136,9 +136,8 @@ def _without_doubles(strokes: Sequence[Stroke]) -> list[Stroke]:
     kept: list[Stroke] = []
     is_kept = np.zeros(len(ordered), np.bool_)
     for number, one in enumerate(ordered):
-        near: list[list[int]] = list(
-            tree.query_ball_point(places[number], max(0.15, 0.6 * one.width_m))
-        )
+        reach = max(0.15, 0.6 * one.width_m)
+        near = [tree.query_ball_point(place, reach) for place in places[number]]
         covered = [any(owner[k] < number and is_kept[owner[k]] for k in some) for some in near]
         if np.mean(covered) < 0.5:
             is_kept[number] = True

@@ -121,6 +121,33 @@ class HeadTones(NamedTuple):
         return self.full_share > _FULL_SHARE
 
 
+class RoadExtent(NamedTuple):
+    """Where markings are looked for.
+
+    Attributes
+    ----------
+    plan : SparsePlan
+        Of the survey.
+    table : (nx, ny) int32
+        Tiles near the path, numbered anew; −1 elsewhere.
+    ceiling : (cells,) float64
+        How high the road's surface may reach in each cell, m about the plan's origin.
+    path : (n, 2) float64
+        Where the vehicle drove.
+    """
+
+    plan: SparsePlan
+    table: NDArray[np.int32]
+    ceiling: Floats
+    path: Floats
+
+
+def road_extent(plan: SparsePlan, ground: NDArray[np.float32], path: Floats) -> RoadExtent:
+    """The road about a path; everything that was measured without one."""
+    table = looked_at(plan, path)
+    return RoadExtent(plan, table, ceilings(ground_of_tiles(plan, table, ground), table), path)
+
+
 def looked_at(plan: SparsePlan, path: Floats) -> NDArray[np.int32]:
     """The tiles that lie near to the path, numbered anew; all tiles without a path."""
     table = np.full_like(plan.table, -1)
@@ -151,15 +178,9 @@ def ceilings(ground: NDArray[np.float32], table: NDArray[np.int32]) -> Floats:
     return ceiling
 
 
-def head_tones(
-    drive: Drive,
-    plan: SparsePlan,
-    table: NDArray[np.int32],
-    ceiling: Floats,
-    path: Floats,
-    monitor: Monitor,
-) -> HeadTones:
+def head_tones(drive: Drive, road: RoadExtent, monitor: Monitor) -> HeadTones:
     """How bright the road is to one head, place by place."""
+    plan, table, ceiling, path = road
     values = np.asarray(drive.columns["intensity"][:: max(1, drive.count // _SAMPLED)], np.float64)
     levels: NDArray[np.float32] = np.full((len(ceiling), 3), np.nan, np.float32)
     if values.size == 0 or values.min() == values.max():
@@ -242,14 +263,12 @@ def cells_per_tile(tones: Sequence[HeadTones]) -> int:
 def paint_raster(
     drives: Sequence[Drive],
     tones: Sequence[HeadTones],
-    plan: SparsePlan,
-    table: NDArray[np.int32],
-    ceiling: Floats,
-    path: Floats,
+    road: RoadExtent,
     per_tile: int,
     monitor: Monitor,
 ) -> PaintRaster:
     """The paint that all heads saw, each by its own tones."""
+    plan, table, ceiling, path = road
     tiles = int(table.max()) + 1
     paint: NDArray[np.uint16] = np.zeros(tiles * per_tile**2, np.uint16)
     counts: NDArray[np.uint8] = np.zeros(tiles * per_tile**2, np.uint8)

@@ -14,12 +14,10 @@ from processing.methods.road.markings.marking_lines import MarkingType, RoadMark
 from processing.methods.road.markings.paint_raster import (
     HeadTones,
     PaintRaster,
-    ceilings,
     cells_per_tile,
-    ground_of_tiles,
     head_tones,
-    looked_at,
     paint_raster,
+    road_extent,
 )
 from processing.methods.road.markings.stroke_kernels import surface_kernel
 from processing.methods.road.markings.strokes import strokes_of
@@ -123,26 +121,17 @@ def seen_markings(drives: Sequence[Drive], monitor: Monitor) -> SeenMarkings:
         return SeenMarkings(None, (), ())
     plan, ground = survey_ground(drives, PartMonitor(monitor, 0.0, 0.3))
     path = driven_places(drives, plan)
-    table = looked_at(plan, path)
-    ceiling = ceilings(ground_of_tiles(plan, table, ground), table)
+    road = road_extent(plan, ground, path)
     heads = []
     for number, drive in enumerate(drives):
         share = 0.3 + 0.2 * np.array([number, number + 1]) / len(drives)
         part = PartMonitor(monitor, float(share[0]), float(share[1]))
-        heads.append(head_tones(drive, plan, table, ceiling, path, part))
+        heads.append(head_tones(drive, road, part))
     told = [head for head in heads if head.contrast > 0]
     if not told:
         return SeenMarkings(None, (), tuple(heads))
-    raster = paint_raster(
-        drives,
-        heads,
-        plan,
-        table,
-        ceiling,
-        path,
-        cells_per_tile(told),
-        PartMonitor(monitor, 0.5, 0.8),
-    )
+    part = PartMonitor(monitor, 0.5, 0.8)
+    raster = paint_raster(drives, heads, road, cells_per_tile(told), part)
     strokes = strokes_of(raster, PartMonitor(monitor, 0.8, 0.95))
     monitor.check()
     found = markings_of(strokes, path)
