@@ -9,6 +9,7 @@ from app.cli.output import print_lines
 from app.cli.set_option import settings_of_words
 from app.settings.language import system_language
 from processing.operations.new_points import NewPointsOperation, make_points
+from processing.operations.registration.register import RegisterOperation, register
 from processing.operations.run import RunOperation, run_operation
 from processing.tools.registry import COMPARISONS, POINT_MAKERS, REGISTRATIONS
 
@@ -24,11 +25,20 @@ def command(arguments: argparse.Namespace) -> int:
         print_lines(str(make_points(points_operation_of(arguments), terminal_monitor())))
         return 0
     if arguments.tool in REGISTRATIONS:
-        from app.cli import register
-
-        return register.command(arguments)
+        return _register(arguments)
     outcome = run_operation(operation_of(arguments), terminal_monitor())
     print_lines(*(words.in_language(system_language()) for words in outcome.words))
+    return 0
+
+
+def _register(arguments: argparse.Namespace) -> int:
+    """Register the drives of the input and write corrected points with a report."""
+    check_inputs(arguments)
+    operation = RegisterOperation(
+        inputs_of(arguments), arguments.output, settings_of_words(arguments.set)
+    )
+    done = register(operation, terminal_monitor())
+    print_lines(*(words.in_language(system_language()) for words in done.words))
     return 0
 
 

@@ -17,7 +17,7 @@ from processing.recording.vehicle_path.trajectory import Trajectory
 
 ORIGIN = np.array([-11_000.0, -35_000.0, 20.0])
 START_S = 3.8e8
-_SPEED_M_S, _TURNS_PER_S, _PULSES = 8.0, 80.0, 700
+_SPEED_M_S, _TURNS_PER_S, _PULSES = 8.13, 150.0, 370
 _HIGH_M, _HALF_WIDTH_M, _PILASTER_M = 2.0, 6.0, 0.25
 _PAINT_M = (0.15, 2.0)
 """Width and length of the dashes, every four metres along the middle."""

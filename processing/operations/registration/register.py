@@ -18,9 +18,9 @@ from processing.formats.trajectories.trajectory_writing import write_sbet, write
 from processing.methods.registration.control_points import ControlPoint
 from processing.methods.registration.corrected_trajectory import corrected_trajectory
 from processing.methods.registration.registration import Registration
-from processing.operations.control_check import check_places
 from processing.operations.inputs import OpenedInputs, OperationInputs, opened_inputs
-from processing.operations.registration_report import (
+from processing.operations.registration.control_check import check_places
+from processing.operations.registration.registration_report import (
     drift_table,
     registration_words,
     report_of,
