@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from app.document.document import Document
 from processing.core.errors import UserError
 from processing.map.feature import Feature, Status
-from processing.operations.repeated_runs import runs_before
+from processing.operations.runs.repeated_runs import runs_before
 from processing.project.evaluation.mapped_map import mapped_of
 from processing.project.evaluation.run_evaluation import RunEvaluation, evaluate_runs, within_drives
 from processing.scoring.features.file_scores import FeatureScorer, FileScore

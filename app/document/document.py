@@ -28,10 +28,10 @@ from processing.map.catalogue_file import read_catalogue
 from processing.map.change import Change
 from processing.map.feature import Feature
 from processing.operations.export import ExportRequest
-from processing.operations.finished_runs import FinishedRun
 from processing.operations.new_points import points_operation_on_drive
 from processing.operations.project_export import WrittenFiles, export_of
 from processing.operations.run import operation_on_drive
+from processing.operations.runs.finished_runs import FinishedRun
 from processing.operations.store import StoredRun, store_prepared, store_run
 from processing.project.importing.importing import ImportRequest
 from processing.project.photos import photo_of

@@ -12,12 +12,12 @@ from app.document.import_words import adding_words
 from processing.core.monitor import Monitor
 from processing.core.text import Text
 from processing.image.images_of_drives import image_of
-from processing.operations.finished_runs import FinishedRun
 from processing.operations.import_files import bring_prepared
 from processing.operations.inputs import OpenedInputs
 from processing.operations.new_points import NewPointsOperation, make_points
 from processing.operations.project_export import WrittenFiles
 from processing.operations.run import RunFolders, RunOperation, finish_runs
+from processing.operations.runs.finished_runs import FinishedRun
 from processing.project.additions import Additions, home_of
 from processing.project.importing.import_request import ImportRequest
 from processing.project.project import Project

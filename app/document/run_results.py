@@ -11,9 +11,9 @@ from app.document.label_steps import LabelSteps
 from app.document.long_work import run_work
 from app.jobs.jobs import JobLane
 from processing.map.change import Change
-from processing.operations.finished_runs import FinishedRun
 from processing.operations.inputs import OpenedInputs, inputs_in
 from processing.operations.run import RunFolders, RunOperation
+from processing.operations.runs.finished_runs import FinishedRun
 from processing.project.importing.drive_completion import drive_changed
 from processing.project.project import Project
 from processing.project.results.found_classes import relabel_points

@@ -17,7 +17,6 @@ from processing.core.parameters import ParameterValue, fill_parameters, paramete
 from processing.core.text import Text
 from processing.formats.format import Content
 from processing.formats.registry import FORMATS
-from processing.operations.finished_runs import FinishedRun, finish_run
 from processing.operations.inputs import (
     OpenedInputs,
     OperationInputs,
@@ -26,6 +25,7 @@ from processing.operations.inputs import (
     opened_project,
 )
 from processing.operations.run_files import write_run
+from processing.operations.runs.finished_runs import FinishedRun, finish_run
 from processing.operations.store import StoredRun, accept_above, store_run
 from processing.project.own_models import with_own_model
 from processing.project.project import Project
@@ -241,7 +241,7 @@ def finish_runs(
     folders : sequence of RunFolders
         At least one for each drive that the operation is for.
     begin : callable
-        As of :func:`processing.operations.finished_runs.finish_run`.
+        As of :func:`processing.operations.runs.finished_runs.finish_run`.
 
     Returns
     -------

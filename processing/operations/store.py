@@ -1,7 +1,7 @@
 """Storing what a run gave in a project: one path for the window, the command line and batch jobs.
 
 The project's thread does it; what takes time was done before, by
-:mod:`processing.operations.finished_runs`.
+:mod:`processing.operations.runs.finished_runs`.
 """
 
 from __future__ import annotations
@@ -12,8 +12,8 @@ from dataclasses import dataclass, replace
 from processing.core.text import Text
 from processing.map.change import Change
 from processing.map.feature import Status
-from processing.operations.finished_runs import FinishedRun
-from processing.operations.repeated_runs import with_earlier_decisions
+from processing.operations.runs.finished_runs import FinishedRun
+from processing.operations.runs.repeated_runs import with_earlier_decisions
 from processing.project.project import Project
 from processing.project.results.found_classes import classes_now
 from processing.project.results.found_features import FoundFeatures

@@ -30,8 +30,7 @@ from processing.tools.tool import Comparison, NewPoints, NewPointsTogether, Surv
 from processing.tools.trees import TREES
 from processing.tools.volume import VOLUME
 from processing.tools.waveform_classify import WAVEFORM_CLASSIFY
-from processing.tools.waveform_decompose import WAVEFORM_DECOMPOSE
-from processing.tools.waveform_estimate import WAVEFORM_ESTIMATE
+from processing.tools.waveform_points import WAVEFORM_DECOMPOSE, WAVEFORM_ESTIMATE
 from processing.tools.wires import WIRES
 
 _DECLARED = (

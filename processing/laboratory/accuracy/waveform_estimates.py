@@ -42,7 +42,7 @@ from processing.scoring.waveforms.wave_errors import (
     constant_error,
     wave_error,
 )
-from processing.tools.waveform_estimate import WaveformEstimateParameters, make_waveforms
+from processing.tools.waveform_points import WaveformEstimateParameters, make_waveforms
 
 _LENGTH_M = 60.0
 _MOST_OF_A_CLASS = 3_000

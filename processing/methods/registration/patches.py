@@ -158,7 +158,7 @@ class _Cubes:
             return cubes
         cubes.key = keys[firsts[enough]]
         cubes.size = size
-        cubes.low = (cells[order[firsts[enough]]] - _SHIFTS[level]) * size
+        cubes.low = np.asarray((cells[order[firsts[enough]]] - _SHIFTS[level]) * size, np.float64)
         cubes._fit(np.ones(cubes.points.size))
         return cubes
 

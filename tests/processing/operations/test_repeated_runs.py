@@ -13,7 +13,7 @@ from processing.core.text import Text
 from processing.map.catalogue import Geometry
 from processing.map.change import Change, Replacement
 from processing.map.feature import Feature, Status, Vertex, new_feature_id
-from processing.operations.repeated_runs import are_known, runs_before, with_earlier_decisions
+from processing.operations.runs.repeated_runs import are_known, runs_before, with_earlier_decisions
 from processing.project.project import Project
 from processing.project.results.found_features import FoundFeatures
 from processing.tools.tool import CandidateResult

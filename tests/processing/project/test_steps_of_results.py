@@ -21,10 +21,10 @@ from processing.map.feature import Feature, Vertex
 from processing.methods.earthwork.maps.change_grid import ChangeGrid
 from processing.methods.earthwork.volumes.volume_result import VolumeResult, Volumes
 from processing.methods.ground.filters.cells import CellGrid
-from processing.operations.finished_runs import finish_run, with_photos
 from processing.operations.import_files import ImportOperation, import_files
 from processing.operations.map_steps import UndoneStep, UndoOperation, undo_step
 from processing.operations.project_volumes import MadeVolume, remove_volume, store_volume
+from processing.operations.runs.finished_runs import finish_run, with_photos
 from processing.operations.store import store_prepared, store_run
 from processing.project.additions import bring_in, home_of, take_over
 from processing.project.importing.import_request import ImportRequest

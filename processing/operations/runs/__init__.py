@@ -1,0 +1,1 @@
+"""What runs of tools left behind, and what a repeated one changes."""
