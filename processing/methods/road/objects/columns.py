@@ -45,10 +45,6 @@ _APART_CELLS = 2
 """Columns are farther apart in either direction: 0.4 m; nearer ones are stakes beside a trunk, or
 the stems of one tree."""
 
-_BORDER = _HALO + 3 * _APART_CELLS
-"""Cells about a tile that are looked at: what stands there may be the column that keeps another one
-from being a column beside it, or be kept from it itself."""
-
 _BEGINS = np.uint32((1 << 11) - 1)
 """The slabs up to 2.4 m, in which a column stands free: a pedestrian passes under what hangs
 higher."""
@@ -96,7 +92,7 @@ def find_columns(
     free: list[int] = []
     for tile in range(len(plan)):
         monitor.check()
-        for middle, bits in _columns_of(plan.window(slabs, tile, _BORDER, 0)):
+        for middle, bits in _columns_of(plan.window(slabs, tile, _HALO + _APART_CELLS, 0)):
             if ((middle >= 0) & (middle < TILE)).all():
                 middles.append(plan.middles(tile, np.asarray(middle - 0.5)))
                 free.append(bits)
@@ -184,28 +180,16 @@ def _columns_of(slabs: NDArray[np.uint32]) -> list[tuple[Floats, int]]:
     # Within a ring of filled cells, as a thick trunk is one, nothing was measured.
     # A cell between two columns has most about it without being one.
     about[~is_column] = 0.0
+    best = ndimage.maximum_filter(about, 2 * _APART_CELLS + 1, mode="constant")
     found: list[tuple[Floats, int]] = []
-    for row, column in np.argwhere(_are_best(about)).tolist():
+    border = _HALO + _APART_CELLS
+    for row, column in np.argwhere(is_column & (about == best)).tolist():
         part = (slice(row - 1, row + 2), slice(column - 1, column + 2))
         cells = np.argwhere(weights[part] > 0) + np.array([row - 1, column - 1])
         where = tuple(cells.T)
-        middle = np.average(cells + 0.5, axis=0, weights=weights[where]) - _BORDER
+        middle = np.average(cells + 0.5, axis=0, weights=weights[where]) - border
         found.append((np.asarray(middle), int(np.bitwise_or.reduce(free[where]))))
     return found
-
-
-def _are_best(worth: Floats) -> NDArray[np.bool_]:
-    """Cells worth more than those about them, those left out that a better cell keeps from it.
-
-    A slender trunk beside a fence is worth less than the twigs between both, which the fence's own
-    column takes.
-    """
-    wide = 2 * _APART_CELLS + 1
-    is_best = (worth > 0) & (worth == ndimage.maximum_filter(worth, wide, mode="constant"))
-    is_free = ~ndimage.binary_dilation(is_best, np.ones((wide, wide), np.bool_))
-    left = np.where(is_free, worth, 0.0)
-    again = (left > 0) & (left == ndimage.maximum_filter(left, wide, mode="constant"))
-    return np.asarray(is_best | again)
 
 
 def _longest_run(bits: NDArray[np.uint32]) -> Integers:
