@@ -212,7 +212,7 @@ def _fit(misfit: Callable[[Floats], Floats], start: Floats, scale: float) -> _Fi
         unknown, off, cost, damping = unknown + step, moved, moved_cost, damping / 5.0
         if is_there:
             break
-    return _Fit(unknown, cost, np.linalg.pinv(normal))
+    return _Fit(unknown, cost, np.asarray(np.linalg.pinv(normal), np.float64))
 
 
 def _slope(misfit: Callable[[Floats], Floats], unknown: Floats, off: Floats, one: int) -> Floats:
