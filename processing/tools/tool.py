@@ -26,7 +26,7 @@ from processing.methods.earthwork.geometry.volume_scope import VolumeScope
 from processing.methods.earthwork.surfaces.sides import Side
 from processing.methods.earthwork.volumes.volume_result import VolumeResult
 from processing.methods.registration.control_points import ControlPoint
-from processing.methods.registration.registration import Registration
+from processing.methods.registration.registration import SurveyRegistration
 from processing.methods.road.diagnostics import Diagnostic
 from processing.methods.road.requested_position import RequestedPosition
 from processing.recording.columns.columns import Columns, column_path
@@ -435,7 +435,7 @@ class NewPointsTogether:
 
 
 # Drives of one survey, control points, whom to tell.
-SurveyRegistrar = Callable[[Sequence[Drive], Sequence[ControlPoint], Monitor], Registration]
+SurveyRegistrar = Callable[[Sequence[Drive], Sequence[ControlPoint], Monitor], SurveyRegistration]
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,6 @@
 """How near registered drives come to each other and to the truth, on streets whose truth is known.
 
-``python -m processing.laboratory.accuracy.registration STREET_FOLDER… [--markdown PAGE]``
+``python -m processing.laboratory.accuracy.registration STREET_FOLDER…``
 
 A street folder holds LAZ files, a trajectory for each pass, ``control_points.csv`` and among its
 truth ``NAME.delta.npy``: true minus delivered place of each point, in tenths of a millimetre. Both
@@ -21,9 +21,10 @@ from scipy.spatial import cKDTree
 
 from processing.core.arrays import Floats
 from processing.core.monitor import SilentMonitor
+from processing.core.output_streams import write_every_character
 from processing.formats.survey.control_points import read_control_points
 from processing.methods.registration.control_points import ControlPoint, Role
-from processing.methods.registration.registration import Registration, register_drives
+from processing.methods.registration.registration import SurveyRegistration, register_drives
 from processing.methods.registration.summary import sureness
 from processing.methods.registration.visits import REACH_M
 from processing.project.importing.import_request import ImportRequest
@@ -53,7 +54,7 @@ class _Truth:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Measure and print the table, or write it into a page."""
+    """Measure and print the table."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("streets", nargs="+", type=Path)
     given = parser.parse_args(arguments)
@@ -105,7 +106,7 @@ def _truth_of(drive: Drive, street: Path) -> _Truth:
     return _Truth(cKDTree(xyz), xyz, time, delta[rows[some]] * _DELTA_M)
 
 
-def _line(street: str, control: str, found: Registration, truths: Sequence[_Truth]) -> str:
+def _line(street: str, control: str, found: SurveyRegistration, truths: Sequence[_Truth]) -> str:
     cells = [street, control]
     for of_heads in (False, True):
         before, after = _between(found, truths, of_heads=of_heads)
@@ -120,7 +121,7 @@ def _line(street: str, control: str, found: Registration, truths: Sequence[_Trut
 
 
 def _between(
-    found: Registration, truths: Sequence[_Truth], *, of_heads: bool
+    found: SurveyRegistration, truths: Sequence[_Truth], *, of_heads: bool
 ) -> tuple[Floats, Floats]:
     """How far two visits lie from each other in space, at all places in common, by the truth."""
     survey, ties = found.survey, found.ties
@@ -144,7 +145,7 @@ def _between(
     return np.linalg.norm(before, axis=1), np.linalg.norm(after, axis=1)
 
 
-def _to_truth(found: Registration, truths: Sequence[_Truth]) -> tuple[Floats, Floats]:
+def _to_truth(found: SurveyRegistration, truths: Sequence[_Truth]) -> tuple[Floats, Floats]:
     """What points within reach are off, before and after: (n, 3) m."""
     before, after = [], []
     for correction, truth in zip(found.corrections, truths, strict=True):
@@ -168,4 +169,5 @@ def _rms(off: Floats) -> str:
 
 
 if __name__ == "__main__":
+    write_every_character()
     sys.exit(main())

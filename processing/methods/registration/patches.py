@@ -133,7 +133,7 @@ class _Cubes:
         self.counts = np.diff(np.append(starts, points.size))
         self.xyz, self.time = visit.xyz[points], visit.time[points]
         self.key = np.zeros(starts.size, np.int64)
-        self.low = np.zeros((starts.size, 3))
+        self.low: Floats = np.zeros((starts.size, 3))
         self.size = 0.0
         self.middle: Floats = np.zeros((starts.size, 3))
         self.normal: Floats = np.zeros((starts.size, 3))
@@ -158,7 +158,8 @@ class _Cubes:
             return cubes
         cubes.key = keys[firsts[enough]]
         cubes.size = size
-        cubes.low = np.asarray((cells[order[firsts[enough]]] - _SHIFTS[level]) * size, np.float64)
+        low = (cells[order[firsts[enough]]] - _SHIFTS[level]) * size
+        cubes.low = np.asarray(low, np.float64)
         cubes._fit(np.ones(cubes.points.size))
         return cubes
 

@@ -39,7 +39,7 @@ _FEWEST_CONTROL = 3
 
 
 @dataclass(frozen=True, eq=False)
-class Registration:
+class SurveyRegistration:
     """What a registration found.
 
     Attributes
@@ -68,7 +68,7 @@ class Registration:
 
 def register_drives(
     drives: Sequence[Drive], control: Sequence[ControlPoint], monitor: Monitor
-) -> Registration:
+) -> SurveyRegistration:
     """Set drives on each other, and on control points where there are any.
 
     Raises
@@ -108,7 +108,7 @@ def register_drives(
     )
     adjusted = adjust(unknowns, taking_part, PartMonitor(monitor, _LOCATED, 1.0))
     after = ties.gap_m + unknowns.design(ties) @ adjusted.solved
-    return Registration(
+    return SurveyRegistration(
         survey,
         adjusted,
         unknowns.corrections(adjusted.solved),

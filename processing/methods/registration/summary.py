@@ -9,7 +9,7 @@ import numpy as np
 
 from processing.core.arrays import Floats
 from processing.methods.registration.control_points import LocatedPoint, Role
-from processing.methods.registration.registration import Registration
+from processing.methods.registration.registration import SurveyRegistration
 from processing.methods.registration.ties import TieKind, Ties
 from processing.methods.registration.tracks import UNKNOWNS
 
@@ -92,7 +92,7 @@ class Sureness:
     worst_height_m: float
 
 
-def pair_gaps(found: Registration) -> tuple[PairGaps, ...]:
+def pair_gaps(found: SurveyRegistration) -> tuple[PairGaps, ...]:
     """Every two drives that saw something in common, at places kept out of the adjustment."""
     survey, ties = found.survey, found.ties
     pairs = np.unique(np.sort(ties.drive, axis=1), axis=0) if len(ties) else ties.drive
@@ -112,7 +112,7 @@ def pair_gaps(found: Registration) -> tuple[PairGaps, ...]:
     return tuple(gaps)
 
 
-def spreads(found: Registration, *, of_one_track: bool) -> tuple[Spread, Spread]:
+def spreads(found: SurveyRegistration, *, of_one_track: bool) -> tuple[Spread, Spread]:
     """Before and after, between heads of one vehicle or between passes."""
     number = np.array([found.survey.track_of(n) for n in range(len(found.survey.drives))])
     drive = found.ties.drive
@@ -121,7 +121,7 @@ def spreads(found: Registration, *, of_one_track: bool) -> tuple[Spread, Spread]
     return Spread.of(found.ties.gap_m[mine]), Spread.of(found.after_m[mine])
 
 
-def point_residuals(found: Registration) -> tuple[PointResidual, ...]:
+def point_residuals(found: SurveyRegistration) -> tuple[PointResidual, ...]:
     """Every control and check point, before and after."""
     unknowns, solved = found.adjusted.unknowns, found.adjusted.solved
     residuals = []
@@ -175,7 +175,7 @@ def rmse(residuals: tuple[PointResidual, ...], role: Role, *, after: bool) -> di
     }
 
 
-def sureness(found: Registration) -> tuple[Sureness, ...]:
+def sureness(found: SurveyRegistration) -> tuple[Sureness, ...]:
     """How sure points of every track are, on the hard surfaces that were compared."""
     adjusted = found.adjusted
     result = []
@@ -196,7 +196,7 @@ def sureness(found: Registration) -> tuple[Sureness, ...]:
     return tuple(result)
 
 
-def _spread_of_points(found: Registration, drives: tuple[int, ...]) -> Floats | None:
+def _spread_of_points(found: SurveyRegistration, drives: tuple[int, ...]) -> Floats | None:
     ties = found.ties
     mine = np.flatnonzero(np.isin(ties.drive[:, 0], drives))
     if not mine.size:

@@ -17,7 +17,7 @@ from processing.formats.survey.control_points import read_control_points
 from processing.formats.trajectories.trajectory_writing import write_sbet, write_trajectory_csv
 from processing.methods.registration.control_points import ControlPoint
 from processing.methods.registration.corrected_trajectory import corrected_trajectory
-from processing.methods.registration.registration import Registration
+from processing.methods.registration.registration import SurveyRegistration
 from processing.operations.inputs import OpenedInputs, OperationInputs, opened_inputs
 from processing.operations.registration.control_check import check_places
 from processing.operations.registration.registration_report import (
@@ -119,7 +119,7 @@ def read_control(parameters: RegisterParameters) -> tuple[ControlPoint, ...]:
 
 def found_registration(
     tool: Tool, opened: OpenedInputs, control: Sequence[ControlPoint], monitor: Monitor
-) -> Registration:
+) -> SurveyRegistration:
     """Register the chosen drives of an input.
 
     Raises
@@ -134,7 +134,7 @@ def found_registration(
     return tool.method.register(opened.chosen, control, monitor)
 
 
-def _write(found: Registration, opened: OpenedInputs, folder: Path, monitor: Monitor) -> None:
+def _write(found: SurveyRegistration, opened: OpenedInputs, folder: Path, monitor: Monitor) -> None:
     drives = [
         Drive(drive.folder, correction=correction)
         for drive, correction in zip(found.survey.drives, found.corrections, strict=True)
@@ -151,7 +151,7 @@ def _write(found: Registration, opened: OpenedInputs, folder: Path, monitor: Mon
     (folder / REPORT).write_text(text + "\n", encoding="utf-8")
 
 
-def _write_trajectories(found: Registration, folder: Path, crs: str) -> tuple[str, ...]:
+def _write_trajectories(found: SurveyRegistration, folder: Path, crs: str) -> tuple[str, ...]:
     """The corrected trajectory of every track and its drift; their names."""
     names = []
     for number, track in enumerate(found.survey.tracks, 1):

@@ -10,7 +10,7 @@ import numpy as np
 
 from processing.core.text import Text
 from processing.methods.registration.control_points import Role
-from processing.methods.registration.registration import Registration
+from processing.methods.registration.registration import SurveyRegistration
 from processing.methods.registration.summary import (
     PointResidual,
     Spread,
@@ -31,7 +31,9 @@ _DECIMALS = 5
 Json = dict[str, Any]
 
 
-def report_of(found: Registration, files: Mapping[str, str], trajectories: tuple[str, ...]) -> Json:
+def report_of(
+    found: SurveyRegistration, files: Mapping[str, str], trajectories: tuple[str, ...]
+) -> Json:
     """All numbers of a registration, as JSON holds them.
 
     Parameters
@@ -57,7 +59,7 @@ def report_of(found: Registration, files: Mapping[str, str], trajectories: tuple
     }
 
 
-def _drive(found: Registration, number: int) -> Json:
+def _drive(found: SurveyRegistration, number: int) -> Json:
     drive, correction = found.survey.drives[number], found.corrections[number]
     mounting = correction.mounting
     spread = _spread(found, found.adjusted.unknowns.head(number))
@@ -72,11 +74,11 @@ def _drive(found: Registration, number: int) -> Json:
     }
 
 
-def _spread(found: Registration, which: slice) -> np.ndarray[Any, np.dtype[np.float64]]:
+def _spread(found: SurveyRegistration, which: slice) -> np.ndarray[Any, np.dtype[np.float64]]:
     return np.asarray(np.sqrt((found.adjusted.samples[which] ** 2).mean(axis=1)))
 
 
-def _track(found: Registration, number: int, name: str, sure: Sureness) -> Json:
+def _track(found: SurveyRegistration, number: int, name: str, sure: Sureness) -> Json:
     track = found.survey.tracks[number]
     knots = found.adjusted.solved[found.adjusted.unknowns.knots(number)].reshape(-1, UNKNOWNS)
     return {
@@ -93,7 +95,7 @@ def _track(found: Registration, number: int, name: str, sure: Sureness) -> Json:
     }
 
 
-def _between(found: Registration) -> Json:
+def _between(found: SurveyRegistration) -> Json:
     passes, heads = (spreads(found, of_one_track=one) for one in (False, True))
     names = [drive.info.name for drive in found.survey.drives]
     return {
@@ -141,7 +143,7 @@ def _both(residuals: tuple[PointResidual, ...], role: Role) -> Json:
     }
 
 
-def notes_of(found: Registration, residuals: tuple[PointResidual, ...]) -> tuple[Text, ...]:
+def notes_of(found: SurveyRegistration, residuals: tuple[PointResidual, ...]) -> tuple[Text, ...]:
     """What a reader has to know beside the numbers, each in a sentence."""
     notes = [
         Text(
@@ -171,7 +173,7 @@ def notes_of(found: Registration, residuals: tuple[PointResidual, ...]) -> tuple
     return (*notes, *_weak(found))
 
 
-def _weak(found: Registration) -> list[Text]:
+def _weak(found: SurveyRegistration) -> list[Text]:
     alone = [
         drive.info.name
         for number, drive in enumerate(found.survey.drives)
@@ -195,7 +197,7 @@ def _weak(found: Registration) -> list[Text]:
     return notes
 
 
-def registration_words(found: Registration) -> tuple[Text, ...]:
+def registration_words(found: SurveyRegistration) -> tuple[Text, ...]:
     """What a registration came to, in a few lines."""
     residuals = point_residuals(found)
     before, after = spreads(found, of_one_track=False)
@@ -215,7 +217,7 @@ def registration_words(found: Registration) -> tuple[Text, ...]:
     return (*lines, *notes_of(found, residuals))
 
 
-def residual_table(found: Registration) -> str:
+def residual_table(found: SurveyRegistration) -> str:
     """Gaps at the places kept out of the adjustment, as CSV: along the way, before and after."""
     names = [drive.info.name for drive in found.survey.drives]
     lines = ["first,second,time_s,easting_m,northing_m,height_m,surface,before_m,after_m"]
@@ -232,7 +234,7 @@ def residual_table(found: Registration) -> str:
     return "\n".join(lines) + "\n"
 
 
-def drift_table(found: Registration, number: int) -> str:
+def drift_table(found: SurveyRegistration, number: int) -> str:
     """The correction of a track knot by knot, as CSV, with standard deviations."""
     unknowns = found.adjusted.unknowns
     mine = unknowns.knots(number)

@@ -62,7 +62,9 @@ def drive_street(
     sign = -1.0 if number % 2 else 1.0
     north = sign * _SPEED_M_S * time + (length_m if sign < 0 else 0.0)
     at = np.column_stack([np.full(time.size, sign * 1.7), north, np.full(time.size, _HIGH_M)])
-    xyz, tone = _met(at, sign, 2 * np.pi * (pulse % _PULSES) / _PULSES)
+    # No scanner turns in step with its pulses: beams of two turns never lie side by side.
+    turn = random.uniform(0.0, 1.0, int(pulse[-1]) // _PULSES + 1)[pulse // _PULSES]
+    xyz, tone = _met(at, sign, 2 * np.pi * (pulse % _PULSES + turn) / _PULSES)
     kept = np.isfinite(xyz).all(axis=1)
     xyz, tone, time, at = xyz[kept], tone[kept], time[kept], at[kept]
     xyz += random.normal(0.0, 0.002, xyz.shape)
