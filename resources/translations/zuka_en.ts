@@ -32,6 +32,30 @@
     </message>
 </context>
 <context>
+    <name>ProjectCheckForm</name>
+    <message numerus="yes">
+        <source>%n file(s) damaged.</source>
+        <translation>
+            <numerusform>%n file damaged.</numerusform>
+            <numerusform>%n files damaged.</numerusform>
+        </translation>
+    </message>
+    <message numerus="yes">
+        <source>%n file(s) repaired; nothing is damaged any more.</source>
+        <translation>
+            <numerusform>%n file repaired; nothing is damaged any more.</numerusform>
+            <numerusform>%n files repaired; nothing is damaged any more.</numerusform>
+        </translation>
+    </message>
+    <message numerus="yes">
+        <source>%n file(s) checked: nothing is damaged.</source>
+        <translation>
+            <numerusform>%n file checked: nothing is damaged.</numerusform>
+            <numerusform>%n files checked: nothing is damaged.</numerusform>
+        </translation>
+    </message>
+</context>
+<context>
     <name>ProjectTree</name>
     <message numerus="yes">
         <source>{name}: %n image(s)</source>
@@ -103,30 +127,6 @@
         <translation>
             <numerusform>%n left</numerusform>
             <numerusform>%n left</numerusform>
-        </translation>
-    </message>
-</context>
-<context>
-    <name>ProjectCheckForm</name>
-    <message numerus="yes">
-        <source>%n file(s) damaged.</source>
-        <translation>
-            <numerusform>%n file damaged.</numerusform>
-            <numerusform>%n files damaged.</numerusform>
-        </translation>
-    </message>
-    <message numerus="yes">
-        <source>%n file(s) repaired; nothing is damaged any more.</source>
-        <translation>
-            <numerusform>%n file repaired; nothing is damaged any more.</numerusform>
-            <numerusform>%n files repaired; nothing is damaged any more.</numerusform>
-        </translation>
-    </message>
-    <message numerus="yes">
-        <source>%n file(s) checked: nothing is damaged.</source>
-        <translation>
-            <numerusform>%n file checked: nothing is damaged.</numerusform>
-            <numerusform>%n files checked: nothing is damaged.</numerusform>
         </translation>
     </message>
 </context>

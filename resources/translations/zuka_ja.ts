@@ -45,7 +45,7 @@
         <translation>信頼度</translation>
     </message>
     <message>
-        <source>Choose the sign's number by the shape of its plate (Alt+Down)</source>
+        <source>Choose the sign&apos;s number by the shape of its plate (Alt+Down)</source>
         <translation>標識番号を板の形から選択します（Alt+Down）</translation>
     </message>
 </context>
@@ -102,7 +102,7 @@
 <context>
     <name>CameraView</name>
     <message>
-        <source>There are no camera images. Add the list of a drive's images (File ▸ Add camera images).</source>
+        <source>There are no camera images. Add the list of a drive&apos;s images (File ▸ Add camera images).</source>
         <translation>カメラ画像がありません。走行データの画像一覧を追加してください（ファイル ▸ カメラ画像を追加）。</translation>
     </message>
     <message>
@@ -140,11 +140,11 @@
 <context>
     <name>CatalogueWish</name>
     <message>
-        <source>Use an office's catalogue</source>
+        <source>Use an office&apos;s catalogue</source>
         <translation>事務所のカタログを使う</translation>
     </message>
     <message>
-        <source>The map uses kinds that the file doesn't have. Keep them with it?</source>
+        <source>The map uses kinds that the file doesn&apos;t have. Keep them with it?</source>
         <translation>図面で使用中の種別がこのファイルにありません。その種別を残して使用しますか。</translation>
     </message>
     <message>
@@ -361,10 +361,6 @@ kept</source>
         <translation>コマンド</translation>
     </message>
     <message>
-        <source>Type part of a name</source>
-        <translation>名前の一部を入力</translation>
-    </message>
-<message>
         <source>Type part of a name, or a key such as F9</source>
         <translation>名前の一部、またはF9などのキーを入力</translation>
     </message>
@@ -374,6 +370,41 @@ kept</source>
     <message>
         <source>Confidence: how sure the tool is of it, 0 to 1</source>
         <translation>信頼度: ツールの確信の度合い（0～1）</translation>
+    </message>
+</context>
+<context>
+    <name>DeliveryTable</name>
+    <message>
+        <source>File</source>
+        <translation>ファイル</translation>
+    </message>
+    <message>
+        <source>Kind</source>
+        <translation>種類</translation>
+    </message>
+    <message>
+        <source>Number</source>
+        <translation>数量</translation>
+    </message>
+    <message>
+        <source>Extent</source>
+        <translation>範囲</translation>
+    </message>
+    <message>
+        <source>Scanner</source>
+        <translation>スキャナ</translation>
+    </message>
+    <message>
+        <source>Time</source>
+        <translation>計測時間</translation>
+    </message>
+    <message>
+        <source>Reference system</source>
+        <translation>座標参照系</translation>
+    </message>
+    <message>
+        <source>Trajectory</source>
+        <translation>走行軌跡</translation>
     </message>
 </context>
 <context>
@@ -743,7 +774,7 @@ kept</source>
         <translation>納品ファイルの場所を指定</translation>
     </message>
     <message>
-        <source>Use an office's catalogue</source>
+        <source>Use an office&apos;s catalogue</source>
         <translation>事務所のカタログを使う</translation>
     </message>
     <message>
@@ -869,7 +900,7 @@ kept</source>
         <translation>同じ場所にある走行軌跡 {name} も読み込む（計測時刻を含んでいます）</translation>
     </message>
     <message>
-        <source>No trajectory is among the files. Curbs and covered gutters can't be found without one; it can be added to the drive later.</source>
+        <source>No trajectory is among the files. Curbs and covered gutters can&apos;t be found without one; it can be added to the drive later.</source>
         <translation>走行軌跡のファイルがありません。走行軌跡がないと縁石と蓋付き側溝を抽出できません。後から走行データに追加することもできます。</translation>
     </message>
     <message>
@@ -908,7 +939,7 @@ kept</source>
         <source>The reference system must be a code such as EPSG:6677, or be left empty.</source>
         <translation>座標参照系は EPSG:6677 のようなコードで指定するか、空欄にしてください。</translation>
     </message>
-<message>
+    <message>
         <source>Take the list of camera images beside them: {name}</source>
         <translation>同じ場所にあるカメラ画像一覧 {name} も読み込む</translation>
     </message>
@@ -920,7 +951,7 @@ kept</source>
         <source>Looking at the files…</source>
         <translation>ファイルを調べています…</translation>
     </message>
-    </context>
+</context>
 <context>
     <name>ImportOffer</name>
     <message>
@@ -1297,11 +1328,79 @@ kept</source>
         <source>Run</source>
         <translation>実行</translation>
     </message>
-<message>
+    <message>
         <source>Choose another tool</source>
         <translation>別のツールを選ぶ</translation>
     </message>
-    </context>
+</context>
+<context>
+    <name>ProjectCheckForm</name>
+    <message>
+        <source>Check of {name}</source>
+        <translation>{name} の検査</translation>
+    </message>
+    <message>
+        <source>State</source>
+        <translation>状態</translation>
+    </message>
+    <message>
+        <source>File</source>
+        <translation>ファイル</translation>
+    </message>
+    <message>
+        <source>What is wrong</source>
+        <translation>内容</translation>
+    </message>
+    <message>
+        <source>Remedy</source>
+        <translation>対処</translation>
+    </message>
+    <message>
+        <source>damaged</source>
+        <translation>破損</translation>
+    </message>
+    <message>
+        <source>repaired</source>
+        <translation>修復</translation>
+    </message>
+    <message>
+        <source>note</source>
+        <translation>注意</translation>
+    </message>
+    <message>
+        <source>Repair</source>
+        <translation>修復</translation>
+    </message>
+    <message numerus="yes">
+        <source>%n file(s) damaged.</source>
+        <translation>
+            <numerusform>%n ファイルが壊れています。</numerusform>
+        </translation>
+    </message>
+    <message>
+        <source>“Repair” closes the project for a moment and makes again what the delivered files still give; map and labels stay as they are.</source>
+        <translation>「修復」を押すとプロジェクトを一時的に閉じ、納品ファイルから作り直せるものを作り直します。図面とラベルは変わりません。</translation>
+    </message>
+    <message numerus="yes">
+        <source>%n file(s) repaired; nothing is damaged any more.</source>
+        <translation>
+            <numerusform>%n ファイルを修復しました。破損は残っていません。</numerusform>
+        </translation>
+    </message>
+    <message numerus="yes">
+        <source>%n file(s) checked: nothing is damaged.</source>
+        <translation>
+            <numerusform>%n ファイルを検査しました。破損はありません。</numerusform>
+        </translation>
+    </message>
+</context>
+<context>
+    <name>ProjectChecking</name>
+    <message>
+        <source>Check project</source>
+        <translation>プロジェクトを検査</translation>
+    </message>
+</context>
 <context>
     <name>ProjectDrives</name>
     <message>
@@ -1466,6 +1565,31 @@ kept</source>
     <message>
         <source>{errors} errors, {others} to look at</source>
         <translation>不適合 {errors}件、要確認 {others}件</translation>
+    </message>
+</context>
+<context>
+    <name>Quitting</name>
+    <message>
+        <source>Quit</source>
+        <translation>終了</translation>
+    </message>
+    <message numerus="yes">
+        <source>%n job(s) are not finished.</source>
+        <translation>
+            <numerusform>%n件のジョブが終了していません。</numerusform>
+        </translation>
+    </message>
+    <message>
+        <source>Imports can go on the next time; other jobs are given up.</source>
+        <translation>インポートは次回に再開できます。その他のジョブは破棄されます。</translation>
+    </message>
+    <message>
+        <source>Wait</source>
+        <translation>待つ</translation>
+    </message>
+    <message>
+        <source>Quit now</source>
+        <translation>終了する</translation>
     </message>
 </context>
 <context>
@@ -1888,7 +2012,7 @@ kept</source>
         <translation>コマンドを選び、新しいキーを押してください。</translation>
     </message>
     <message>
-        <source>This is the same in every view and can't be changed.</source>
+        <source>This is the same in every view and can&apos;t be changed.</source>
         <translation>すべてのビューで共通の操作のため、変更できません。</translation>
     </message>
     <message>
@@ -1942,7 +2066,7 @@ kept</source>
         <translation>ディスクの空き容量が{free}しかありません。</translation>
     </message>
     <message>
-        <source>Scan lines every {gap} cm at {speed} km/h. What is hidden, and pulses that don't come back, are not counted.</source>
+        <source>Scan lines every {gap} cm at {speed} km/h. What is hidden, and pulses that don&apos;t come back, are not counted.</source>
         <translation>走査線の間隔は{gap} cm（{speed} km/h）。物の陰や、反射が戻らないパルスは考慮していません。</translation>
     </message>
     <message>
@@ -2128,7 +2252,7 @@ kept</source>
         <translation>この値を使う</translation>
     </message>
     <message>
-        <source>Sets them in the tool's form; click on the plot for others</source>
+        <source>Sets them in the tool&apos;s form; click on the plot for others</source>
         <translation>ツールの設定に反映します。グラフをクリックすると別の値を選べます</translation>
     </message>
     <message>
@@ -2335,7 +2459,7 @@ kept</source>
         <translation>手動でラベルを付けた点だけ</translation>
     </message>
     <message>
-        <source>Labels that a run gave don't count unless you painted over them</source>
+        <source>Labels that a run gave don&apos;t count unless you painted over them</source>
         <translation>処理の実行で付いたラベルは、手動で塗り直した点を除いて対象外です</translation>
     </message>
     <message>
@@ -2580,6 +2704,17 @@ kept</source>
     </message>
 </context>
 <context>
+    <name>WrittenFilesOffer</name>
+    <message>
+        <source>Open the folder</source>
+        <translation>フォルダを開く</translation>
+    </message>
+    <message>
+        <source>Open a file</source>
+        <translation>ファイルを開く</translation>
+    </message>
+</context>
+<context>
     <name>_JobRow</name>
     <message>
         <source>Cancel this job</source>
@@ -2605,155 +2740,16 @@ kept</source>
         <source>cancelled</source>
         <translation>中止</translation>
     </message>
-<message>
+    <message>
         <source>Began at {time}</source>
         <translation>開始 {time}</translation>
     </message>
-    </context>
+</context>
 <context>
     <name>parts.window</name>
     <message>
         <source>What to draw</source>
         <translation>作図する種別</translation>
-    </message>
-</context>
-<context>
-    <name>DeliveryTable</name>
-    <message>
-        <source>File</source>
-        <translation>ファイル</translation>
-    </message>
-    <message>
-        <source>Kind</source>
-        <translation>種類</translation>
-    </message>
-    <message>
-        <source>Number</source>
-        <translation>数量</translation>
-    </message>
-    <message>
-        <source>Extent</source>
-        <translation>範囲</translation>
-    </message>
-    <message>
-        <source>Scanner</source>
-        <translation>スキャナ</translation>
-    </message>
-    <message>
-        <source>Time</source>
-        <translation>計測時間</translation>
-    </message>
-    <message>
-        <source>Reference system</source>
-        <translation>座標参照系</translation>
-    </message>
-    <message>
-        <source>Trajectory</source>
-        <translation>走行軌跡</translation>
-    </message>
-</context>
-<context>
-    <name>Quitting</name>
-    <message>
-        <source>Quit</source>
-        <translation>終了</translation>
-    </message>
-    <message numerus="yes">
-        <source>%n job(s) are not finished.</source>
-        <translation>
-            <numerusform>%n件のジョブが終了していません。</numerusform>
-        </translation>
-    </message>
-    <message>
-        <source>Imports can go on the next time; other jobs are given up.</source>
-        <translation>インポートは次回に再開できます。その他のジョブは破棄されます。</translation>
-    </message>
-    <message>
-        <source>Wait</source>
-        <translation>待つ</translation>
-    </message>
-    <message>
-        <source>Quit now</source>
-        <translation>終了する</translation>
-    </message>
-</context>
-<context>
-    <name>WrittenFilesOffer</name>
-    <message>
-        <source>Open the folder</source>
-        <translation>フォルダを開く</translation>
-    </message>
-    <message>
-        <source>Open a file</source>
-        <translation>ファイルを開く</translation>
-    </message>
-</context>
-<context>
-    <name>ProjectCheckForm</name>
-    <message>
-        <source>Check of {name}</source>
-        <translation>{name} の検査</translation>
-    </message>
-    <message>
-        <source>State</source>
-        <translation>状態</translation>
-    </message>
-    <message>
-        <source>File</source>
-        <translation>ファイル</translation>
-    </message>
-    <message>
-        <source>What is wrong</source>
-        <translation>内容</translation>
-    </message>
-    <message>
-        <source>Remedy</source>
-        <translation>対処</translation>
-    </message>
-    <message>
-        <source>damaged</source>
-        <translation>破損</translation>
-    </message>
-    <message>
-        <source>repaired</source>
-        <translation>修復</translation>
-    </message>
-    <message>
-        <source>note</source>
-        <translation>注意</translation>
-    </message>
-    <message>
-        <source>Repair</source>
-        <translation>修復</translation>
-    </message>
-    <message numerus="yes">
-        <source>%n file(s) damaged.</source>
-        <translation>
-            <numerusform>%n ファイルが壊れています。</numerusform>
-        </translation>
-    </message>
-    <message>
-        <source>“Repair” closes the project for a moment and makes again what the delivered files still give; map and labels stay as they are.</source>
-        <translation>「修復」を押すとプロジェクトを一時的に閉じ、納品ファイルから作り直せるものを作り直します。図面とラベルは変わりません。</translation>
-    </message>
-    <message numerus="yes">
-        <source>%n file(s) repaired; nothing is damaged any more.</source>
-        <translation>
-            <numerusform>%n ファイルを修復しました。破損は残っていません。</numerusform>
-        </translation>
-    </message>
-    <message numerus="yes">
-        <source>%n file(s) checked: nothing is damaged.</source>
-        <translation>
-            <numerusform>%n ファイルを検査しました。破損はありません。</numerusform>
-        </translation>
-    </message>
-</context>
-<context>
-    <name>ProjectChecking</name>
-    <message>
-        <source>Check project</source>
-        <translation>プロジェクトを検査</translation>
     </message>
 </context>
 </TS>

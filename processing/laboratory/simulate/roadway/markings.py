@@ -9,7 +9,7 @@ from numpy.random import Generator
 
 from processing.laboratory.simulate.roadway.junctions import street_height, street_sides
 from processing.laboratory.simulate.roadway.paint import Rectangle, dashes
-from processing.laboratory.simulate.roadway.strokes import Stroke, add_strokes, truth_line
+from processing.laboratory.simulate.roadway.strokes import PaintedStroke, add_strokes, truth_line
 from processing.laboratory.simulate.roadway.transverse import transverse_of
 from processing.laboratory.simulate.scene.chance import chance
 from processing.laboratory.simulate.scene.materials import Material
@@ -40,7 +40,7 @@ def add_markings(section: StreetSection, built: SectionBuilder) -> None:
     random = section.chance("markings")
     habits = chance(section.seed, "markings")
     wear = 0.3 * float(habits.random()) ** 2
-    crossing: list[Stroke] = []
+    crossing: list[PaintedStroke] = []
     if section.plan.style is URBAN and not section.plan.junctions and random.random() < 0.3:
         crossing = [*_crossing(section, random)]
     strokes = [*_lines(section, habits, crossing)]
@@ -50,11 +50,13 @@ def add_markings(section: StreetSection, built: SectionBuilder) -> None:
             _add_side_street(section, built, side, random, wear)
         return
     if not crossing and random.random() < 0.5:
-        strokes += [Stroke((one,), "other") for one in symbols_of(section, random)]
+        strokes += [PaintedStroke((one,), "other") for one in symbols_of(section, random)]
     add_strokes(section, built, strokes + crossing, (random, wear))
 
 
-def _lines(section: StreetSection, habits: Generator, crossing: list[Stroke]) -> Iterator[Stroke]:
+def _lines(
+    section: StreetSection, habits: Generator, crossing: list[PaintedStroke]
+) -> Iterator[PaintedStroke]:
     plan = section.plan
     start, end = plan.start_m, plan.end_m
     has_edges = plan.style is not RURAL or habits.random() < 0.7
@@ -84,7 +86,7 @@ def _borders(
     stretches: tuple[list[tuple[float, float]], list[tuple[float, float]]],
     *,
     has_edges: bool,
-) -> Iterator[Stroke]:
+) -> Iterator[PaintedStroke]:
     """The lines along the median and along the road's edge."""
     plan = section.plan
     if plan.median_m > 0:
@@ -105,10 +107,10 @@ def _whole(start: float, end: float, mouths: list[Mouth]) -> list[tuple[float, f
 
 def _line(
     start: float, end: float, offset: float, pattern: tuple[float, float] | None
-) -> Iterator[Stroke]:
+) -> Iterator[PaintedStroke]:
     right, left = offset - _LINE_M / 2, offset + _LINE_M / 2
     if pattern is None:
-        yield Stroke(((start, end, right, left),), "solid")
+        yield PaintedStroke(((start, end, right, left),), "solid")
         return
     ends = [
         (max(float(first), start), min(float(first) + pattern[0], end))
@@ -116,10 +118,10 @@ def _line(
     ]
     rectangles = tuple((low, high, right, left) for low, high in ends if high > low)
     if rectangles:
-        yield Stroke(rectangles, "broken", pattern)
+        yield PaintedStroke(rectangles, "broken", pattern)
 
 
-def _crossing(section: StreetSection, random: Generator) -> Iterator[Stroke]:
+def _crossing(section: StreetSection, random: Generator) -> Iterator[PaintedStroke]:
     """A zebra crossing with its stop lines, where a curb is lowered if there is one."""
     plan = section.plan
     wide = float(random.uniform(3.0, 4.5))
@@ -142,10 +144,10 @@ def _crossing(section: StreetSection, random: Generator) -> Iterator[Stroke]:
     right, left = -plan.right.edge_m + 0.3, plan.left.edge_m - 0.3
     for offset in np.arange(right, left - _STRIPE_M, 2 * _STRIPE_M):
         bar = (low, high, float(offset), float(offset) + _STRIPE_M)
-        yield Stroke((bar,), "crosswalk_bar")
+        yield PaintedStroke((bar,), "crosswalk_bar")
     before, behind = low - _STOP_BEFORE_M, high + _STOP_BEFORE_M
-    yield Stroke(((before - _STOP_M, before, 0.1, left),), "stop_line")
-    yield Stroke(((behind, behind + _STOP_M, right, -0.1),), "stop_line")
+    yield PaintedStroke(((before - _STOP_M, before, 0.1, left),), "stop_line")
+    yield PaintedStroke(((behind, behind + _STOP_M, right, -0.1),), "stop_line")
 
 
 def symbols_of(section: StreetSection, random: Generator) -> Iterator[Rectangle]:

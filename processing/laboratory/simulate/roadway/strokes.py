@@ -26,7 +26,7 @@ _PAINTED_SHARE = 0.3
 _MOST_PIECES = 255
 
 
-class Stroke(NamedTuple):
+class PaintedStroke(NamedTuple):
     """One marking of the ordinance.
 
     Attributes
@@ -45,7 +45,7 @@ class Stroke(NamedTuple):
 def add_strokes(
     section: StreetSection,
     built: SectionBuilder,
-    strokes: Sequence[Stroke],
+    strokes: Sequence[PaintedStroke],
     worn: tuple[Generator, float],
 ) -> None:
     """Add markings of the carriageway, each a thing of its own.
@@ -70,7 +70,7 @@ def add_strokes(
         built.truth.append(_truth(section, stroke, inside, pieces))
 
 
-def _pieces_of(stroke: Stroke, inside: Sequence[Rectangle], instance: int) -> SheetPieces:
+def _pieces_of(stroke: PaintedStroke, inside: Sequence[Rectangle], instance: int) -> SheetPieces:
     is_across = stroke.type == "stop_line"
     first, last = (2, 3) if is_across else (0, 1)
     low, high = min(one[first] for one in inside), max(one[last] for one in inside)
@@ -79,7 +79,7 @@ def _pieces_of(stroke: Stroke, inside: Sequence[Rectangle], instance: int) -> Sh
 
 
 def _truth(
-    section: StreetSection, stroke: Stroke, inside: Sequence[Rectangle], pieces: SheetPieces
+    section: StreetSection, stroke: PaintedStroke, inside: Sequence[Rectangle], pieces: SheetPieces
 ) -> TrueFeature:
     low, high, right, left = inside[0]
     if pieces.is_across:

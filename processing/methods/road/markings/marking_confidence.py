@@ -6,7 +6,7 @@ import math
 from typing import NamedTuple
 
 from processing.methods.road.logistic import chance_of_logit
-from processing.methods.road.markings.marking_lines import RoadMarking
+from processing.methods.road.markings.marking_lines import MarkingLine
 
 _LONGEST_M = 32.0
 _STEP_M = 0.04
@@ -62,7 +62,7 @@ _WEIGHTS = MarkingFacts(
 )  # fmt: skip
 
 
-def facts_of(marking: RoadMarking, step_m: float) -> MarkingFacts:
+def facts_of(marking: MarkingLine, step_m: float) -> MarkingFacts:
     """The facts of a marking.
 
     Parameters

@@ -11,7 +11,7 @@ from typing import Literal
 import numpy as np
 
 from processing.core.arrays import Floats, Integers
-from processing.methods.road.markings.strokes import Stroke
+from processing.methods.road.markings.strokes import BrightStroke
 
 MarkingType = Literal["solid", "broken", "stop_line", "crosswalk_bar", "other"]
 
@@ -53,13 +53,13 @@ _HERMITE_M = 1.0
 
 
 @dataclass(frozen=True)
-class RoadMarking:
+class MarkingLine:
     """One marking.
 
     Attributes
     ----------
     type : str
-    strokes : tuple of Stroke
+    strokes : tuple of BrightStroke
         In their order along it.
     line : (n, 2) float64
         Along its middle, m about the plan's origin.
@@ -70,7 +70,7 @@ class RoadMarking:
     """
 
     type: MarkingType
-    strokes: tuple[Stroke, ...]
+    strokes: tuple[BrightStroke, ...]
     line: Floats
     pattern_m: tuple[float, float] | None = None
     fellows: int = 1
@@ -94,7 +94,7 @@ class RoadMarking:
         return float(np.average([getattr(s, name) for s in self.strokes], weights=self._lengths))
 
 
-def markings_of(strokes: Sequence[Stroke], path: Floats) -> list[RoadMarking]:
+def markings_of(strokes: Sequence[BrightStroke], path: Floats) -> list[MarkingLine]:
     """Markings that strokes make.
 
     Parameters
@@ -105,7 +105,7 @@ def markings_of(strokes: Sequence[Stroke], path: Floats) -> list[RoadMarking]:
     whole = [_joined(one) for one in _chains(_without_doubles(strokes), _WORN_M)]
     fellows = _bars_of(whole)
     bars = [
-        RoadMarking("crosswalk_bar", (one,), one.line, fellows=count)
+        MarkingLine("crosswalk_bar", (one,), one.line, fellows=count)
         for one, count in zip(whole, fellows.tolist(), strict=True)
         if count
     ]
@@ -116,14 +116,14 @@ def markings_of(strokes: Sequence[Stroke], path: Floats) -> list[RoadMarking]:
     ]
     is_line = [one not in stops and one.width_m <= _LINE_WIDE_M for one in rest]
     lines = [one for one, is_one in zip(rest, is_line, strict=True) if is_one]
-    found = bars + [RoadMarking("stop_line", (one,), one.line) for one in stops]
+    found = bars + [MarkingLine("stop_line", (one,), one.line) for one in stops]
     for chain in _chains(lines, _LONGEST_GAP_M):
         found += _lines_of(chain)
     others = [one for one, is_one in zip(rest, is_line, strict=True) if not is_one]
-    return found + [RoadMarking("other", (o,), o.line) for o in others if o not in stops]
+    return found + [MarkingLine("other", (o,), o.line) for o in others if o not in stops]
 
 
-def _without_doubles(strokes: Sequence[Stroke]) -> list[Stroke]:
+def _without_doubles(strokes: Sequence[BrightStroke]) -> list[BrightStroke]:
     """Strokes, without those that lie on longer ones: two scales may show the same paint."""
     from scipy.spatial import cKDTree
 
@@ -133,7 +133,7 @@ def _without_doubles(strokes: Sequence[Stroke]) -> list[Stroke]:
     places = [_every(one.line, 0.2) for one in ordered]
     owner = np.repeat(np.arange(len(ordered)), [len(one) for one in places])
     tree = cKDTree(np.concatenate(places))
-    kept: list[Stroke] = []
+    kept: list[BrightStroke] = []
     is_kept = np.zeros(len(ordered), np.bool_)
     for number, one in enumerate(ordered):
         reach = max(0.15, 0.6 * one.width_m)
@@ -162,7 +162,7 @@ def _ways_out(line: Floats) -> tuple[Floats, Floats]:
     return ends[0], ends[1]
 
 
-def _chains(strokes: Sequence[Stroke], gap_m: float) -> list[list[Stroke]]:
+def _chains(strokes: Sequence[BrightStroke], gap_m: float) -> list[list[BrightStroke]]:
     """Strokes that lead into each other, in their order and turned the same way."""
     from scipy.spatial import cKDTree
 
@@ -184,7 +184,9 @@ def _chains(strokes: Sequence[Stroke], gap_m: float) -> list[list[Stroke]]:
     return _walked(strokes, partner)
 
 
-def _cost(strokes: Sequence[Stroke], ends: tuple[int, int], ways: Floats, apart: Floats) -> float:
+def _cost(
+    strokes: Sequence[BrightStroke], ends: tuple[int, int], ways: Floats, apart: Floats
+) -> float:
     """How badly an end leads to another, m; infinite where it doesn't.
 
     On an arc the line between two ends makes the same angle with both.
@@ -220,14 +222,14 @@ def _turn(one: Floats, other: Floats) -> float:
     )
 
 
-def _walked(strokes: Sequence[Stroke], partner: Integers) -> list[list[Stroke]]:
-    chains: list[list[Stroke]] = []
+def _walked(strokes: Sequence[BrightStroke], partner: Integers) -> list[list[BrightStroke]]:
+    chains: list[list[BrightStroke]] = []
     is_used = np.zeros(len(strokes), np.bool_)
     starts = [k for k in range(len(partner)) if partner[k] < 0] + list(range(len(partner)))
     for start in starts:
         if is_used[start // 2]:
             continue
-        chain: list[Stroke] = []
+        chain: list[BrightStroke] = []
         end = start
         while end >= 0 and not is_used[end // 2]:
             number = end // 2
@@ -239,7 +241,7 @@ def _walked(strokes: Sequence[Stroke], partner: Integers) -> list[list[Stroke]]:
     return chains
 
 
-def _joined(chain: Sequence[Stroke]) -> Stroke:
+def _joined(chain: Sequence[BrightStroke]) -> BrightStroke:
     """One stroke of several that follow each other."""
     if len(chain) == 1:
         return chain[0]
@@ -249,10 +251,10 @@ def _joined(chain: Sequence[Stroke]) -> Stroke:
         name: float(np.average([getattr(one, name) for one in chain], weights=weights))
         for name in ("width_m", "width_spread_m", "paint", "beside", "seen_share")
     }
-    return Stroke(line, **facts)
+    return BrightStroke(line, **facts)
 
 
-def _bars_of(strokes: Sequence[Stroke]) -> Integers:
+def _bars_of(strokes: Sequence[BrightStroke]) -> Integers:
     """Of each stroke how many bars the crossing has that it belongs to; 0: it is no bar."""
     from scipy.sparse import coo_array
     from scipy.sparse.csgraph import connected_components
@@ -276,13 +278,13 @@ def _bars_of(strokes: Sequence[Stroke]) -> Integers:
     return fellows
 
 
-def _may_be_bar(one: Stroke) -> bool:
+def _may_be_bar(one: BrightStroke) -> bool:
     chord = float(np.hypot(*(one.line[-1] - one.line[0])))
     is_wide = _BAR_WIDE_M[0] <= one.width_m <= _BAR_WIDE_M[1]
     return is_wide and _BAR_LONG_M[0] <= one.long_m <= _BAR_LONG_M[1] and chord > 0.97 * one.long_m
 
 
-def _are_beside(one: Stroke, other: Stroke) -> bool:
+def _are_beside(one: BrightStroke, other: BrightStroke) -> bool:
     """Whether two bars stand side by side as those of a crossing do."""
     way = one.line[-1] - one.line[0]
     long = float(np.hypot(*way))
@@ -306,7 +308,7 @@ def _are_beside(one: Stroke, other: Stroke) -> bool:
     )
 
 
-def _angles_to_way(strokes: Sequence[Stroke], path: Floats) -> list[float]:
+def _angles_to_way(strokes: Sequence[BrightStroke], path: Floats) -> list[float]:
     """Of strokes to the nearest place of the path, 0 to π/2; 0 without a path."""
     from scipy.spatial import cKDTree
 
@@ -322,11 +324,11 @@ def _angles_to_way(strokes: Sequence[Stroke], path: Floats) -> list[float]:
     return angles
 
 
-def _may_stop(one: Stroke) -> bool:
+def _may_stop(one: BrightStroke) -> bool:
     return _STOP_WIDE_M[0] <= one.width_m <= _STOP_WIDE_M[1] and one.long_m >= _STOP_LONG_M
 
 
-def _connected(chain: Sequence[Stroke]) -> Floats:
+def _connected(chain: Sequence[BrightStroke]) -> Floats:
     """One line through strokes; gaps are bent as the strokes on both sides lead (cubic Hermite)."""
     parts = [chain[0].line]
     for before, after in itertools.pairwise(chain):
@@ -345,13 +347,13 @@ def _connected(chain: Sequence[Stroke]) -> Floats:
     return np.concatenate(parts)
 
 
-def _lines_of(chain: Sequence[Stroke]) -> list[RoadMarking]:
+def _lines_of(chain: Sequence[BrightStroke]) -> list[MarkingLine]:
     """A broken line, or solid ones between the gaps of a chain."""
     pattern = _pattern_of(chain)
     if pattern is not None:
         line = _connected(chain)
-        return [RoadMarking("broken", tuple(chain), line, pattern, len(chain))]
-    parts: list[list[Stroke]] = [[chain[0]]]
+        return [MarkingLine("broken", tuple(chain), line, pattern, len(chain))]
+    parts: list[list[BrightStroke]] = [[chain[0]]]
     for before, after in itertools.pairwise(chain):
         if float(np.hypot(*(after.line[0] - before.line[-1]))) > _BRIDGED_M:
             parts.append([])
@@ -361,11 +363,11 @@ def _lines_of(chain: Sequence[Stroke]) -> list[RoadMarking]:
         line = _connected(part)
         long = float(np.hypot(*np.diff(line, axis=0).T).sum())
         is_line = long >= _SOLID_LONG_M or (len(parts) > 1 and long >= _LINE_LONG_M)
-        found.append(RoadMarking("solid" if is_line else "other", tuple(part), line))
+        found.append(MarkingLine("solid" if is_line else "other", tuple(part), line))
     return found
 
 
-def _pattern_of(chain: Sequence[Stroke]) -> tuple[float, float] | None:
+def _pattern_of(chain: Sequence[BrightStroke]) -> tuple[float, float] | None:
     """Dash and gap of a broken line; None for strokes that come irregularly.
 
     Where dashes are missing the way to the next one is several periods long.

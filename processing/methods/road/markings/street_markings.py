@@ -10,7 +10,7 @@ import numpy as np
 from processing.core.arrays import Floats
 from processing.core.monitor import Monitor, PartMonitor
 from processing.methods.road.markings.marking_confidence import MarkingFacts, chance_of, facts_of
-from processing.methods.road.markings.marking_lines import MarkingType, RoadMarking, markings_of
+from processing.methods.road.markings.marking_lines import MarkingLine, MarkingType, markings_of
 from processing.methods.road.markings.paint_raster import (
     HeadTones,
     PaintRaster,
@@ -84,12 +84,12 @@ class SeenMarkings:
     ----------
     raster : PaintRaster or None
         None where no head told paint from road.
-    markings : tuple of (RoadMarking, MarkingFacts)
+    markings : tuple of (MarkingLine, MarkingFacts)
     heads : tuple of HeadTones
     """
 
     raster: PaintRaster | None
-    markings: tuple[tuple[RoadMarking, MarkingFacts], ...]
+    markings: tuple[tuple[MarkingLine, MarkingFacts], ...]
     heads: tuple[HeadTones, ...]
 
 
@@ -142,7 +142,7 @@ def seen_markings(drives: Sequence[Drive], monitor: Monitor) -> SeenMarkings:
     return SeenMarkings(raster, tuple(zip(found, facts, strict=True)), tuple(heads))
 
 
-def _street_marking(raster: PaintRaster, marking: RoadMarking, chance: float) -> StreetMarking:
+def _street_marking(raster: PaintRaster, marking: MarkingLine, chance: float) -> StreetMarking:
     import shapely
 
     line = np.asarray(
@@ -172,7 +172,7 @@ def _heights_along(raster: PaintRaster, line: Floats) -> Floats:
     return np.asarray(np.interp(along, along[known], heights[known]))
 
 
-def _steps_to_way(raster: PaintRaster, markings: Sequence[RoadMarking]) -> list[float]:
+def _steps_to_way(raster: PaintRaster, markings: Sequence[MarkingLine]) -> list[float]:
     """The highest step between each marking and the vehicle's way: a curb; NaN: nothing tells."""
     from scipy.spatial import cKDTree
 

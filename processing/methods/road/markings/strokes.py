@@ -31,7 +31,7 @@ _SMOOTHED_M = 2.0
 
 
 @dataclass(frozen=True, eq=False)
-class Stroke:
+class BrightStroke:
     """One stroke of paint.
 
     Attributes
@@ -62,9 +62,9 @@ class Stroke:
         return float(np.hypot(*np.diff(self.line, axis=0).T).sum())
 
 
-def strokes_of(raster: PaintRaster, monitor: Monitor) -> list[Stroke]:
+def strokes_of(raster: PaintRaster, monitor: Monitor) -> list[BrightStroke]:
     """All strokes of a raster: in fine cells, then what is left in coarse ones."""
-    found: list[Stroke] = []
+    found: list[BrightStroke] = []
     is_done = np.zeros(len(raster.shares), np.bool_)
     half = raster.per_tile // 2
     for shares, per_tile in ((raster.shares, raster.per_tile), (raster.coarse, half)):
@@ -77,7 +77,7 @@ def strokes_of(raster: PaintRaster, monitor: Monitor) -> list[Stroke]:
 
 def _followed(
     shown: StrokeRaster, is_done: NDArray[np.bool_], monitor: Monitor
-) -> Iterator[Stroke]:
+) -> Iterator[BrightStroke]:
     stations = np.empty((_STATIONS, STATION))
     counts = np.empty(_SEEDS_AT_ONCE, np.int64)
     per_tile = shown.per_tile**2
@@ -94,14 +94,14 @@ def _followed(
                 yield _stroke(stations[last - count : last].copy())
 
 
-def _stroke(stations: Floats) -> Stroke:
+def _stroke(stations: Floats) -> BrightStroke:
     inner = stations[1:-1]
     line = _smoothed(inner[:, :2])
     # Ends lie on the way that the smooth line leads.
     line = np.concatenate([stations[:1, :2], line, stations[-1:, :2]])
     line[0], line[-1] = _on_the_way(line[::-1]), _on_the_way(line)
     long = float(np.hypot(*np.diff(line, axis=0).T).sum())
-    return Stroke(
+    return BrightStroke(
         line,
         float(np.median(inner[:, 2])),
         float(inner[:, 2].std()),
