@@ -6,6 +6,7 @@ has its button, diagnostics, scorer and classes without another line.
 
 from __future__ import annotations
 
+from collections import ChainMap
 from collections.abc import Mapping
 
 from processing.core.errors import name_with_type
@@ -84,8 +85,8 @@ REGISTRATIONS: Mapping[str, Tool] = {
 
 
 def tools_of_drives() -> Mapping[str, Tool]:
-    """Those that run on a drive: tools, and what makes points."""
-    return {**TOOLS, **POINT_MAKERS}
+    """Those that run on a drive: tools, with what is added to them later, and what makes points."""
+    return ChainMap(dict(POINT_MAKERS), _TOOLS)
 
 
 def register(tool: Tool) -> None:

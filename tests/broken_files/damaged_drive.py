@@ -61,7 +61,9 @@ def main(project: Path, name: str, seed: int) -> int:
             os.utime(path, ns=(times, times))
         try:
             with closing(Project.open(project)) as opened:
-                said += _use(opened.drives[0], random)
+                said += sum(_is_reported(one) for one in opened.damaged_drives.values())
+                for drive in opened.drives:
+                    said += _use(drive, random)
         except UserError as error:
             said += _is_reported(error)
     sys.stdout.write(f"{said}\n")

@@ -248,7 +248,9 @@ def test_labels_that_another_program_changed_are_not_taken_back(desk: LabelSessi
         file.write(bytes([SIGN]))
     assert desk.document.undo()
     desk.rest()
-    assert desk.refused == ["Another program has changed the map in the database."]
+    assert desk.refused == [
+        "A file of the project is not what Zuka wrote: the disk, or a copy, changed it."
+    ]
     assert desk.labels[700] == SIGN
     assert desk.labels[20] == ROAD
 
