@@ -248,5 +248,6 @@ def test_the_import_form_offers_the_trajectory_beside_the_points(surveyor, deliv
     buttons = form.findChild(QDialogButtonBox)
     with surveyor.bot.waitSignal(surveyor.document.drive_results.taken, timeout=WAIT_MS):
         buttons.accepted.emit()
-    assert requests[0].files == (delivery / "left.laz", delivery / "trajectory.csv")
+    names = ("left.laz", "trajectory.csv", "images.csv")
+    assert requests[0].files == tuple(delivery / name for name in names)
     assert surveyor.drive.trajectory is not None

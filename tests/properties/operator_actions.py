@@ -21,6 +21,7 @@ from PySide6.QtWidgets import (
 from processing.image.attributes.attributes import available
 from processing.recording.columns.point_features import POINT_FEATURES
 from processing.recording.kinds import ImageKind
+from processing.tools import registry
 from tests.properties.operator_input import CTRL, FREE, RIGHT, SHIFT, Operator
 from tests.properties.operator_views import review, stand_otherwise
 
@@ -361,8 +362,8 @@ def run_tool(operator: Operator, choice: random.Random) -> None:
     """Start a run that goes on in the background while other things are done."""
     document = operator.parts.document
     if not operator.parts.jobs.is_busy:
-        tool = choice.choice(sorted(operator.parts.processing_panel._tools))
-        parameters = operator.parts.processing_panel._tools[tool].parameters()
+        tool = choice.choice(sorted(registry.TOOLS))
+        parameters = registry.TOOLS[tool].parameters()
         document.start_run(tool, document.shared.view_settings.drive_id, parameters)
 
 

@@ -35,6 +35,9 @@ from widgets.parts.share_bar import ShareBar
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
 
+_LEAST_HIGH_PX = 40
+"""Two lines of the candidate: all panels above each other fit a screen of 768 pixels."""
+
 _NATIVE = QKeySequence.SequenceFormat.NativeText
 _LEAST = 0.9
 _BIG_PX = 24
@@ -290,6 +293,7 @@ class ReviewPanel(QWidget):
         scroll.setWidget(page)
         room = scroll.verticalScrollBar().sizeHint().width()
         scroll.setMinimumWidth(page.minimumSizeHint().width() + room)
+        scroll.setMinimumHeight(_LEAST_HIGH_PX)
         whole = QWidget(self)
         around = QVBoxLayout(whole)
         around.setContentsMargins(8, 8, 8, 8)
