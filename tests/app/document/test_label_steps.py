@@ -251,8 +251,8 @@ def test_labels_that_another_program_changed_are_not_taken_back(desk: LabelSessi
     assert desk.refused == [
         "A file of the project is not what Zuka wrote: the disk, or a copy, changed it."
     ]
-    assert desk.labels[700] == SIGN
-    assert desk.labels[20] == ROAD
+    labels = path.read_bytes()
+    assert (labels[700], labels[20]) == (SIGN, ROAD)
 
 
 @pytest.mark.parametrize("is_undone", [False, True])
