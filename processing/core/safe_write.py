@@ -26,8 +26,7 @@ def write_safely(path: Path, *, never: Iterable[Path] = ()) -> Iterator[Path]:
     Yields
     ------
     Path
-        To be written by the body. The folder is made if it is missing, and goes again with those
-        above it that were made for it when the body fails.
+        To be written by the body. The folder is made if it is missing.
 
     Raises
     ------
@@ -39,7 +38,7 @@ def write_safely(path: Path, *, never: Iterable[Path] = ()) -> Iterator[Path]:
     refuse_inputs(path, never)
     temporary = path.with_name(f".{path.stem}-{uuid.uuid4().hex[:8]}{path.suffix}")
     with report_as_user_error(path):
-        made = _make_folder(path.parent)
+        _make_folder(path.parent)
         try:
             yield temporary
             _flush(temporary)
@@ -47,18 +46,12 @@ def write_safely(path: Path, *, never: Iterable[Path] = ()) -> Iterator[Path]:
         except BaseException:
             with suppress(OSError):
                 temporary.unlink(missing_ok=True)
-                for folder in made:
-                    folder.rmdir()  # one in which something else was written stays
             raise
 
 
-def _make_folder(folder: Path) -> list[Path]:
-    """Make a folder and those above it, which are given, the innermost first.
-
-    Full disks and lacking rights are left to the caller.
-    """
+def _make_folder(folder: Path) -> None:
+    """Make a folder and those above it; full disks and lacking rights are left to the caller."""
     try:
-        missing = [one for one in (folder, *folder.parents) if not one.exists()]
         folder.mkdir(parents=True, exist_ok=True)
     except (FileNotFoundError, FileExistsError, NotADirectoryError) as error:
         raise MissingInput(
@@ -71,7 +64,6 @@ def _make_folder(folder: Path) -> list[Path]:
                 "何も書き込まれていません。",
             ),
         ) from error
-    return missing
 
 
 def refuse_inputs(path: Path, never: Iterable[Path]) -> None:

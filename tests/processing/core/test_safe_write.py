@@ -57,21 +57,3 @@ def test_a_folder_that_is_a_file_is_told_in_a_sentence(tmp_path: Path) -> None:
         write_safely(tmp_path / "folder" / "a.csv") as temporary,
     ):
         temporary.write_text("x")
-
-
-def test_folders_made_for_a_file_that_fails_go_again_and_others_stay(tmp_path: Path) -> None:
-    there = tmp_path / "there"
-    there.mkdir()
-    with pytest.raises(Cancelled), write_safely(there / "new" / "deep" / "a.csv"):
-        raise Cancelled
-    assert list(tmp_path.iterdir()) == [there]
-    assert list(there.iterdir()) == []
-
-    def write_beside() -> None:
-        with write_safely(there / "new" / "deep" / "a.csv") as temporary:
-            temporary.with_name("other").write_text("kept")
-            raise Cancelled
-
-    with pytest.raises(Cancelled):
-        write_beside()
-    assert (there / "new" / "deep" / "other").read_text() == "kept"

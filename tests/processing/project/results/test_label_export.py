@@ -153,7 +153,7 @@ def test_a_delivered_file_is_never_written_and_must_be_there_and_the_same(tmp_pa
         with pytest.raises(MissingInput) as refusal:
             exported(project, tmp_path / "out", ("geojson", "las"))
         assert refusal.value.where.en == str(source)
-        assert not (tmp_path / "out").exists()
+        assert list((tmp_path / "out").iterdir()) == []
 
 
 def test_files_of_the_same_name_from_two_folders_get_names_of_their_own(tmp_path):
