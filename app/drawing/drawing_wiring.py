@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QObject, Qt
+from PySide6.QtCore import QObject, Qt, QTimer
 from PySide6.QtGui import QAction, QCursor, QKeySequence
 from PySide6.QtWidgets import QMenu
 
@@ -67,6 +67,9 @@ class _DrawingWiring(QObject):
         super().__init__(parts.window.centralWidget())  # goes with the widgets
         self._parts = parts
         self._vertices = 0
+        # All views are drawn anew: once for the vertices that come in one round of events.
+        self._following = QTimer(self, singleShot=True, interval=0)
+        self._following.timeout.connect(self._move_cursor)
 
     def on_sketch_changed(self) -> None:
         """Let section, camera and the other views follow each vertex of what is drawn anew."""
@@ -76,7 +79,13 @@ class _DrawingWiring(QObject):
         has_grown = len(vertices) > self._vertices
         self._vertices = len(vertices)
         if has_grown:
-            last = vertices[-1]
+            self._following.start()
+
+    def _move_cursor(self) -> None:
+        shared = self._parts.document.shared
+        drawing = shared.sketch.drawing
+        if drawing is not None and drawing.vertices:
+            last = drawing.vertices[-1]
             position = PickedPosition(last.xyz, last.measured, is_occluded=last.is_occluded)
             shared.cursor.move_to(position)
 

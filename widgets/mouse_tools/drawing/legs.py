@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
+from functools import cached_property
 
 from processing.map.drafting.constructions import arc_through, spline_through
 from processing.map.feature import Feature, Position, Vertex
@@ -53,7 +54,7 @@ class DrawnPath:
     legs: tuple[Leg, ...] = ()
     pending: tuple[Vertex, ...] = ()
 
-    @property
+    @cached_property
     def vertices(self) -> tuple[Vertex, ...]:
         """All vertices in their order, without pending ones."""
         return self.start + tuple(vertex for leg in self.legs for vertex in leg.vertices)
@@ -67,7 +68,10 @@ class DrawnPath:
 
     def with_leg(self, leg: Leg) -> DrawnPath:
         """The path with one more leg."""
-        return replace(self, legs=(*self.legs, leg), pending=())
+        longer = replace(self, legs=(*self.legs, leg), pending=())
+        # Lines of many vertices grow by one leg at a time: those before are not gathered anew.
+        longer.__dict__["vertices"] = self.vertices + leg.vertices
+        return longer
 
     def with_pending(self, vertex: Vertex) -> DrawnPath:
         """The path with one more click that makes no leg yet."""

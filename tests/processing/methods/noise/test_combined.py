@@ -49,7 +49,11 @@ def codes_of(drive: Drive, parameters: NoiseParameters) -> Codes:
     into = drive.folder.parent / "found"
     result = run(RunRequest(NOISE.id, drive, parameters), SilentMonitor(), into=into)
     assert isinstance(result, FinishedColumns)
-    assert {path.name for path in into.iterdir()} == {"classification.bin", MARK}
+    assert {path.name for path in into.iterdir()} == {
+        "classification.bin",
+        "classification.bin.sums",
+        MARK,
+    }
     codes = np.array(columns_of(result)["classification"])
     result.remove()
     return codes
