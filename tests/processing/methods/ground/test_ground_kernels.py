@@ -106,7 +106,7 @@ def test_points_strewn_over_all_integers_stretch_no_cells_and_a_second_place_sta
     random = np.random.default_rng(3)
     street = random.uniform(0, [60.0, 40.0, 3.0], (50_000, 3))
     strewn = random.uniform(-2_147_483.0, 2_147_483.0, (500, 3))
-    other = random.uniform(0, [20.0, 20.0, 3.0], (500, 3)) + [5000.0, 0.0, 0.0]
+    other = random.uniform(0, [20.0, 20.0, 3.0], (500, 3)) + np.array([5000.0, 0.0, 0.0])
     alone = cells.choose_cells(lambda: [np.concatenate([street, strewn])])
     assert alone.rows * alone.size_m < 2_000
     assert alone.columns * alone.size_m < 2_000
