@@ -7,6 +7,7 @@ import sys
 from app.cli.automation.own_tools import load_own_tools
 from app.cli.terminal import end_with_status, run_in_terminal
 from app.jobs.error_log import start_log
+from app.limits import refuse_tight_limits
 from app.loading import load_without_qt
 from app.screen import find_screen
 from processing.core.output_streams import write_every_character
@@ -17,6 +18,9 @@ def main() -> int:
     write_every_character()
     start_log()
     arguments = sys.argv[1:]
+    refusal = end_with_status(refuse_tight_limits)
+    if refusal is not None:
+        return refusal
     load_own_tools()
     request = run_in_terminal(arguments)
     if isinstance(request, int):

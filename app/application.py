@@ -20,9 +20,11 @@ from app.drawing.draw_actions import draw_actions
 from app.drawing.edit_actions import edit_actions
 from app.drawing.mouse_tool_factory import make_toolbox
 from app.drawing.tool_entries import TOOL_ENTRIES
+from app.help.crash_news import tell_of_crashes
 from app.help.help_actions import HelpActions
 from app.importing.file_actions import FileActions
 from app.importing.source_watch import SourceWatch
+from app.jobs.crash_report import WatchedRun, report_broken_runs, runs_folder
 from app.jobs.jobs import JobQueue
 from app.keys.shortcut_editing import give_keys
 from app.layout.view_area import ViewArea
@@ -82,12 +84,17 @@ def run_window(request: WindowRequest) -> int:
     application = make_application()
     if request.headless_out is not None:
         return _do_demo_job(request.headless_out)
+    broken = report_broken_runs(runs_folder())
+    watched = WatchedRun(runs_folder())
     parts = build_window(Settings(), user_documents_path() / "Zuka")
     parts.window.show()
     _close_on_signals(parts.window)
+    tell_of_crashes(parts, broken)
     QTimer.singleShot(0, lambda: _fulfil(request, parts))
     QTimer.singleShot(0, parts.document.tiles.get_ready)
-    return int(application.exec())
+    status = int(application.exec())
+    watched.end()
+    return status
 
 
 def _close_on_signals(window: MainWindow) -> None:

@@ -10,7 +10,7 @@ from typing import TypeVar
 
 from app.cli.parser import read_arguments
 from app.cli.window_request import WindowRequest
-from app.jobs.error_log import defect_of, log_user_error
+from app.jobs.error_log import Defect, defect_of, log_user_error
 from app.settings.language import system_language
 from processing.core.errors import Cancelled, UserError
 
@@ -51,8 +51,9 @@ def end_with_status(act: Callable[[], StatusT]) -> StatusT | int:
         sys.stderr.close()
         return DONE
     except Exception as error:  # noqa: BLE001 - the last stop: told in one sentence and logged
-        say(defect_of(error).line(system_language()))
-        return DEFECT
+        told = defect_of(error)
+        say(told.line(system_language()))
+        return DEFECT if isinstance(told, Defect) else BAD_INPUT
 
 
 def say(line: str) -> None:

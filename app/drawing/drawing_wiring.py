@@ -67,9 +67,10 @@ class _DrawingWiring(QObject):
         super().__init__(parts.window.centralWidget())  # goes with the widgets
         self._parts = parts
         self._vertices = 0
-        # All views are drawn anew: once for the vertices that come in one round of events.
-        self._following = QTimer(self, singleShot=True, interval=0)
-        self._following.timeout.connect(self._move_cursor)
+        # Views are drawn anew for the first and the last vertex that come in one round of events.
+        self._has_more = False
+        self._round = QTimer(self, singleShot=True, interval=0)
+        self._round.timeout.connect(self._on_round_over)
 
     def on_sketch_changed(self) -> None:
         """Let section, camera and the other views follow each vertex of what is drawn anew."""
@@ -78,8 +79,16 @@ class _DrawingWiring(QObject):
         vertices = () if drawing is None or drawing.replaces else drawing.vertices
         has_grown = len(vertices) > self._vertices
         self._vertices = len(vertices)
-        if has_grown:
-            self._following.start()
+        if has_grown and self._round.isActive():
+            self._has_more = True
+        elif has_grown:
+            self._round.start()
+            self._move_cursor()
+
+    def _on_round_over(self) -> None:
+        if self._has_more:
+            self._has_more = False
+            self._move_cursor()
 
     def _move_cursor(self) -> None:
         shared = self._parts.document.shared

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from platformdirs import user_log_path
 
-from processing.core.errors import UserError
+from processing.core.errors import NoSpace, UserError
 from processing.core.text import Text
 
 _LOG = logging.getLogger("zuka")
@@ -43,9 +43,25 @@ def log_user_error(error: UserError) -> None:
     _LOG.warning(error.line("en"))
 
 
-def defect_of(error: BaseException) -> Defect:
-    """Note an unexpected error with its traceback; gives what to tell the user."""
+def defect_of(error: BaseException) -> UserError:
+    """Note an unexpected error with its traceback; gives what to tell the user.
+
+    Returns
+    -------
+    UserError
+        A `Defect`; or `NoSpace` where memory was short, which is none of the program's.
+    """
     _LOG.error("defect", exc_info=error)
+    if isinstance(error, MemoryError):
+        return NoSpace(
+            Text("There is not enough memory for this.", "メモリーが不足しています。"),
+            Text.same(str(error) or type(error).__name__),
+            Text(
+                "Close other programs or take a smaller part; nothing you saved is lost.",
+                "ほかのプログラムを閉じるか、範囲を小さくしてください。"
+                "保存済みの内容は失われていません。",
+            ),
+        )
     return Defect(
         Text(
             f"Zuka has a defect here: {type(error).__name__}: {error}.",

@@ -160,6 +160,14 @@ def _from_os_error(error: OSError, path: Path) -> UserError:
             where,
             Text("Check the name and the folder.", "ファイル名とフォルダを確認してください。"),
         )
+    if isinstance(error, IsADirectoryError):
+        return MissingInput(
+            Text(
+                "This is a folder, and a file is asked for.", "フォルダではなくファイルが必要です。"
+            ),
+            where,
+            Text("Name a file in it.", "その中のファイルを指定してください。"),
+        )
     reason = error.strerror or str(error)
     return BadFile(
         Text(

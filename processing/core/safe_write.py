@@ -8,8 +8,13 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from filelock import FileLock
+
 from processing.core.errors import InUse, MissingInput, report_as_user_error
 from processing.core.text import Text
+
+_WRITING = ".zuka-writing-"
+_LOCK = "lock"
 
 
 @contextmanager
@@ -36,17 +41,61 @@ def write_safely(path: Path, *, never: Iterable[Path] = ()) -> Iterator[Path]:
         What the operating system says, of the body's own writing too.
     """
     refuse_inputs(path, never)
-    temporary = path.with_name(f".{path.stem}-{uuid.uuid4().hex[:8]}{path.suffix}")
     with report_as_user_error(path):
         _make_folder(path.parent)
-        try:
+        remove_broken_writing(path.parent)
+        with _writing_folder(path.parent) as folder:
+            temporary = folder / path.name
             yield temporary
             _flush(temporary)
             temporary.replace(path)
-        except BaseException:
-            with suppress(OSError):
-                temporary.unlink(missing_ok=True)
-            raise
+
+
+@contextmanager
+def _writing_folder(parent: Path) -> Iterator[Path]:
+    """A hidden folder for what is not whole yet.
+
+    It is locked while it is written to, so that that of a killed process is told from one in use.
+    """
+    folder = parent / f"{_WRITING}{uuid.uuid4().hex[:8]}"
+    folder.mkdir()
+    lock = FileLock(folder / _LOCK)
+    with suppress(OSError, NotImplementedError):  # some network disks have no locks
+        lock.acquire(timeout=0)
+    try:
+        yield folder
+    finally:
+        _remove(folder, lock)
+
+
+def remove_broken_writing(parent: Path) -> None:
+    """Remove what killed processes left of files that they were writing in a folder.
+
+    Only folders of the name that the program gives them, with its lock in them and nobody
+    holding it, are touched, and of what lies in them only files; links are not followed.
+    """
+    with suppress(OSError):
+        names = [one.name for one in os.scandir(parent) if one.name.startswith(_WRITING)]
+        for folder in (parent / name for name in names):
+            mark = folder / _LOCK
+            if folder.is_symlink() or mark.is_symlink() or not mark.is_file():
+                continue
+            lock = FileLock(mark)
+            with suppress(OSError, NotImplementedError):  # held: somebody is writing there
+                lock.acquire(timeout=0)
+                _remove(folder, lock)
+
+
+def _remove(folder: Path, lock: FileLock) -> None:
+    """Remove a folder of ours and the files in it; the lock comes last."""
+    with suppress(OSError):
+        for entry in list(os.scandir(folder)):
+            if entry.name != _LOCK and not entry.is_dir(follow_symlinks=False):
+                Path(entry).unlink(missing_ok=True)
+    lock.release()
+    with suppress(OSError):
+        (folder / _LOCK).unlink(missing_ok=True)
+        folder.rmdir()
 
 
 def _make_folder(folder: Path) -> None:
