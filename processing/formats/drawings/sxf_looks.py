@@ -8,8 +8,9 @@ first; a city's own list replaces it.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
-from processing.map.catalogue import FeatureKind
+from processing.map.catalogue import Catalogue, FeatureKind
 
 FRAME_LAYER, TITLE_LAYER, NOTE_LAYER = "S-TTL-FRAM", "S-TTL-TXT", "S-BGD-TXT"
 
@@ -84,6 +85,11 @@ def layer_of(kind: FeatureKind) -> str:
         return _DIMENSION_LAYER
     begins = (code for code in _LAYERS if kind.dm_code.startswith(code))
     return _LAYERS[max(begins, key=len)]
+
+
+def cad_catalogue(catalogue: Catalogue) -> Catalogue:
+    """The same kinds on the layers of CAD製図基準."""
+    return Catalogue(tuple(replace(kind, layer=layer_of(kind)) for kind in catalogue))
 
 
 def colour_of(kind: FeatureKind) -> int:

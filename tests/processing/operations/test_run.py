@@ -108,6 +108,9 @@ def test_sure_candidates_are_accepted_in_one_step_that_undo_takes_back(folder: P
     assert outcome.accepted == 4
     assert outcome.words[-1].en == "4 of them accepted"
     assert statuses(folder).count(Status.ACCEPTED) == 4
+    with closing(Project.open(folder, writing=False)) as opened:
+        unseen = [one.provenance.unseen for one in opened.features.all()]
+    assert unseen.count(True) == 4  # what nobody looked at is known after the project is reopened
     undo_step(UndoOperation(folder), SilentMonitor())
     assert statuses(folder) == [Status.CANDIDATE] * 6
 
