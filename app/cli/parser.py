@@ -232,6 +232,9 @@ def _add_run(commands: _Commands[_Parser]) -> None:
         metavar="CONFIDENCE",
         help="of what the project stores: candidates that need no review",
     )
+    running.add_argument(
+        "--language", choices=["en", "ja"], help="of a CSV table's headers; without it ids"
+    )
     running.set_defaults(module="run")
 
 

@@ -30,7 +30,7 @@ from processing.formats.drawings.dxf_document import (
 )
 from processing.formats.drawings.dxf_labels import LABEL_HEIGHT_M, label_of
 from processing.formats.drawings.dxf_text import dxf_strings, dxf_text
-from processing.formats.drawings.sxf_looks import cad_catalogue
+from processing.formats.drawings.sxf_looks import cad_catalogue, label_layer
 from processing.formats.drawings.symbol_shapes import symbol_rotation_deg
 from processing.formats.map_delivery import DxfOptions, MapDelivery
 from processing.map.catalogue import Catalogue, FeatureKind, Geometry
@@ -38,7 +38,6 @@ from processing.map.feature import AttributeValue, Feature, Position, Status
 from processing.map.solids import solid_of, thickness_of
 
 CANDIDATE_SUFFIX = "_候補"
-LABEL_SUFFIX = "_文字"
 
 _INT32 = 1 << 31
 _MOST_XDATA_BYTES = 16_000
@@ -308,7 +307,7 @@ class MapDrawing:
         label = label_of(kind, feature)
         if label is None:
             return
-        layer = looks.layer + LABEL_SUFFIX
+        layer = label_layer(looks.layer)
         self._need_layer(layer, kind)
         attributes = {
             "layer": layer,
@@ -325,6 +324,7 @@ class MapDrawing:
             (1000, feature.kind),
             (1000, feature.status.value),
             (1040, float(feature.provenance.confidence)),
+            (1000, dxf_text(feature.provenance.tool, encoding)),
         ]
         for name, value in feature.attributes.items():
             if value is not None:

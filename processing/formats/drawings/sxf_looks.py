@@ -22,6 +22,7 @@ _LAYERS: Mapping[str, str] = {
     "6522": "S-BMK-ROW",  # boundary of the road's land
     "": "S-BGD-EXST",  # what exists
 }
+LABEL_SUFFIX = "_文字"
 _DIMENSION_LAYER = "S-STR-DIM"
 _WIDTH_KIND = "width_line"
 
@@ -74,7 +75,13 @@ _TYPES: Mapping[str, str] = {
 WIDTHS_MM = (0.13, 0.18, 0.25, 0.35, 0.5, 0.7, 1.0, 1.4, 2.0)
 """The predefined widths in the order of their codes, from 1."""
 
-_PENS_MM: Mapping[str, float] = {"3002": 0.30, "6141": 0.30, "7101": 0.20, "7102": 0.10}
+_PENS_MM: Mapping[str, float] = {
+    "1106": 0.20,
+    "3002": 0.30,
+    "6141": 0.30,
+    "7101": 0.20,
+    "7102": 0.10,
+}
 _PEN_MM = 0.15
 """Pens of level 500 by class code, and the usual one (公共測量標準図式, 線号)."""
 
@@ -90,6 +97,12 @@ def layer_of(kind: FeatureKind) -> str:
 def cad_catalogue(catalogue: Catalogue) -> Catalogue:
     """The same kinds on the layers of CAD製図基準."""
     return Catalogue(tuple(replace(kind, layer=layer_of(kind)) for kind in catalogue))
+
+
+def label_layer(layer: str) -> str:
+    """The layer of the words beside what lies on a layer."""
+    is_cad = layer == _DIMENSION_LAYER or layer in _LAYERS.values()
+    return NOTE_LAYER if is_cad else f"{layer}{LABEL_SUFFIX}"
 
 
 def colour_of(kind: FeatureKind) -> int:

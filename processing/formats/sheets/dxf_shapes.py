@@ -6,9 +6,9 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from processing.formats.drawings.dxf import LABEL_SUFFIX
 from processing.formats.drawings.dxf_document import DxfDocument
 from processing.formats.drawings.dxf_text import label_text
+from processing.formats.drawings.sxf_looks import LABEL_SUFFIX
 from processing.formats.sheets.paper_layers import is_of_paper
 from processing.formats.sheets.paper_shapes import (
     PaperCircle,

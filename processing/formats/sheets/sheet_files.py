@@ -25,6 +25,7 @@ from processing.formats.sheets.sheet_layout import SheetLayout, layout_of
 from processing.formats.sheets.sheet_words import UnplacedLabel, label_sheet
 from processing.formats.sheets.sheets_dxf import DrawnSheet, write_flat_dxf, write_layouts_dxf
 from processing.formats.sheets.sheets_pdf import write_sheets_pdf
+from processing.formats.sheets.slope_marks import slope_shapes
 from processing.formats.sheets.title_block import SheetPart, title_block
 from processing.map.feature import Feature
 from processing.map.routes.route import routes_of
@@ -71,7 +72,8 @@ def write_sheets_map(delivery: MapDelivery, position: Position, monitor: Monitor
         block = title_block(delivery, options, part)
         content = ColumnContent(sheets, number, kinds, block, language)
         around: tuple[PaperShape, ...] = (
-            *frame_shapes(sheet, layout, language), *column_shapes(content, layout), *words.placed
+            *frame_shapes(sheet, layout, language), *column_shapes(content, layout), *words.placed,
+            *slope_shapes(features, delivery.catalogue, sheet, layout),
         )  # fmt: skip
         around = on_cad_layers(around) if has_cad_layers else around
         drawn.append(DrawnSheet(sheet, around))

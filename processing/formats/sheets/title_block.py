@@ -66,8 +66,8 @@ def title_block(
     What neither knows stays empty.
     """
     work = delivery.work
-    made_on = "" if work.made_on == date.min else day(work.made_on)
     language: Language = delivery.language or "ja"
+    made_on = "" if work.made_on == date.min else day(work.made_on).in_language(language)
     return {
         _DRAWING: options.sheet_title or work.work or delivery.name,
         Text("Sheet", "図面番号"): f"{part.number} / {part.count}",
@@ -75,7 +75,7 @@ def title_block(
         _SCALE: part.scale,
         _SYSTEM: _system(delivery),
         Text("Heights", "高さの基準"): options.sheet_heights or work.height_datum,
-        _DATE: options.sheet_date or (made_on and made_on.in_language(language)),
+        _DATE: options.sheet_date or made_on,
         _CLIENT: options.sheet_client or work.client,
         _MAKER: options.sheet_maker or work.contractor,
         Text("Surveyor", "測量者"): options.sheet_surveyor or work.surveyor,

@@ -171,8 +171,8 @@ def _arc(places: list[tuple[float, float, float]]) -> list[tuple[float, float, f
     first, second, third = places[:3]
     if all(math.isfinite(one[2]) for one in (first, second, third)):
         return list(arc_through(first, second, third))
-    plan = arc_through(*((x, y, 0.0) for x, y, _ in (first, second, third)))
-    return [(x, y, math.nan) for x, y, _ in plan]
+    flat = [(x, y, 0.0) for x, y, _ in (first, second, third)]
+    return [(x, y, math.nan) for x, y, _ in arc_through(flat[0], flat[1], flat[2])]
 
 
 def _damage(path: Path, record: int) -> BadFile:

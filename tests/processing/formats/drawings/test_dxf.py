@@ -87,7 +87,7 @@ def test_a_line_is_a_3d_polyline_on_the_layer_of_its_code(
     assert entity.dxf.layer == "2101_道路縁"
     assert doc.layers.get("2101_道路縁").color == catalogue["road_edge"].aci
     data = [tag.value for tag in entity.get_xdata(APP_ID)]
-    assert data[:3] == ["id-road_edge", "road_edge", "accepted"]
+    assert data == ["id-road_edge", "road_edge", "accepted", 1.0, "hand"]
 
 
 @pytest.mark.parametrize("version", _VERSIONS)
