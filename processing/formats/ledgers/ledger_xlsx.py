@@ -109,7 +109,8 @@ def _sheets(delivery: MapDelivery, style: TableStyle, monitor: Monitor) -> list[
     if sections:
         sheets.append(_road_sheet(sections, delivery.catalogue, style))
     summaries = route_summaries(delivery.features, delivery.catalogue)
-    for table in route_tables(summaries, delivery.catalogue, style):
+    for wide in route_tables(summaries, delivery.catalogue, style):
+        table = wide.for_paper()
         title = table.title.in_language(style.language or "en")
         sheets.append(_Sheet(title, table.headers, table.rows))
     monitor.check()

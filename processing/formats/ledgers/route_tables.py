@@ -26,6 +26,9 @@ _DIGITS = 2
 _BRIDGES = frozenset({"road_bridge", "road_bridge_area"})
 _TUNNELS = frozenset({"road_tunnel"})
 
+_MOST_BESIDE, _MOST_COLUMNS = 6, 16
+"""Routes beside each other on a page, and columns that can be read on one."""
+
 Cell = tuple[str, bool]
 """What stands there, and whether it is a number."""
 
@@ -48,6 +51,17 @@ class RouteTable:
     title: Text
     headers: tuple[str, ...]
     rows: tuple[tuple[Cell, ...], ...]
+
+    def for_paper(self) -> RouteTable:
+        """As it is printed: few rows of many columns are a form with an item a line.
+
+        So the type is as large as on other sheets, whose columns fit a page.
+        """
+        if len(self.rows) > _MOST_BESIDE or len(self.headers) <= _MOST_COLUMNS:
+            return self
+        items = zip(self.headers, *self.rows, strict=True)
+        first, *others = ((((item, False), *cells)) for item, *cells in items)
+        return RouteTable(self.id, self.title, tuple(words for words, _ in first), tuple(others))
 
 
 def route_tables(

@@ -84,6 +84,11 @@ def test_structures_have_stations_and_occupants_are_counted_on_the_nearest_route
     assert row["of it bridges [m]"] == "25.00"  # drawn as outline and as rail, it is one bridge
     assert row["Main occupations"] == "Manhole, sewer 1, Power pole 3"
     assert row["Kind of road"] == ""
+    form = routes.for_paper()  # an item a line, a column a route
+    assert form.headers == ("Route", "市道1号線", "2号線")
+    assert len(form.rows) == len(routes.headers) - 1
+    assert [words for words, _ in form.rows[6]] == ["Length [m]", "100.00", "100.00"]
+    assert widths.for_paper() == widths
     assert [words for words, _ in widths.rows[0]][:6] == [
         "市道1号線", "No.0+0.00", "No.5+0.00", "100.00", "6.0～6.5", "6.00",
     ]  # fmt: skip
