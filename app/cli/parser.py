@@ -117,6 +117,16 @@ def _add_reading_commands(commands: _Commands[_Parser]) -> None:
     measuring.set_defaults(module="bench")
 
 
+def _add_route_commands(commands: _Commands[_Parser]) -> None:
+    numbering = commands.add_parser("number", help="number what ledgers list along the routes")
+    numbering.add_argument("project", type=Path, metavar="PROJECT")
+    numbering.set_defaults(module="maps.number")
+    widths = commands.add_parser("widths", help="draw how wide roads are across them")
+    widths.add_argument("project", type=Path, metavar="PROJECT")
+    widths.add_argument("--pitch", type=float, metavar="M", help="from station to station (20)")
+    widths.set_defaults(module="maps.widths")
+
+
 def _add_working_commands(commands: _Commands[_Parser]) -> None:
     importing = commands.add_parser("import", help="make delivered files a project's drives")
     importing.add_argument("project", type=Path, metavar="PROJECT")
@@ -135,9 +145,7 @@ def _add_working_commands(commands: _Commands[_Parser]) -> None:
     )
     checking.add_argument("--json", action="store_true")
     checking.set_defaults(module="projects.check")
-    numbering = commands.add_parser("number", help="number what ledgers list along the routes")
-    numbering.add_argument("project", type=Path, metavar="PROJECT")
-    numbering.set_defaults(module="maps.number")
+    _add_route_commands(commands)
     learning = commands.add_parser("learn", help="a model of classes from what was painted")
     learning.add_argument("project", type=Path, metavar="PROJECT")
     learning.add_argument("--json", action="store_true")
@@ -223,6 +231,9 @@ def _add_run(commands: _Commands[_Parser]) -> None:
         type=float,
         metavar="CONFIDENCE",
         help="of what the project stores: candidates that need no review",
+    )
+    running.add_argument(
+        "--language", choices=["en", "ja"], help="of a CSV table's headers; without it ids"
     )
     running.set_defaults(module="run")
 

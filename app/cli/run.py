@@ -58,6 +58,7 @@ def operation_of(arguments: argparse.Namespace) -> RunOperation:
         settings_of_words(arguments.set),
         arguments.output,
         given.get("accept_above"),
+        given.get("language"),
     )
 
 

@@ -32,7 +32,7 @@ def edit_actions(parts: WindowParts) -> tuple[Action, ...]:
         _steps(parts),
         _clipboard(edits),
         (*_selections(parts, edits), *_line_edits(edits), *_statuses(edits)),
-        (_numbering(edits),),
+        (_numbering(edits), _widths(edits)),
     )
 
 
@@ -47,6 +47,21 @@ def _numbering(edits: MapEdits) -> Action:
             " centre line. What is written stays.",
             "道路中心線をもとに、台帳の地物の整理番号・路線名・測点・左右を記入します。"
             "記入済みの値は変わりません。",
+        ),
+    )
+
+
+def _widths(edits: MapEdits) -> Action:
+    return _edit(
+        "draw-widths",
+        Text("Width lines along the route", "路線に沿って幅員線を作図"),
+        edits.draw_widths,
+        "",
+        Text(
+            "Draws the widths of carriageway and footways across the road, each 20 m and where"
+            " they change by 0.5 m; lines drawn so before are replaced.",
+            "20 mごとと、幅員が0.5 m以上変わる位置で、車道・歩道の幅員線を作図します。"
+            "以前に自動作図した線は置き換えます。",
         ),
     )
 

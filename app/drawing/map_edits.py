@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable
-from dataclasses import replace
 
 from PySide6.QtGui import QGuiApplication
 
@@ -19,12 +18,16 @@ from processing.map.drafting.line_joins import join
 from processing.map.drafting.measuring import Width, width_between
 from processing.map.feature import Feature, Status, Vertex, new_feature_id
 from processing.map.routes.numbering import number_along_routes
-from processing.map.routes.route import routes_of
+from processing.map.routes.route import PITCH_M, routes_of
+from processing.map.routes.width_lines import width_lines
 from processing.operations.map_steps import (
     ALL_NUMBERED,
     NO_CENTRE_LINE,
+    NO_WIDTHS,
     NUMBER_LABEL,
     NUMBERED,
+    WIDTHS_DRAWN,
+    WIDTHS_LABEL,
 )
 from widgets.mouse_tools.drawing.measure import KEEP, MEASUREMENT, NO_SUCH_KIND
 from widgets.mouse_tools.removal import removal_of
@@ -115,7 +118,7 @@ class MapEdits:
             Text("{name}: {count} features", "{name}: {count}個の地物").filled(
                 name=name, count="{count}"
             ),
-            lambda feature: replace(feature, status=status),
+            lambda feature: feature.with_status(status),
             *Geometry,
         )
 
@@ -133,6 +136,21 @@ class MapEdits:
         count = len(change.replaced)
         document.apply(NUMBER_LABEL.filled(count=f"{count:,}"), change)
         document.reported.emit(NUMBERED.filled(count=f"{count:,}"))
+
+    def draw_widths(self) -> None:
+        """Draw how wide roads are across them, at their stations and where it changes."""
+        document = self._document
+        features, catalogue = tuple(document.features()), document.catalogue()
+        if not routes_of(features, catalogue):
+            document.reported.emit(NO_CENTRE_LINE)
+            return
+        change = width_lines(features, catalogue, PITCH_M)
+        if change.is_empty:
+            document.reported.emit(NO_WIDTHS)
+            return
+        count = f"{len(change.added):,}"
+        document.apply(WIDTHS_LABEL.filled(count=count), change)
+        document.reported.emit(WIDTHS_DRAWN.filled(count=count))
 
     def copy(self) -> None:
         """Put what is chosen on the clipboard, for this or any other project."""

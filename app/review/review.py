@@ -18,6 +18,7 @@ from processing.map.feature import Feature, Status
 from processing.map.feature_middle import middle_of
 from processing.project.review.decisions import (
     FeatureLines,
+    accept_unseen,
     change_status,
     label_of_line,
     label_of_many,
@@ -185,7 +186,7 @@ class Review(QObject):
         if not features:
             return False
         label = label_of_many(len(features), least)
-        if not self._apply_change(label, change_status(features, Status.ACCEPTED)):
+        if not self._apply_change(label, accept_unseen(features)):
             return False
         if self._queue.status(self._state.feature) is Status.CANDIDATE:
             self.changed.emit()
@@ -197,7 +198,7 @@ class Review(QObject):
         feature = self.current
         if feature is None:
             return False
-        if feature.status is not status:
+        if feature.status is not status or feature.provenance.unseen:
             seconds = self._clock() - self._shown_at
             label = label_of_one(self._document.catalogue(), feature, status)
             if not self._apply_change(label, change_status((feature,), status)):

@@ -61,6 +61,22 @@ def _digits() -> Any:
     )
 
 
+# Any: as the declarations of processing.core.parameters.
+def _layers() -> Any:
+    return choice(
+        "codes",
+        choices=(
+            ParameterChoice("codes", Text("Class codes", "分類コード（公共測量標準図式）")),
+            ParameterChoice("cad", Text("CAD製図基準", "CAD製図基準")),
+        ),
+        name=Text("Layers of drawings", "図面のレイヤ"),
+        explanation=Text(
+            "Class codes: the layers of the catalogue, which can be edited.",
+            "分類コードを選ぶと、カタログで定めたレイヤ（編集可）を使います。",
+        ),
+    )
+
+
 @dataclass(frozen=True)
 class DxfOptions:
     """What can be chosen for a drawing."""
@@ -75,6 +91,19 @@ class DxfOptions:
         ),
         name=Text("Version of DXF", "DXFのバージョン"),
     )
+    dxf_heights: str = choice(
+        "3d",
+        choices=(
+            ParameterChoice("3d", Text("In space (3D)", "3次元（標高あり）")),
+            ParameterChoice("2d", Text("In plan (2D)", "2次元（平面）")),
+        ),
+        name=Text("Heights of the DXF", "DXFの標高"),
+        explanation=Text(
+            "CAD programs draw line types on lines in plan alone.",
+            "線種は2次元の線にだけ表示するCADがあります。",
+        ),
+    )
+    drawing_layers: str = _layers()
     encoding: str = _encoding()
 
 
@@ -246,6 +275,7 @@ class SheetOptions:
             "国土基本図の図郭にはA0が必要です。路線には中心線を使います。",
         ),
     )
+    drawing_layers: str = _layers()
     sheet_paper: str = _paper()
     sheet_overlap: float = length(
         10.0,

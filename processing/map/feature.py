@@ -70,6 +70,8 @@ class Provenance:
         0 to 1; 1 for the hand.
     run : str
         The run's id, or empty.
+    unseen : bool
+        It was accepted by its confidence alone, together with others: nobody has looked at it.
     """
 
     tool: str = "hand"
@@ -77,6 +79,7 @@ class Provenance:
     parameters: Mapping[str, AttributeValue] = field(default_factory=dict)
     confidence: float = 1.0
     run: str = ""
+    unseen: bool = False
 
 
 @dataclass(frozen=True)
@@ -104,6 +107,11 @@ class Feature:
     def with_vertices(self, vertices: tuple[Vertex, ...]) -> Feature:
         """The same feature in another place."""
         return dataclasses.replace(self, vertices=vertices)
+
+    def with_status(self, status: Status, *, unseen: bool = False) -> Feature:
+        """The same feature, decided on by a person who looks at it or by its confidence alone."""
+        provenance = dataclasses.replace(self.provenance, unseen=unseen)
+        return dataclasses.replace(self, status=status, provenance=provenance)
 
 
 def with_points_at(feature: Feature, positions: Mapping[str, NDArray[np.int64]]) -> Feature:

@@ -24,7 +24,8 @@ from processing.map.renewal.map_comparison import (
     compare_maps,
 )
 from processing.map.routes.numbering import number_along_routes
-from processing.map.routes.route import routes_of
+from processing.map.routes.route import PITCH_M, routes_of
+from processing.map.routes.width_lines import width_lines
 from processing.operations.inputs import opened_project
 from processing.project.comparison.found_differences import (
     FoundDifferences,
@@ -36,6 +37,9 @@ from processing.project.project import Project
 from processing.project.store.runs import Run
 from processing.recording.drive import Drive
 from processing.scoring.features.mapped_features import IN_DEGREES, MappedFile
+
+LEAST_PITCH_M, MOST_PITCH_M = 1.0, 1000.0
+"""From station to station."""
 
 NO_CENTRE_LINE = Text(
     "Draw the road's centre line first and give it its route.",
@@ -49,6 +53,16 @@ NUMBER_LABEL = Text("Number {count} features along the route", "{count}個の地
 NUMBERED = Text(
     "Number, route, station and side filled in for {count} features.",
     "{count}個の地物に整理番号・路線名・測点・左右を記入しました。",
+)
+WIDTHS_LABEL = Text("Draw {count} width lines", "幅員線を{count}本作図")
+WIDTHS_DRAWN = Text(
+    "{count} width lines drawn; those drawn so before were replaced.",
+    "幅員線を{count}本作図しました（以前に自動作図したものは置き換えました）。",
+)
+NO_WIDTHS = Text(
+    "No width can be measured: draw curbs, footways or road edges on both sides of the centre"
+    " line.",
+    "幅員を測れる線がありません。中心線の両側に縁石・歩道・道路縁を描いてください。",
 )
 _TAKE_LABEL = Text("Take in {count} features of {file}", "{file}から{count}個の地物を取り込み")
 _TAKEN = Text("{count} features taken in.", "{count}個の地物を取り込みました。")
@@ -111,19 +125,94 @@ def number_features(operation: NumberOperation, monitor: Monitor) -> NumberedFea
     with opened_project(operation.project, writing=True) as project:
         features, catalogue = tuple(project.features.all()), project.catalogue
         monitor.check()
-        if not routes_of(features, catalogue):
-            raise MissingInput(
-                Text("The map has no centre line.", "道路中心線がありません。"),
-                Text.same(str(operation.project)),
-                Text("{remedy} {unchanged}", "{remedy}{unchanged}").filled(
-                    remedy=NO_CENTRE_LINE, unchanged=UNCHANGED
-                ),
-            )
+        _require_route(features, catalogue, operation.project)
         change = number_along_routes(features, catalogue)
         count = len(change.replaced)
         if count:
             project.features.apply(NUMBER_LABEL.filled(count=f"{count:,}"), change)
         return NumberedFeatures(count)
+
+
+def _require_route(features: tuple[Feature, ...], catalogue: Catalogue, project: Path) -> None:
+    if not routes_of(features, catalogue):
+        raise MissingInput(
+            Text("The map has no centre line.", "道路中心線がありません。"),
+            Text.same(str(project)),
+            Text("{remedy} {unchanged}", "{remedy}{unchanged}").filled(
+                remedy=NO_CENTRE_LINE, unchanged=UNCHANGED
+            ),
+        )
+
+
+@dataclass(frozen=True)
+class WidthOperation:
+    """A project whose roads' widths are to be drawn across them.
+
+    Attributes
+    ----------
+    project : Path
+    pitch_m : float
+        From station to station; widths that change in between have lines too.
+    """
+
+    project: Path
+    pitch_m: float = PITCH_M
+
+    def check(self) -> None:
+        """Refuse a pitch that is none before anything is opened.
+
+        Raises
+        ------
+        OutOfRange
+        """
+        if not LEAST_PITCH_M <= self.pitch_m <= MOST_PITCH_M:
+            raise OutOfRange(
+                Text("Stations aren't so far apart.", "測点の間隔が範囲外です。"),
+                Text.same(f"{self.pitch_m:g} m"),
+                Text(
+                    f"Give {LEAST_PITCH_M:g} to {MOST_PITCH_M:g} m; the project is unchanged.",
+                    f"{LEAST_PITCH_M:g}～{MOST_PITCH_M:g} mで指定してください。"
+                    "プロジェクトは変更されていません。",
+                ),
+            )
+
+
+@dataclass(frozen=True)
+class DrawnWidths:
+    """How many width lines were drawn."""
+
+    count: int
+
+    @property
+    def words(self) -> tuple[Text, ...]:
+        """One line."""
+        if not self.count:
+            return (NO_WIDTHS,)
+        return (WIDTHS_DRAWN.filled(count=f"{self.count:,}"),)
+
+
+def draw_widths(operation: WidthOperation, monitor: Monitor) -> DrawnWidths:
+    """Draw the widths of roads across them, as one step to be undone.
+
+    Raises
+    ------
+    OutOfRange
+        The pitch is none.
+    MissingInput
+        The map has no accepted centre line; or there is no such project.
+    BadFile, InUse, NoSpace, Cancelled
+        The project is as it was.
+    """
+    operation.check()
+    with opened_project(operation.project, writing=True) as project:
+        features, catalogue = tuple(project.features.all()), project.catalogue
+        monitor.check()
+        _require_route(features, catalogue, operation.project)
+        change = width_lines(features, catalogue, operation.pitch_m)
+        count = len(change.added)
+        if count:
+            project.features.apply(WIDTHS_LABEL.filled(count=f"{count:,}"), change)
+        return DrawnWidths(count)
 
 
 @dataclass(frozen=True)

@@ -14,7 +14,7 @@ from typing import Any
 from processing.core.errors import MissingInput, OutOfRange
 from processing.core.monitor import Monitor, PartMonitor
 from processing.core.parameters import ParameterValue, fill_parameters, parameters_of
-from processing.core.text import Text
+from processing.core.text import Language, Text
 from processing.formats.format import Content
 from processing.formats.registry import FORMATS
 from processing.operations.inputs import (
@@ -53,6 +53,8 @@ class RunOperation:
         The file of the result; None to store it in the project.
     accept_above : float or None
         Candidates stored with at least this confidence, 0 to 1, are accepted at once.
+    language : "en", "ja" or None
+        Of the headers of a table; None for the ids of its columns, which scripts read.
     """
 
     tool: str
@@ -60,6 +62,7 @@ class RunOperation:
     parameters: Mapping[str, ParameterValue] = field(default_factory=dict)
     output: Path | None = None
     accept_above: float | None = None
+    language: Language | None = None
 
     @property
     def parameter_class(self) -> type[Any]:
@@ -204,7 +207,9 @@ def run_to_file(
     """
     tool, parameters = _what(operation, opened)
     _check_needs(tool, opened.chosen)
-    return RunOutcome(paths=write_run(tool, parameters, opened, output, monitor))
+    return RunOutcome(
+        paths=write_run(tool, parameters, opened, output, monitor, language=operation.language)
+    )
 
 
 def run_in_project(operation: RunOperation, project: Project, monitor: Monitor) -> RunOutcome:

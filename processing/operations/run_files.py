@@ -11,7 +11,7 @@ from pathlib import Path
 from processing.core.monitor import Monitor, PartMonitor
 from processing.core.safe_write import refuse_inputs, write_safely
 from processing.core.scratch_folder import scratch_folder
-from processing.core.text import Text
+from processing.core.text import Language, Text
 from processing.formats.format import Content
 from processing.formats.registry import FORMATS
 from processing.formats.vectors.feature_files import write_feature_file
@@ -35,7 +35,13 @@ _NOTE = Text("{tool}: {note}", "{tool}: {note}")
 
 
 def write_run(
-    tool: Tool, parameters: object, opened: OpenedInputs, output: Path, monitor: Monitor
+    tool: Tool,
+    parameters: object,
+    opened: OpenedInputs,
+    output: Path,
+    monitor: Monitor,
+    *,
+    language: Language | None = None,
 ) -> tuple[Path, ...]:
     """Run a tool on all drives that are chosen and write what it gives.
 
@@ -45,6 +51,8 @@ def write_run(
         An instance of the tool's own parameter class.
     output : Path
         A file of features for a tool that finds, else LAS or LAZ.
+    language : "en", "ja" or None
+        Of the headers of a table of features.
 
     Returns
     -------
@@ -64,7 +72,7 @@ def write_run(
     if wanted is not None:
         refuse_inputs(wanted, opened.delivered)
     with scratch_folder(output.parent) as scratch:
-        job = _Job(tool, parameters, opened, output, scratch)
+        job = _Job(tool, parameters, opened, output, scratch, language)
         return (_found if tool.gives_candidates else _points)(job, monitor)
 
 
@@ -77,6 +85,7 @@ class _Job:
     opened: OpenedInputs
     output: Path
     scratch: Path
+    language: Language | None
 
     def shares(self, monitor: Monitor) -> Iterator[tuple[RunShare, Path]]:
         """The runs, each with a folder of its own."""
@@ -107,6 +116,7 @@ def _found(job: _Job, monitor: Monitor) -> tuple[Path, ...]:
         job.opened.crs,
         monitor=PartMonitor(monitor, _RUNNING, 1.0),
         never=job.opened.delivered,
+        language=job.language,
     )
     return (job.output,)
 

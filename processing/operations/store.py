@@ -17,7 +17,7 @@ from processing.operations.runs.repeated_runs import with_earlier_decisions
 from processing.project.project import Project
 from processing.project.results.found_classes import classes_now
 from processing.project.results.found_features import FoundFeatures
-from processing.project.review.decisions import change_status, label_of_many
+from processing.project.review.decisions import accept_unseen, label_of_many
 from processing.project.store.runs import Run
 from processing.recording.columns.columns import column_path
 from processing.recording.drive import Drive
@@ -106,7 +106,7 @@ def accept_above(project: Project, stored: Iterable[StoredRun], least: float) ->
     ]
     if chosen:
         label = label_of_many(len(chosen), least)
-        project.features.apply(label, change_status(chosen, Status.ACCEPTED))
+        project.features.apply(label, accept_unseen(chosen))
     return len(chosen)
 
 

@@ -37,7 +37,7 @@ _ATTRIBUTE_LABELS = (
 
 def status_change(features: Iterable[Feature], status: Status) -> tuple[Text, Change]:
     """Features judged alike; those that are so already are left out."""
-    change = _change_of(features, lambda one: replace(one, status=status))
+    change = _change_of(features, lambda one: one.with_status(status))
     return _label(_STATUS_LABELS[status], change), change
 
 

@@ -21,6 +21,7 @@ STATUS_NAMES: Mapping[Status, Text] = {
 HAND = "hand"
 """What ``Provenance.tool`` says of features drawn by a person."""
 
+_UNSEEN = Text("Accepted, not looked at", "採用（目視なし）")
 _BY_HAND = Text("By hand", "手作業")
 _YES_NO = {True: Text("yes", "はい"), False: Text("no", "いいえ")}
 
@@ -28,6 +29,12 @@ _YES_NO = {True: Text("yes", "はい"), False: Text("no", "いいえ")}
 def name_of_kind(catalogue: Catalogue, kind: str, language: Language) -> str:
     """A kind's name; its id where the catalogue doesn't know it."""
     return catalogue[kind].name.in_language(language) if kind in catalogue else kind
+
+
+def name_of_status(feature: Feature, language: Language) -> str:
+    """What became of a feature; whether somebody looked at it."""
+    name = _UNSEEN if feature.provenance.unseen else STATUS_NAMES[feature.status]
+    return name.in_language(language)
 
 
 def name_of_origin(feature: Feature, language: Language) -> str:

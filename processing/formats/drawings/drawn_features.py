@@ -23,7 +23,8 @@ _ARC_M = 1e-3  # as of outlines
 _CLOSED_M = 1e-3
 _DRAWN = "POINT INSERT LINE LWPOLYLINE POLYLINE"
 _APP_CODE = 1001
-_OWN = ("id", "kind", "status", "confidence")
+_OWN = ("id", "kind", "status", "confidence", "tool")
+_GROUP = (1002, "{")
 
 
 def read_dxf_features(path: Path) -> MappedFile:
@@ -93,8 +94,9 @@ def _said(entity: Any) -> dict[str, object]:
     if not entity.has_xdata(APP_ID):
         return {}
     tags = [(tag.code, tag.value) for tag in entity.get_xdata(APP_ID) if tag.code != _APP_CODE]
-    said: dict[str, object] = dict(zip(_OWN, (value for _, value in tags), strict=False))
-    said.update(_attributes(tags[len(_OWN) :]))
+    first = tags.index(_GROUP) if _GROUP in tags else len(tags)
+    said: dict[str, object] = dict(zip(_OWN, (value for _, value in tags[:first]), strict=False))
+    said.update(_attributes(tags[first:]))
     return said
 
 
@@ -102,7 +104,7 @@ def _attributes(tags: list[tuple[int, Any]]) -> Iterator[tuple[str, object]]:
     """Lists of a name and a value, texts in pieces."""
     group: list[tuple[int, Any]] = []
     for code, value in tags:
-        if (code, value) == (1002, "{"):
+        if (code, value) == _GROUP:
             group = []
         elif (code, value) == (1002, "}") and len(group) > 1:
             name, values = str(group[0][1]), group[1:]

@@ -30,6 +30,7 @@ from processing.formats.drawings.dxf_document import (
 )
 from processing.formats.drawings.dxf_labels import LABEL_HEIGHT_M, label_of
 from processing.formats.drawings.dxf_text import dxf_strings, dxf_text
+from processing.formats.drawings.sxf_looks import cad_catalogue, label_layer
 from processing.formats.drawings.symbol_shapes import symbol_rotation_deg
 from processing.formats.map_delivery import DxfOptions, MapDelivery
 from processing.map.catalogue import Catalogue, FeatureKind, Geometry
@@ -37,7 +38,6 @@ from processing.map.feature import AttributeValue, Feature, Position, Status
 from processing.map.solids import solid_of, thickness_of
 
 CANDIDATE_SUFFIX = "_候補"
-LABEL_SUFFIX = "_文字"
 
 _INT32 = 1 << 31
 _MOST_XDATA_BYTES = 16_000
@@ -53,6 +53,7 @@ def write_dxf(
     encoding: str = "utf-8",
     crs: str = "",
     language: Language | None = None,
+    is_flat: bool = False,
     monitor: Monitor | None = None,
     never: Iterable[Path] = (),
 ) -> None:
@@ -72,6 +73,8 @@ def write_dxf(
         What cp932 lacks is written as ``\U+XXXX``, which CAD programs read.
     language : {"en", "ja"} or None
         Of the choices in the attributes of blocks; None for the words that are stored.
+    is_flat : bool
+        In plan, at height 0, without bodies.
     crs : str
         ``EPSG:n`` or empty; written, or that it is not known, to the drawing's properties (R2018)
         and to the extended data of layer 0.
@@ -89,7 +92,8 @@ def write_dxf(
     """
     check_one_of(encoding, ENCODINGS.values())
     monitor = monitor or SilentMonitor()
-    drawing = MapDrawing(catalogue, version, crs, language)
+    size = DrawnSize(is_flat=is_flat)
+    drawing = MapDrawing(catalogue, version, crs, language, size=size)
     for number, feature in enumerate(features):
         if number % _CHECK_EVERY == 0:
             monitor.check()
@@ -105,14 +109,18 @@ def write_dxf_features(
 ) -> None:
     """Draw a map that is handed in, as :func:`write_dxf`."""
     options = delivery.options_of(DxfOptions)
+    catalogue = delivery.catalogue
+    if options.drawing_layers == "cad":
+        catalogue = cad_catalogue(catalogue)
     write_dxf(
         path,
         delivery.features,
-        delivery.catalogue,
+        catalogue,
         version=cast("DxfVersion", options.dxf_version),
         encoding=options.encoding,
         crs=delivery.crs,
         language=delivery.language,
+        is_flat=options.dxf_heights == "2d",
         monitor=monitor,
         never=never,
     )
@@ -137,10 +145,13 @@ class DrawnSize:
         catalogue.
     has_labels : bool
         Whether names and numbers are written beside features.
+    is_flat : bool
+        Whether it lies in plan, at height 0: lines then show their patterns in every program.
     """
 
     scale: int = 500
     has_labels: bool = True
+    is_flat: bool = False
 
     @property
     def factor(self) -> float:
@@ -200,7 +211,7 @@ class MapDrawing:
             )
         kind = self._catalogue[feature.kind]
         looks = self._looks(kind, feature)
-        positions = [vertex.xyz for vertex in feature.vertices]
+        positions = [self._place(vertex.xyz) for vertex in feature.vertices]
         data = self._extended_data(feature)
         for entity in self._entities(kind, feature, positions, looks):
             entity.set_xdata(APP_ID, data)
@@ -210,6 +221,21 @@ class MapDrawing:
             values = [position[axis] for position in positions]
             self._lowest[axis] = min(self._lowest[axis], *values)
             self._highest[axis] = max(self._highest[axis], *values)
+
+    def _place(self, position: Position) -> Position:
+        return (position[0], position[1], 0.0) if self._size.is_flat else position
+
+    # Any: an entity of ezdxf, which is not typed here.
+    def _line(
+        self, positions: list[Position], attributes: Mapping[str, Any], *, is_closed: bool = False
+    ) -> Any:
+        looks = dict(attributes)
+        if not self._size.is_flat:
+            return self._space.add_polyline3d(positions, close=is_closed, dxfattribs=looks)
+        plan = [(x, y) for x, y, _ in positions]
+        if self.document.has_light_polylines:
+            return self._space.add_lwpolyline(plan, close=is_closed, dxfattribs=looks)
+        return self._space.add_polyline2d(plan, close=is_closed, dxfattribs=looks)
 
     def _entities(
         self, kind: FeatureKind, feature: Feature, positions: list[Position], looks: _Looks
@@ -221,9 +247,9 @@ class MapDrawing:
                     return [self._symbol(kind, feature, attributes)]
                 return [self._space.add_point(positions[0], dxfattribs=attributes)]
             case Geometry.LINE:
-                return [self._space.add_polyline3d(positions, dxfattribs=attributes)]
+                return [self._line(positions, attributes)]
             case Geometry.AREA:
-                outline = self._space.add_polyline3d(positions, close=True, dxfattribs=attributes)
+                outline = self._line(positions, attributes, is_closed=True)
                 return [outline, *self._body(kind, feature, positions, looks)]
 
     def _symbol(self, kind: FeatureKind, feature: Feature, attributes: Mapping[str, Any]) -> Any:
@@ -234,7 +260,7 @@ class MapDrawing:
         turned = {**attributes, "rotation": symbol_rotation_deg(feature)}
         if self._size.factor != 1.0:
             turned |= dict.fromkeys(("xscale", "yscale", "zscale"), self._size.factor)
-        place = feature.vertices[0].xyz
+        place = self._place(feature.vertices[0].xyz)
         insert = self._space.add_blockref(block.name, place, dxfattribs=turned)
         add_attributes(insert, block_values(kind, feature, self._language), self.document.encoding)
         return insert
@@ -242,7 +268,7 @@ class MapDrawing:
     def _body(
         self, kind: FeatureKind, feature: Feature, positions: list[Position], looks: _Looks
     ) -> list[Any]:
-        thickness_m = thickness_of(kind, feature)
+        thickness_m = 0.0 if self._size.is_flat else thickness_of(kind, feature)
         solid = solid_of(np.array(positions), thickness_m) if thickness_m else None
         if solid is None:
             return []
@@ -281,7 +307,7 @@ class MapDrawing:
         label = label_of(kind, feature)
         if label is None:
             return
-        layer = looks.layer + LABEL_SUFFIX
+        layer = label_layer(looks.layer)
         self._need_layer(layer, kind)
         attributes = {
             "layer": layer,
@@ -289,7 +315,7 @@ class MapDrawing:
             "rotation": label.rotation_deg,
             **{key: value for key, value in looks.own.items() if key != "linetype"},
         }
-        self.document.write_text(label.words, label.position, label.align, attributes)
+        self.document.write_text(label.words, self._place(label.position), label.align, attributes)
 
     def _extended_data(self, feature: Feature) -> list[tuple[int, Any]]:
         encoding = self.document.encoding
@@ -298,6 +324,7 @@ class MapDrawing:
             (1000, feature.kind),
             (1000, feature.status.value),
             (1040, float(feature.provenance.confidence)),
+            (1000, dxf_text(feature.provenance.tool, encoding)),
         ]
         for name, value in feature.attributes.items():
             if value is not None:

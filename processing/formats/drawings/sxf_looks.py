@@ -8,8 +8,9 @@ first; a city's own list replaces it.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
-from processing.map.catalogue import FeatureKind
+from processing.map.catalogue import Catalogue, FeatureKind
 
 FRAME_LAYER, TITLE_LAYER, NOTE_LAYER = "S-TTL-FRAM", "S-TTL-TXT", "S-BGD-TXT"
 
@@ -21,6 +22,7 @@ _LAYERS: Mapping[str, str] = {
     "6522": "S-BMK-ROW",  # boundary of the road's land
     "": "S-BGD-EXST",  # what exists
 }
+LABEL_SUFFIX = "_文字"
 _DIMENSION_LAYER = "S-STR-DIM"
 _WIDTH_KIND = "width_line"
 
@@ -73,7 +75,13 @@ _TYPES: Mapping[str, str] = {
 WIDTHS_MM = (0.13, 0.18, 0.25, 0.35, 0.5, 0.7, 1.0, 1.4, 2.0)
 """The predefined widths in the order of their codes, from 1."""
 
-_PENS_MM: Mapping[str, float] = {"3002": 0.30, "6141": 0.30, "7101": 0.20, "7102": 0.10}
+_PENS_MM: Mapping[str, float] = {
+    "1106": 0.20,
+    "3002": 0.30,
+    "6141": 0.30,
+    "7101": 0.20,
+    "7102": 0.10,
+}
 _PEN_MM = 0.15
 """Pens of level 500 by class code, and the usual one (公共測量標準図式, 線号)."""
 
@@ -84,6 +92,17 @@ def layer_of(kind: FeatureKind) -> str:
         return _DIMENSION_LAYER
     begins = (code for code in _LAYERS if kind.dm_code.startswith(code))
     return _LAYERS[max(begins, key=len)]
+
+
+def cad_catalogue(catalogue: Catalogue) -> Catalogue:
+    """The same kinds on the layers of CAD製図基準."""
+    return Catalogue(tuple(replace(kind, layer=layer_of(kind)) for kind in catalogue))
+
+
+def label_layer(layer: str) -> str:
+    """The layer of the words beside what lies on a layer."""
+    is_cad = layer == _DIMENSION_LAYER or layer in _LAYERS.values()
+    return NOTE_LAYER if is_cad else f"{layer}{LABEL_SUFFIX}"
 
 
 def colour_of(kind: FeatureKind) -> int:

@@ -31,11 +31,13 @@ from processing.formats.ledgers.ledger_columns import (
     status_columns,
 )
 from processing.formats.ledgers.road_columns import road_columns
+from processing.formats.ledgers.route_tables import RouteTable, route_tables
 from processing.formats.map_delivery import MapDelivery, Position, TableOptions
 from processing.formats.shift_jis import TWINS
 from processing.map.catalogue import Catalogue, FeatureKind
 from processing.map.feature import Feature
 from processing.map.routes.road_sections import RoadSection, road_sections
+from processing.map.routes.route_summary import route_summaries
 
 _CHECK_EVERY = 256
 
@@ -182,9 +184,20 @@ def write_csv_map(delivery: MapDelivery, position: Position, monitor: Monitor) -
         members = [feature for feature in features if feature.kind == kind.id]
         if members:
             write_ledger(position(f"ledger_{kind.id}.csv"), members, kind, style, monitor=monitor)
+    for table in route_tables(
+        route_summaries(features, delivery.catalogue), delivery.catalogue, style
+    ):
+        _write_route_table(position(f"ledger_{table.id}.csv"), table, style)
     sections = road_sections(features, delivery.catalogue)
     if sections:
         write_road_ledger(position("ledger_road_sections.csv"), sections, delivery.catalogue, style)
+
+
+def _write_route_table(path: Path, table: RouteTable, style: TableStyle) -> None:
+    with _open_table(path, style, ()) as file:
+        file.write(table.headers, "")
+        for row in table.rows:
+            file.write([words for words, _ in row], "")
 
 
 def style_of(delivery: MapDelivery) -> TableStyle:

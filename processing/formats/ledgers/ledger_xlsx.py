@@ -19,10 +19,12 @@ from processing.formats.ledgers.ledger_columns import (
 )
 from processing.formats.ledgers.ledger_csv import ledger_columns, style_of
 from processing.formats.ledgers.road_columns import ROAD_LEDGER, road_columns
+from processing.formats.ledgers.route_tables import route_tables
 from processing.formats.map_delivery import MapDelivery, Position
 from processing.map.catalogue import Catalogue
 from processing.map.feature import Feature
 from processing.map.routes.road_sections import RoadSection, road_sections
+from processing.map.routes.route_summary import route_summaries
 
 if TYPE_CHECKING:
     from openpyxl import Workbook
@@ -70,7 +72,8 @@ class _Sheet:
 def write_xlsx_map(delivery: MapDelivery, position: Position, monitor: Monitor) -> None:
     """Write the ledgers of a map that is handed in, with the columns that CSV has.
 
-    The road's ledger sheet comes first where the map has a centre line, then a sheet for each kind
+    Where the map has a centre line, the road's ledger sheet comes first, then routes and their
+    widths, then a sheet for each kind
     in the catalogue's order. Numbers are numbers with the decimals of CSV; the header row stays in
     sight and is printed on every page.
 
@@ -105,6 +108,12 @@ def _sheets(delivery: MapDelivery, style: TableStyle, monitor: Monitor) -> list[
     monitor.check()
     if sections:
         sheets.append(_road_sheet(sections, delivery.catalogue, style))
+    summaries = route_summaries(delivery.features, delivery.catalogue)
+    for wide in route_tables(summaries, delivery.catalogue, style):
+        table = wide.for_paper()
+        title = table.title.in_language(style.language or "en")
+        sheets.append(_Sheet(title, table.headers, table.rows))
+    monitor.check()
     members: dict[str, list[Feature]] = {}
     for feature in delivery.features:
         members.setdefault(feature.kind, []).append(feature)

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from processing.core.safe_write import write_safely
 from processing.core.text import Language, Text
+from processing.formats.reports.pdf_layers import VERSION, PdfLayers
 from resources import path_of
 
 if TYPE_CHECKING:
@@ -71,7 +72,10 @@ class Paper:
         self.language: Language = language
         self.page = 1
         page_size = (size_mm[0] * POINTS_OF_MM, size_mm[1] * POINTS_OF_MM)
-        self._canvas: Canvas = Canvas(str(file), pagesize=page_size, pageCompression=1)
+        self._canvas: Canvas = Canvas(
+            str(file), pagesize=page_size, pageCompression=1, pdfVersion=VERSION
+        )
+        self._layers = PdfLayers(self._canvas)
         self._canvas.setTitle(title)
         self._canvas.setCreator("Zuka")
 
@@ -81,6 +85,7 @@ class Paper:
 
     def next_page(self) -> None:
         """End the page and begin another."""
+        self._layers.end()
         self._canvas.showPage()
         self.page += 1
 
@@ -92,7 +97,14 @@ class Paper:
 
     def save(self) -> None:
         """End the last page and write the file."""
+        self._layers.end()
+        self._canvas.showPage()
+        self._layers.finish()
         self._canvas.save()
+
+    def layer(self, name: str) -> None:
+        """Let what is drawn from now on, on this page, belong to a layer; without pictures."""
+        self._layers.begin(drawable(name))
 
     def text(
         self,

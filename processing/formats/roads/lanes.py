@@ -12,7 +12,8 @@ import numpy as np
 from processing.core.text import Text
 from processing.map.catalogue import Catalogue, Geometry
 from processing.map.feature import Feature, Status
-from processing.map.routes.road_sections import RoadSection, RoadWidths
+from processing.map.routes.road_sections import RoadSection
+from processing.map.routes.road_widths import RoadWidths
 from processing.map.routes.route import Route
 from processing.section.profile import DrawnLine, crossings_of
 from processing.section.stations import Stations

@@ -13,7 +13,8 @@ from pathlib import Path
 from processing.core.monitor import Monitor
 from processing.formats.drawings.dxf_document import DxfDocument, DxfVersion
 from processing.formats.sections.section_sheets import SectionSheet
-from processing.formats.sheets.dxf_shapes import ON_PAPER, VIEWPORT_LAYER, Placing, draw_shape
+from processing.formats.sheets.dxf_shapes import ON_PAPER, Placing, draw_shape
+from processing.formats.sheets.paper_layers import VIEWPORT
 from processing.formats.sheets.paper_shapes import PaperPlace, PaperShape
 from processing.formats.sheets.sheet_layout import SheetLayout
 
@@ -40,7 +41,7 @@ def write_section_layouts_dxf(
     """Write all sections once, with a layout for each sheet (R2010)."""
     document = _document("R2010", crs, 1.0)
     document.doc.header["$PSLTSCALE"] = 0  # patterns are metres
-    document.doc.layers.add(VIEWPORT_LAYER, plot=False)
+    document.doc.layers.add(VIEWPORT, plot=False)
     width, height = layout.window_size
     left = top = 0.0
     for number, one in enumerate(sheets, 1):
@@ -56,7 +57,7 @@ def write_section_layouts_dxf(
             view_center_point=(left + width * unit / 2, height * unit / 2),
             view_height=height * unit,
         )
-        view.dxf.layer = VIEWPORT_LAYER
+        view.dxf.layer = VIEWPORT
         _draw_all(document, space, one.around, ON_PAPER.with_pattern(1000 / _PATTERN_SCALE))
         left += width * unit * _ROOM
         top = max(top, height * unit)

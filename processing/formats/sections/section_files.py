@@ -24,6 +24,7 @@ from processing.formats.sections.section_dxf import (
 from processing.formats.sections.section_sheets import SectionSheet, cross_sheets, profile_sheets
 from processing.formats.sections.section_tables import section_table
 from processing.formats.sheets.map_looks import map_pen
+from processing.formats.sheets.paper_layers import on_cad_layers
 from processing.formats.sheets.paper_shapes import (
     PaperCircle,
     PaperLine,
@@ -64,7 +65,8 @@ def write_sections_map(delivery: MapDelivery, position: Position, monitor: Monit
         part = SheetPart(f"{title}　{sheet.part}", scale, number, len(sheets))
         block = title_block(delivery, options, part)
         column = plain_column(_legend(sheet, language), block, sheet.scale.along, language, layout)
-        drawn.append(DrawnSections(sheet, (*border_shapes(layout), *column)))
+        around = on_cad_layers((*border_shapes(layout), *column))
+        drawn.append(DrawnSections(sheet, around))
     pages = [(*one.sheet.shapes, *one.around) for one in drawn]
     title = options.sheet_title or delivery.name
     write_sheets_pdf(position("sections.pdf"), pages, layout.paper, language, title)

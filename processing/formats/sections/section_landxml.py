@@ -21,7 +21,7 @@ from processing.formats.surfaces.landxml_writing import (
     write_landxml,
 )
 from processing.map.catalogue import Geometry
-from processing.map.routes.road_sections import CARRIAGEWAY_CODES, CURB_KINDS, ROAD_EDGE_CODES
+from processing.map.routes.road_widths import CARRIAGEWAY_CODES, CURB_KINDS, ROAD_EDGE_CODES
 from processing.map.routes.route import station_words
 from processing.methods.earthwork.geometry.triangle_surface import TriangleSurface
 from processing.methods.earthwork.geometry.triangulation import triangulate_ground

@@ -6,11 +6,11 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from processing.formats.drawings.dxf import LABEL_SUFFIX
 from processing.formats.drawings.dxf_document import DxfDocument
 from processing.formats.drawings.dxf_text import label_text
+from processing.formats.drawings.sxf_looks import LABEL_SUFFIX
+from processing.formats.sheets.paper_layers import is_of_paper
 from processing.formats.sheets.paper_shapes import (
-    FRAME_LAYER,
     PaperCircle,
     PaperLine,
     PaperPlace,
@@ -18,9 +18,6 @@ from processing.formats.sheets.paper_shapes import (
     PaperWords,
     Pen,
 )
-
-VIEWPORT_LAYER = f"{FRAME_LAYER}-VPRT"
-"""Of the edges of windows to the model space; not printed."""
 
 _WEIGHTS = (0, 5, 9, 13, 15, 18, 20, 25, 30, 35, 40, 50, 53, 60, 70, 80, 90, 100)
 """Line widths that drawings know, hundredths of a millimetre (DXF reference, group 370)."""
@@ -120,6 +117,6 @@ def _attributes(document: DxfDocument, pen: Pen, placing: Placing) -> dict[str, 
         if not is_black:
             attributes["true_color"] = rgb2int(pen.colour)
         attributes["lineweight"] = weight_of(pen.width_mm)
-    elif not is_black and pen.layer.startswith(FRAME_LAYER):
+    elif not is_black and is_of_paper(pen.layer):
         attributes["color"] = 1 if pen.colour[0] > 180 and pen.colour[1] < 100 else 8
     return attributes

@@ -24,6 +24,10 @@ from processing.formats.sheets.paper_shapes import PaperPlace, words_width
 _GAP_MM = 0.6
 _RINGS_MM = (0.0, 2.5)
 _SHARES = (0.5, 0.35, 0.65, 0.2, 0.8, 0.1, 0.9)
+_UPRIGHT = math.pi / 2 + math.radians(3.0)
+"""Words beside a line that goes up all but straight read upwards, as the sheet is turned by hand:
+lines across one road do not read one way and the other."""
+
 _LINE_ROOM = 1.25
 """Height of a box, of that of its letters."""
 
@@ -144,7 +148,7 @@ def _along(line: shapely.LineString, height: float) -> Iterator[LabelPlace]:
         at = share * line.length
         start, end = line.interpolate(max(0.0, at - step)), line.interpolate(at + step)
         direction = math.atan2(end.y - start.y, end.x - start.x)
-        if not -math.pi / 2 < direction <= math.pi / 2:
+        if not _UPRIGHT - math.pi < direction <= _UPRIGHT:
             direction += math.pi
         off = height / 2 + _GAP_MM
         for side in (1, -1):

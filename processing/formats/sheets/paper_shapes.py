@@ -16,9 +16,6 @@ Rgb = tuple[int, int, int]
 BLACK: Rgb = (0, 0, 0)
 GREY: Rgb = (200, 200, 200)
 
-FRAME_LAYER, RULE_LAYER, WORDS_LAYER = "S-TTL", "S-TTL-LINE", "S-TTL-TXT"
-"""Layers of what surrounds the map (CAD製図基準): frame, ruled lines, words."""
-
 TYPE_OF_HEIGHT = 1.1
 """Size of the type for a height of letters: kanji fill some nine tenths of their box."""
 
@@ -105,7 +102,13 @@ def box_line(pen: Pen, low: PaperPlace, size: PaperPlace, *, is_filled: bool = F
 
 
 def words_in_box(
-    words: str, low: PaperPlace, size: PaperPlace, height: float, *, align: str = "LEFT"
+    words: str,
+    low: PaperPlace,
+    size: PaperPlace,
+    height: float,
+    *,
+    layer: str,
+    align: str = "LEFT",
 ) -> Iterable[PaperWords]:
     """Words in a box, in lines and smaller where they are long; cut with … as a last resort."""
     width, room = size
@@ -123,6 +126,6 @@ def words_in_box(
     step = leading_mm(type_points(shrunk))
     x = low[0] + {"LEFT": 0.0, "CENTER": width / 2, "RIGHT": width}[align]
     top = low[1] + room / 2 + (len(lines) - 1) / 2 * step
-    pen = Pen(WORDS_LAYER)
+    pen = Pen(layer)
     for number, line in enumerate(lines):
         yield PaperWords(pen, line, (x, top - number * step), shrunk, align)

@@ -11,10 +11,23 @@ import numpy as np
 from processing.core.text import Language, Text
 from processing.formats.sheets.drawing_sheet import DrawingSheet
 from processing.formats.sheets.map_looks import map_pen, symbol_on_paper
+from processing.formats.sheets.paper_layers import (
+    KEY_BOX,
+    KEY_LINES,
+    KEY_WORDS,
+    LEGEND_BOX,
+    LEGEND_WORDS,
+    NORTH,
+    NORTH_WORDS,
+    SCALE,
+    SCALE_BAR,
+    SCALE_WORDS,
+    TITLE_BOX,
+    TITLE_RULES,
+    TITLE_WORDS,
+)
 from processing.formats.sheets.paper_shapes import (
     GREY,
-    RULE_LAYER,
-    WORDS_LAYER,
     PaperLine,
     PaperPlace,
     PaperShape,
@@ -25,6 +38,7 @@ from processing.formats.sheets.paper_shapes import (
     words_width,
 )
 from processing.formats.sheets.sheet_layout import SheetLayout
+from processing.formats.sheets.title_block import VALUE_LAYERS
 from processing.map.catalogue import FeatureKind, Geometry
 
 _PAD_MM = 5.0
@@ -36,8 +50,8 @@ _LEAST_ROW_MM, _LEAST_COLUMN_MM = 4.0, 45.0
 _SAMPLE_MM = 12.0
 _LABEL_SHARE = 0.3
 _BARS_M = (500, 200, 100, 50, 20, 10, 5, 2, 1)
-_THICK, _THIN = Pen(RULE_LAYER, width_mm=0.35), Pen(RULE_LAYER, width_mm=0.13)
-_WORDS = Pen(WORDS_LAYER)
+_THICK_MM, _THIN_MM = 0.35, 0.13
+_KEY_PEN, _OWN_PEN = Pen(KEY_LINES, width_mm=_THIN_MM), Pen(KEY_LINES, width_mm=_THICK_MM)
 
 
 @dataclass(frozen=True)
@@ -123,9 +137,10 @@ def _north(sheet: DrawingSheet, middle: PaperPlace) -> Iterator[PaperShape]:
         )
 
     tip, left, right, notch = at(0, 8), at(-3, -8), at(3, -8), at(0, -5)
-    yield PaperLine(_THIN, (tip, left, notch, tip))
-    yield PaperLine(_THIN, (tip, right, notch, tip), is_filled=True)
-    yield PaperWords(_WORDS, "N", at(0, 11), 4.0, "CENTER", -sheet.turned_deg)
+    pen = Pen(NORTH, width_mm=_THIN_MM)
+    yield PaperLine(pen, (tip, left, notch, tip))
+    yield PaperLine(pen, (tip, right, notch, tip), is_filled=True)
+    yield PaperWords(Pen(NORTH_WORDS), "N", at(0, 11), 4.0, "CENTER", -sheet.turned_deg)
 
 
 def scale_bar(scale: int, low: PaperPlace, width: float) -> Iterator[PaperShape]:
@@ -134,26 +149,27 @@ def scale_bar(scale: int, low: PaperPlace, width: float) -> Iterator[PaperShape]
     metres = next(one for one in _BARS_M if one * 1000 / scale <= most)
     part = metres / 5 * 1000 / scale
     x, y = low[0] + (width - 5 * part) / 2, low[1] + _BAR_MM / 2
+    pen = Pen(SCALE_BAR, width_mm=_THIN_MM)
     for number in range(5):
         place = (x + number * part, y)
-        yield box_line(_THIN, place, (part, 2.0))
+        yield box_line(pen, place, (part, 2.0))
         if number % 2 == 0:
-            yield box_line(_THIN, place, (part, 2.0), is_filled=True)
+            yield box_line(pen, place, (part, 2.0), is_filled=True)
     for number in range(6):
         words = f"{metres / 5 * number:g}" + (" m" if number == 5 else "")
         place = (x + number * part, y + 4.0)
-        yield PaperWords(_WORDS, words, place, 2.0, "CENTER")
+        yield PaperWords(Pen(SCALE_WORDS), words, place, 2.0, "CENTER")
     place = (low[0] + width / 2, y - 4.0)
-    yield PaperWords(_WORDS, f"S = 1:{scale}", place, 3.0, "CENTER")
+    yield PaperWords(Pen(SCALE), f"S = 1:{scale}", place, 3.0, "CENTER")
 
 
 def _head(
-    words: Text, language: Language, low: PaperPlace, size: PaperPlace
+    words: str, layers: tuple[str, str], low: PaperPlace, size: PaperPlace
 ) -> Iterator[PaperShape]:
-    """A box of the column with its heading."""
-    yield box_line(_THICK, low, size)
+    """A box of the column with its heading, on a layer each."""
+    yield box_line(Pen(layers[0], width_mm=_THICK_MM), low, size)
     place = (low[0] + size[0] / 2, low[1] + size[1] - _HEAD_MM / 2)
-    yield PaperWords(_WORDS, words.in_language(language), place, 3.5, "CENTER")
+    yield PaperWords(Pen(layers[1]), words, place, 3.5, "CENTER")
 
 
 def _legend_row(kind: FeatureKind, language: Language) -> LegendRow:
@@ -169,7 +185,8 @@ def legend_box(
 
     What has no room even so is counted in the last row.
     """
-    yield from _head(Text("Legend", "凡例"), language, low, size)
+    title = Text("Legend", "凡例").in_language(language)
+    yield from _head(title, (LEGEND_BOX, LEGEND_WORDS), low, size)
     room = size[1] - _HEAD_MM - 2.0
     most = max(1, int(room / _LEAST_ROW_MM))
     columns = max(1, min(math.ceil(len(rows) / most), int(size[0] / _LEAST_COLUMN_MM)))
@@ -191,8 +208,9 @@ def legend_box(
         left = (x + _SAMPLE_MM + 2.0, y - step / 2)
         letters = min(2.5, step * 0.6)
         yield from words_in_box(
-            row.words, left, (width - _SAMPLE_MM - 2.0 - _PAD_MM, step), letters
-        )
+            row.words, left, (width - _SAMPLE_MM - 2.0 - _PAD_MM, step), letters,
+            layer=LEGEND_WORDS,
+        )  # fmt: skip
 
 
 def _sample(kind: FeatureKind, place: PaperPlace, step: float) -> Iterator[PaperShape]:
@@ -209,7 +227,8 @@ def _sample(kind: FeatureKind, place: PaperPlace, step: float) -> Iterator[Paper
 
 def _key_map(content: ColumnContent, low: PaperPlace, size: PaperPlace) -> Iterator[PaperShape]:
     """The sheet, grey, among its neighbours, with their numbers."""
-    yield from _head(Text("Key map", "索引図"), content.language, low, size)
+    title = Text("Key map", "索引図").in_language(content.language)
+    yield from _head(title, (KEY_BOX, KEY_WORDS), low, size)
     own = content.sheet
     reach = 2.0 * max(own.size_m)
     near = [
@@ -231,18 +250,18 @@ def _key_map(content: ColumnContent, low: PaperPlace, size: PaperPlace) -> Itera
 
     for (number, _), ring in zip(near, rings, strict=True):
         if number == content.number:
-            yield PaperLine(Pen(RULE_LAYER, GREY), placed(ring), is_filled=True)
+            yield PaperLine(Pen(KEY_LINES, GREY), placed(ring), is_filled=True)
     letters = max(1.5, min(3.5, 0.4 * min(own.size_m) * ratio))
     for (number, one), ring in zip(near, rings, strict=True):
-        yield PaperLine(_THICK if number == content.number else _THIN, placed(ring))
+        yield PaperLine(_OWN_PEN if number == content.number else _KEY_PEN, placed(ring))
         place = placed(np.array([one.centre]))[0]
         has_name = words_width(one.name, letters * 0.5) < own.size_m[0] * ratio * 0.95
         has_name &= min(own.size_m) * ratio > 3.2 * letters and one.name != str(number)
         up = letters * 0.6 if has_name else 0.0
-        yield PaperWords(_WORDS, str(number), (place[0], place[1] + up), letters, "CENTER")
+        yield PaperWords(Pen(KEY_WORDS), str(number), (place[0], place[1] + up), letters, "CENTER")
         if has_name:
             below = (place[0], place[1] - letters * 0.6)
-            yield PaperWords(_WORDS, one.name, below, letters * 0.5, "CENTER")
+            yield PaperWords(Pen(KEY_WORDS), one.name, below, letters * 0.5, "CENTER")
 
 
 def title_rows(
@@ -250,16 +269,20 @@ def title_rows(
 ) -> Iterator[PaperShape]:
     """The rows of a title block, ruled."""
     rows = list(block.items())
-    yield box_line(_THICK, low, (width, _ROW_MM * len(rows)))
+    rules = Pen(TITLE_RULES, width_mm=_THIN_MM)
+    yield box_line(Pen(TITLE_BOX, width_mm=_THICK_MM), low, (width, _ROW_MM * len(rows)))
     label = width * _LABEL_SHARE
     line = low[0] + label
-    yield PaperLine(_THIN, ((line, low[1]), (line, low[1] + _ROW_MM * len(rows))))
+    yield PaperLine(rules, ((line, low[1]), (line, low[1] + _ROW_MM * len(rows))))
     for number, (name, value) in enumerate(reversed(rows)):
         y = low[1] + number * _ROW_MM
         if number:
-            yield PaperLine(_THIN, ((low[0], y), (low[0] + width, y)))
+            yield PaperLine(rules, ((low[0], y), (low[0] + width, y)))
         words = name.in_language(language)
         yield from words_in_box(
-            words, (low[0] + 1.0, y), (label - 2.0, _ROW_MM), 2.5, align="CENTER"
-        )
-        yield from words_in_box(value, (line + 2.0, y), (width - label - 4.0, _ROW_MM), 3.0)
+            words, (low[0] + 1.0, y), (label - 2.0, _ROW_MM), 2.5,
+            layer=TITLE_WORDS, align="CENTER",
+        )  # fmt: skip
+        layer = VALUE_LAYERS.get(name, TITLE_WORDS)
+        room = (width - label - 4.0, _ROW_MM)
+        yield from words_in_box(value, (line + 2.0, y), room, 3.0, layer=layer)

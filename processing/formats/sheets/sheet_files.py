@@ -5,14 +5,18 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Sequence
+from dataclasses import replace
 
 from processing.core.errors import Unsuitable
 from processing.core.monitor import Monitor
 from processing.core.text import Language, Text
+from processing.formats.drawings.sxf_looks import cad_catalogue
 from processing.formats.map_delivery import MapDelivery, Position, SheetOptions
 from processing.formats.sheets.drawing_sheet import DrawingSheet
 from processing.formats.sheets.grid_division import MAP_WINDOW_MM, map_grid, plain_grid
 from processing.formats.sheets.map_looks import map_shapes
+from processing.formats.sheets.paper_layers import on_cad_layers
+from processing.formats.sheets.paper_shapes import PaperShape
 from processing.formats.sheets.route_strips import route_strips
 from processing.formats.sheets.sheet_clips import SheetClips
 from processing.formats.sheets.sheet_column import ColumnContent, column_shapes
@@ -21,6 +25,7 @@ from processing.formats.sheets.sheet_layout import SheetLayout, layout_of
 from processing.formats.sheets.sheet_words import UnplacedLabel, label_sheet
 from processing.formats.sheets.sheets_dxf import DrawnSheet, write_flat_dxf, write_layouts_dxf
 from processing.formats.sheets.sheets_pdf import write_sheets_pdf
+from processing.formats.sheets.slope_marks import slope_shapes
 from processing.formats.sheets.title_block import SheetPart, title_block
 from processing.map.feature import Feature
 from processing.map.routes.route import routes_of
@@ -37,6 +42,9 @@ def write_sheets_map(delivery: MapDelivery, position: Position, monitor: Monitor
         A map without features; a division that the map or its reference system doesn't allow.
     """
     options = delivery.options_of(SheetOptions)
+    has_cad_layers = options.drawing_layers == "cad"
+    if has_cad_layers:
+        delivery = replace(delivery, catalogue=cad_catalogue(delivery.catalogue))
     if not delivery.features:
         raise Unsuitable(
             Text("The map has no features to draw.", "図面にする地物がありません。"),
@@ -63,9 +71,11 @@ def write_sheets_map(delivery: MapDelivery, position: Position, monitor: Monitor
         part = SheetPart(sheet.name, f"1:{sheet.scale}", number, len(sheets))
         block = title_block(delivery, options, part)
         content = ColumnContent(sheets, number, kinds, block, language)
-        around = (
-            *frame_shapes(sheet, layout, language), *column_shapes(content, layout), *words.placed
+        around: tuple[PaperShape, ...] = (
+            *frame_shapes(sheet, layout, language), *column_shapes(content, layout), *words.placed,
+            *slope_shapes(features, delivery.catalogue, sheet, layout),
         )  # fmt: skip
+        around = on_cad_layers(around) if has_cad_layers else around
         drawn.append(DrawnSheet(sheet, around))
         pages.append((*map_shapes(features, delivery.catalogue, sheet, layout), *around))
         unplaced += words.unplaced

@@ -10,10 +10,16 @@ import shapely
 
 from processing.core.text import Language, Text
 from processing.formats.sheets.drawing_sheet import DrawingSheet, MatchLine
+from processing.formats.sheets.paper_layers import (
+    BORDER,
+    GRID_CROSSES,
+    GRID_TICKS,
+    GRID_WORDS,
+    MATCH_LINE,
+    MATCH_WORDS,
+    WINDOW,
+)
 from processing.formats.sheets.paper_shapes import (
-    FRAME_LAYER,
-    RULE_LAYER,
-    WORDS_LAYER,
     PaperLine,
     PaperPlace,
     PaperShape,
@@ -32,9 +38,9 @@ _TICK_MM = 3.0
 _WORDS_MM = 2.0
 _AWAY_MM = 2.2
 """Middle of a coordinate's letters from the window's edge."""
-_FRAME_PEN, _WINDOW_PEN = Pen(FRAME_LAYER, width_mm=0.7), Pen(FRAME_LAYER, width_mm=0.35)
-_CROSS_PEN = Pen(RULE_LAYER, width_mm=0.13)
-_MATCH_PEN = Pen(RULE_LAYER, (200, 0, 0), 0.35, (4.0, 1.0, 0.5, 1.0), "dash_dot")
+_FRAME_PEN, _WINDOW_PEN = Pen(BORDER, width_mm=0.7), Pen(WINDOW, width_mm=0.35)
+_CROSS_PEN, _TICK_PEN = Pen(GRID_CROSSES, width_mm=0.13), Pen(GRID_TICKS, width_mm=0.13)
+_MATCH_PEN = Pen(MATCH_LINE, (200, 0, 0), 0.35, (4.0, 1.0, 0.5, 1.0), "dash_dot")
 
 
 def frame_shapes(
@@ -102,7 +108,7 @@ def _ends(
     way = (last - first) / np.hypot(*(last - first))
     for end, inwards in ((first, way), (last, -way)):
         tick = end + inwards * _TICK_MM
-        yield PaperLine(_CROSS_PEN, ((end[0], end[1]), (tick[0], tick[1])))
+        yield PaperLine(_TICK_PEN, ((end[0], end[1]), (tick[0], tick[1])))
         outwards, angle_deg = _edge_of(layout, (float(end[0]), float(end[1])))
         middle = (end[0] + outwards[0] * _AWAY_MM, end[1] + outwards[1] * _AWAY_MM)
         half = words_width(words, _WORDS_MM) / 2 + 1.0
@@ -111,7 +117,7 @@ def _ends(
                           middle[0] + reach[0], middle[1] + reach[1])  # fmt: skip
         if not any(box.intersects(one) for one in taken):
             taken.append(box)
-            yield PaperWords(Pen(WORDS_LAYER), words, middle, _WORDS_MM, "CENTER", angle_deg)
+            yield PaperWords(Pen(GRID_WORDS), words, middle, _WORDS_MM, "CENTER", angle_deg)
 
 
 def _edge_of(layout: SheetLayout, place: PaperPlace) -> tuple[PaperPlace, float]:
@@ -151,4 +157,4 @@ def _match(
         side = -side
     at = low + way * reach + side * 2.5
     angle = math.degrees(math.atan2(way[1], way[0]))
-    yield PaperWords(Pen(WORDS_LAYER, (200, 0, 0)), words, (at[0], at[1]), 2.5, "CENTER", angle)
+    yield PaperWords(Pen(MATCH_WORDS, (200, 0, 0)), words, (at[0], at[1]), 2.5, "CENTER", angle)

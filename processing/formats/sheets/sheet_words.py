@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
-from processing.formats.drawings.dxf import LABEL_SUFFIX
 from processing.formats.drawings.dxf_labels import label_of
+from processing.formats.drawings.sxf_looks import label_layer
 from processing.formats.sheets.drawing_sheet import DrawingSheet
 from processing.formats.sheets.label_places import SheetLabel, place_labels
 from processing.formats.sheets.map_looks import map_pen, symbol_reach_mm
@@ -97,7 +97,7 @@ def label_sheet(
             unplaced.append(UnplacedLabel(number, feature, wanted.words, (east, north)))
             continue
         pen = map_pen(catalogue[feature.kind])
-        words = Pen(pen.layer + LABEL_SUFFIX, pen.colour)
+        words = Pen(label_layer(pen.layer), pen.colour)
         placed.append(PaperWords(
             words, wanted.words, place.middle, wanted.height, "CENTER", place.angle_deg
         ))  # fmt: skip

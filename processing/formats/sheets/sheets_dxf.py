@@ -19,11 +19,11 @@ from processing.formats.map_delivery import MapDelivery
 from processing.formats.sheets.drawing_sheet import DrawingSheet
 from processing.formats.sheets.dxf_shapes import (
     ON_PAPER,
-    VIEWPORT_LAYER,
     Placing,
     draw_shape,
     weight_of,
 )
+from processing.formats.sheets.paper_layers import VIEWPORT
 from processing.formats.sheets.paper_shapes import PaperPlace, PaperShape
 from processing.formats.sheets.sheet_layout import SheetLayout
 from processing.map.feature import Feature
@@ -48,7 +48,7 @@ def write_layouts_dxf(
     drawing = _map_drawing(delivery, delivery.features, sheets[0].sheet.scale, "R2010", monitor)
     doc = drawing.document.doc
     doc.header["$PSLTSCALE"] = 0  # patterns are metres on the ground
-    doc.layers.add(VIEWPORT_LAYER, plot=False)
+    doc.layers.add(VIEWPORT, plot=False)
     for number, one in enumerate(sheets, 1):
         monitor.check()
         space = doc.layouts.new(f"{number:03d}")
@@ -60,7 +60,7 @@ def write_layouts_dxf(
             view_center_point=(0, 0),
             view_height=height * scale / 1000,
         )
-        view.dxf.layer = VIEWPORT_LAYER
+        view.dxf.layer = VIEWPORT
         view.dxf.view_target_point = (*one.sheet.centre, 0.0)
         view.dxf.view_twist_angle = -one.sheet.turned_deg
         for shape in one.shapes:
@@ -107,7 +107,7 @@ def _map_drawing(
     version: DxfVersion,
     monitor: Monitor,
 ) -> MapDrawing:
-    size = DrawnSize(scale, has_labels=False)
+    size = DrawnSize(scale, has_labels=False, is_flat=True)
     drawing = MapDrawing(delivery.catalogue, version, delivery.crs, delivery.language, size=size)
     for feature in features:
         monitor.check()

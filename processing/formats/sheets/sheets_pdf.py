@@ -27,6 +27,8 @@ def write_sheets_pdf(
 ) -> None:
     """Write pages of one size; viewers are asked to print them unscaled.
 
+    What is drawn lies on the layers of its pens, which readers show and hide by name.
+
     Raises
     ------
     UserError
@@ -43,6 +45,7 @@ def write_sheets_pdf(
 
 def _draw(paper: Paper, shape: PaperShape) -> None:
     height, pen = paper.height_mm, shape.pen
+    paper.layer(pen.layer)
     match shape:
         case PaperLine():
             places = [(x, height - y) for x, y in shape.places]

@@ -4,10 +4,38 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from datetime import date
 
 from processing.core.text import Language, Text
 from processing.formats.map_delivery import MapDelivery, SectionOptions, SheetOptions
+from processing.formats.sheets.paper_layers import (
+    CLIENT,
+    DATE,
+    DISTRICT,
+    MAKER,
+    SCALE,
+    SYSTEM,
+    TITLE,
+)
 from processing.formats.surfaces.landxml_systems import zone_of_system
+from processing.formats.work_facts import day
+
+_DRAWING, _PART, _SCALE = (
+    Text("Drawing", "図面名"), Text("Part", "図郭・区間"), Text("Scale", "縮尺"),
+)  # fmt: skip
+_SYSTEM, _DATE = Text("Reference system", "座標系"), Text("Date", "年月日")
+_CLIENT, _MAKER = Text("Client", "計画機関"), Text("Maker", "作業機関")
+
+VALUE_LAYERS: Mapping[Text, str] = {
+    _DRAWING: TITLE,
+    _PART: DISTRICT,
+    _SCALE: SCALE,
+    _SYSTEM: SYSTEM,
+    _DATE: DATE,
+    _CLIENT: CLIENT,
+    _MAKER: MAKER,
+}
+"""The layer of a row's value, where it has one of its own."""
 
 
 @dataclass(frozen=True)
@@ -33,18 +61,24 @@ class SheetPart:
 def title_block(
     delivery: MapDelivery, options: SheetOptions | SectionOptions, part: SheetPart
 ) -> Mapping[Text, str]:
-    """Rows from above; what is not known stays empty."""
+    """Rows from above: what was chosen, or else what the project's work details say.
+
+    What neither knows stays empty.
+    """
+    work = delivery.work
+    language: Language = delivery.language or "ja"
+    made_on = "" if work.made_on == date.min else day(work.made_on).in_language(language)
     return {
-        Text("Drawing", "図面名"): options.sheet_title or delivery.name,
+        _DRAWING: options.sheet_title or work.work or delivery.name,
         Text("Sheet", "図面番号"): f"{part.number} / {part.count}",
-        Text("Part", "図郭・区間"): part.name,
-        Text("Scale", "縮尺"): part.scale,
-        Text("Reference system", "座標系"): _system(delivery),
-        Text("Heights", "高さの基準"): options.sheet_heights,
-        Text("Date", "年月日"): options.sheet_date,
-        Text("Client", "計画機関"): options.sheet_client,
-        Text("Maker", "作業機関"): options.sheet_maker,
-        Text("Surveyor", "測量者"): options.sheet_surveyor,
+        _PART: part.name,
+        _SCALE: part.scale,
+        _SYSTEM: _system(delivery),
+        Text("Heights", "高さの基準"): options.sheet_heights or work.height_datum,
+        _DATE: options.sheet_date or made_on,
+        _CLIENT: options.sheet_client or work.client,
+        _MAKER: options.sheet_maker or work.contractor,
+        Text("Surveyor", "測量者"): options.sheet_surveyor or work.surveyor,
     }
 
 

@@ -11,6 +11,7 @@ from itertools import pairwise
 from processing.formats.drawings.dxf_labels import LABEL_HEIGHT_M, label_of
 from processing.formats.shift_jis import ShiftJisText
 from processing.formats.survey.dm_records import LEVEL, MOST_PLACES, NO_DATE, DmElement, DmNote
+from processing.formats.survey.line_arcs import line_parts
 from processing.formats.survey.map_sheets import SHEET_X_MM, SHEET_Y_MM, MapSheet, sheet_at
 from processing.formats.survey.sheet_cuts import PlaceMm, cut_area, cut_line
 from processing.map.catalogue import FeatureKind, Geometry
@@ -103,6 +104,9 @@ def _drawn(
             yield sheet, _point(sheet, kind, feature, places[0])
         case Geometry.LINE:
             for sheet, part in cut_line(zone, places):
+                if kind.dm_code == _CENTRE_LINE:
+                    yield from _straights_and_arcs(sheet, kind.dm_code, part)
+                    continue
                 for start in range(0, len(part) - 1, MOST_PLACES - 1):
                     piece = part[start : start + MOST_PLACES]
                     yield sheet, DmElement("E2", kind.dm_code, piece, has_heights=True)
@@ -110,6 +114,19 @@ def _drawn(
             for sheet, part in cut_area(zone, _without_repeats(places)):
                 ring = (*part, part[0])
                 yield sheet, DmElement("E1", kind.dm_code, ring, has_heights=True)
+
+
+def _straights_and_arcs(
+    sheet: MapSheet, code: str, part: tuple[PlaceMm, ...]
+) -> Iterator[SheetElement]:
+    """A centre line as it is staked out: straight (E2) and on arcs (E4), from start to end."""
+    for is_arc, places in line_parts(part):
+        if is_arc and all(_is_on(sheet, place) for place in places):
+            yield sheet, DmElement("E4", code, places, has_heights=True)
+            continue
+        for start in range(0, len(places) - 1, MOST_PLACES - 1):
+            piece = places[start : start + MOST_PLACES]
+            yield sheet, DmElement("E2", code, piece, has_heights=True)
 
 
 def _without_repeats(places: tuple[PlaceMm, ...]) -> tuple[PlaceMm, ...]:

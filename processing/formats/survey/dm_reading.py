@@ -12,6 +12,7 @@ import numpy as np
 from processing.core.errors import BadFile, Unsuitable, report_as_user_error
 from processing.core.text import Text
 from processing.formats.survey.dm_records import RECORD_BYTES
+from processing.map.drafting.constructions import arc_through
 from processing.scoring.features.mapped_features import GeometryType, MappedFeature, MappedFile
 
 _METRES = {1: 0.001, 10: 0.01}
@@ -130,6 +131,8 @@ def _element(sheet: _Sheet, type_: str, head: bytes, body: Sequence[bytes]) -> _
         return "point", [_centre(places)], facts
     if type_ in _POINTS:
         return "point", places[:1], facts
+    if type_ == "E4":
+        places = _arc(places)
     shape = _SHAPES[type_]
     if shape == "area" and places[0] == places[-1]:
         places = places[:-1]
@@ -161,6 +164,15 @@ def _centre(places: Sequence[tuple[float, float, float]]) -> tuple[float, float,
     a, b = ax * ax + ay * ay, bx * bx + by * by
     x, y = first + np.array([by * a - ay * b, ax * b - bx * a]) / turn
     return float(x), float(y), places[0][2]
+
+
+def _arc(places: list[tuple[float, float, float]]) -> list[tuple[float, float, float]]:
+    """The arc over three places; without heights it lies in plan."""
+    first, second, third = places[:3]
+    if all(math.isfinite(one[2]) for one in (first, second, third)):
+        return list(arc_through(first, second, third))
+    flat = [(x, y, 0.0) for x, y, _ in (first, second, third)]
+    return [(x, y, math.nan) for x, y, _ in arc_through(flat[0], flat[1], flat[2])]
 
 
 def _damage(path: Path, record: int) -> BadFile:

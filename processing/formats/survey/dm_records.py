@@ -58,7 +58,8 @@ class DmElement:
     Attributes
     ----------
     type : str
-        ``E1`` area, ``E2`` line, ``E3`` circle, ``E5`` point, ``E6`` direction, ``E7`` note.
+        ``E1`` area, ``E2`` line, ``E3`` circle, ``E4`` arc, ``E5`` point, ``E6`` direction, ``E7``
+        note.
     code : str
         Class code, four digits.
     places : tuple of PlaceMm

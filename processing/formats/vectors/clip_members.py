@@ -35,6 +35,7 @@ def clip_member(feature: Feature) -> JsonObject:
             "version": provenance.version,
             "parameters": dict(provenance.parameters),
             "run": provenance.run,
+            "unseen": provenance.unseen,
             "measured": [
                 None if one.measured is None else [one.measured.drive, one.measured.point]
                 for one in feature.vertices
@@ -134,11 +135,19 @@ def _provenance(properties: JsonObject, own: JsonObject, number: int) -> Provena
         own.get("parameters", {}),
         properties["confidence"],
         own.get("run", ""),
+        own.get("unseen", False),
     )
     match values:
-        case (str(tool), int(version), dict(parameters), int() | float() as confidence, str(run)):
-            if 0 <= confidence <= 1:
-                return Provenance(tool, version, parameters, float(confidence), run)
+        case (
+            str(tool),
+            int(version),
+            dict(parameters),
+            int() | float() as sure,
+            str(run),
+            bool(unseen),
+        ):
+            if 0 <= sure <= 1:
+                return Provenance(tool, version, parameters, float(sure), run, unseen)
     raise _make_damage_error("tool", number)
 
 

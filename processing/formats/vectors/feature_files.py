@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 
 from processing.core.monitor import Monitor
+from processing.core.text import Language
 from processing.formats.format import Content
 from processing.formats.format_list import FormatList
 from processing.formats.map_delivery import MapDelivery
@@ -22,6 +23,7 @@ def write_feature_file(
     monitor: Monitor,
     *,
     never: Iterable[Path] = (),
+    language: Language | None = None,
     formats: FormatList = FORMATS,
 ) -> None:
     """Write features with kind, confidence, status and attributes.
@@ -34,6 +36,8 @@ def write_feature_file(
         ``EPSG:n``; empty where it is not known, which the file then says.
     never : iterable of Path
         Files that must not be overwritten.
+    language : "en", "ja" or None
+        Of the headers of a table; None for the ids of its columns.
 
     Raises
     ------
@@ -43,4 +47,5 @@ def write_feature_file(
         What stands against writing; `Cancelled`.
     """
     write = formats.format_to_write(path, Content.FEATURES).writer(Content.FEATURES)
-    write(path, MapDelivery(tuple(features), catalogue, crs), monitor, never=never)
+    delivery = MapDelivery(tuple(features), catalogue, crs, language)
+    write(path, delivery, monitor, never=never)

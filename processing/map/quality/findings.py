@@ -22,6 +22,7 @@ RuleId = Literal[
     "number_missing",
     "ledger_missing",
     "undecided",
+    "unseen",
 ]
 
 
@@ -105,6 +106,14 @@ RULES: Mapping[RuleId, Rule] = {
         Text("Candidate that nobody decided on", "未確認の候補"),
         Text(
             "Accept or reject it; it is not handed in.", "採用か却下してください。納品されません。"
+        ),
+        is_error=False,
+    ),
+    "unseen": Rule(
+        Text("Accepted by its confidence, looked at by nobody", "信頼度のみで採用（目視なし）"),
+        Text(
+            "Look at it, and accept or reject it; it is handed in.",
+            "目視で確認し、採用か却下してください。このままでも納品されます。",
         ),
         is_error=False,
     ),

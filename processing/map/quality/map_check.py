@@ -33,6 +33,8 @@ class KindCount:
         By status.
     by_tools : int
         Accepted ones that a tool found.
+    unseen : int
+        Those of them that were accepted for their confidence alone.
     """
 
     kind: str
@@ -40,20 +42,27 @@ class KindCount:
     candidates: int
     rejected: int
     by_tools: int
+    unseen: int = 0
+
+    @property
+    def decided(self) -> int:
+        """Of what tools found, how many a person accepted or rejected."""
+        return self.by_tools - self.unseen + self.rejected
 
     @property
     def precision(self) -> float:
         """Of what tools found and a person judged, the share accepted; NaN without any."""
-        judged = self.by_tools + self.rejected
-        return self.by_tools / judged if judged else math.nan
+        return (self.by_tools - self.unseen) / self.decided if self.decided else math.nan
 
     @property
     def recall(self) -> float:
         """Of what was accepted, the share that tools found: the rest was drawn by hand.
 
-        NaN where tools found none and none was rejected: nobody looked for the kind by tools.
+        NaN where tools found none and none was rejected: nobody looked for the kind by tools; and
+        where no person accepted, rejected or drew one.
         """
-        was_sought = self.by_tools + self.rejected > 0 and self.accepted > 0
+        by_person = self.accepted - self.unseen + self.rejected
+        was_sought = self.by_tools + self.rejected > 0 and self.accepted > 0 and by_person > 0
         return self.by_tools / self.accepted if was_sought else math.nan
 
 
@@ -74,9 +83,9 @@ class MapCheck:
 
     @property
     def decided_share(self) -> float:
-        """Of what tools found, the share accepted or rejected; 1 without any."""
-        decided = sum(one.by_tools + one.rejected for one in self.kinds)
-        every = decided + sum(one.candidates for one in self.kinds)
+        """Of what tools found, the share that a person accepted or rejected; 1 without any."""
+        decided = sum(one.decided for one in self.kinds)
+        every = decided + sum(one.candidates + one.unseen for one in self.kinds)
         return decided / every if every else 1.0
 
     def count(self, rule: RuleId) -> int:
@@ -128,6 +137,7 @@ def check_map(
             _unnumbered(accepted) if is_kind_of_signs(kind) else (),
             _not_in_ledgers(accepted, kind),
             _undecided(members),
+            _unseen(accepted),
         )
         findings.extend(found)
     order = list(RULES)
@@ -172,6 +182,12 @@ def _undecided(features: Sequence[Feature]) -> Iterator[Finding]:
             yield Finding("undecided", (one.id,), one.kind, one.vertices[0].xyz)
 
 
+def _unseen(features: Sequence[Feature]) -> Iterator[Finding]:
+    for one in features:
+        if one.provenance.unseen:
+            yield Finding("unseen", (one.id,), one.kind, one.vertices[0].xyz)
+
+
 def _counted(kind: str, features: Sequence[Feature]) -> KindCount:
     def count(status: Status) -> int:
         return sum(one.status is status for one in features)
@@ -185,4 +201,5 @@ def _counted(kind: str, features: Sequence[Feature]) -> KindCount:
         count(Status.CANDIDATE),
         count(Status.REJECTED),
         by_tools,
+        sum(one.status is Status.ACCEPTED and one.provenance.unseen for one in features),
     )

@@ -38,7 +38,8 @@ class RunEvaluation:
     is_whole_tool : bool
         All runs of this tool and version together.
     undecided, accepted, rejected : int
-        Candidates; corrected ones are accepted too.
+        Candidates; corrected ones are accepted too. Those that were accepted for their
+        confidence alone are undecided: nobody looked at them.
     corrected : int
         Accepted after their place, kind or attributes were changed.
     shift_m : float
@@ -172,7 +173,8 @@ def _evaluation(
     *,
     is_whole_tool: bool,
 ) -> RunEvaluation:
-    accepted = [one for one in features if one.status is Status.ACCEPTED]
+    found = [one for one in features if one.status is Status.ACCEPTED]
+    accepted = [one for one in found if not one.provenance.unseen]
     rejected = [one for one in features if one.status is Status.REJECTED]
     decided = [*accepted, *rejected]
     kinds = {one.kind for one in (*features, *_originals(features, originals))}
@@ -180,7 +182,7 @@ def _evaluation(
     corrected = [one for one in accepted if was_corrected(one, originals.get(one.id))]
     shifts = [_shift_m(one, originals[one.id]) for one in corrected]
     moved = [shift for shift in shifts if shift > _SAME_M]
-    length, missing = _length_m(accepted), _length_m(missed)
+    length, missing = _length_m(found), _length_m(missed)
     return RunEvaluation(
         tool=runs[0].tool,
         version=runs[0].version,
@@ -192,7 +194,7 @@ def _evaluation(
         corrected=len(corrected),
         shift_m=float(np.mean(moved)) if moved else math.nan,
         precision=share_of(len(accepted), len(decided)),
-        recall=share_of(len(accepted), len(accepted) + len(missed)),
+        recall=share_of(len(found), len(found) + len(missed)),
         recall_by_length=ShareInterval(length, length + missing),
         reliability=reliability_of(
             np.array([one.provenance.confidence for one in decided], np.float64),

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable
-from dataclasses import replace
 
 from processing.core.text import Text
 from processing.map.catalogue import Catalogue
@@ -52,8 +51,17 @@ class FeatureLines:
 
 
 def change_status(features: Iterable[Feature], status: Status) -> Change:
-    """The change by which features get a status."""
-    return Change(replaced=tuple(Replacement(one, replace(one, status=status)) for one in features))
+    """The change by which features get a status from somebody who looks at them."""
+    return Change(replaced=tuple(Replacement(one, one.with_status(status)) for one in features))
+
+
+def accept_unseen(features: Iterable[Feature]) -> Change:
+    """The change by which features are accepted for their confidence, which they go on saying."""
+    return Change(
+        replaced=tuple(
+            Replacement(one, one.with_status(Status.ACCEPTED, unseen=True)) for one in features
+        )
+    )
 
 
 def label_of_one(catalogue: Catalogue, feature: Feature, status: Status) -> Text:

@@ -164,6 +164,7 @@ def _plain_provenance(provenance: Provenance) -> dict[str, object]:
         "parameters": dict(provenance.parameters),
         "confidence": provenance.confidence,
         "run": provenance.run,
+        "unseen": provenance.unseen,
     }
 
 

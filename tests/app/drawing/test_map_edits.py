@@ -62,3 +62,28 @@ def test_ledgers_are_filled_in_along_the_route_as_one_step(document):
     assert told[-1].en.startswith("All that ledgers list")
     document.undo()
     assert not next(one for one in document.features() if one.id == "a").attributes
+
+
+def test_widths_are_drawn_along_the_route_as_one_step(document):
+    edits, told = MapEdits(document), []
+    document.reported.connect(told.append)
+
+    def line(id_: str, kind: str, northing: float) -> Feature:
+        ends = (Vertex((0.0, northing, 3.0)), Vertex((40.0, northing, 3.0)))
+        return Feature(id_, kind, Geometry.LINE, ends, {"route": "市道1号線"})
+
+    edits.draw_widths()
+    assert told[-1].en.startswith("Draw the road's centre line first")
+    document.apply(LABEL, Change(added=(line("c", "road_center", 0.0),)))
+    edits.draw_widths()
+    assert told[-1].en.startswith("No width can be measured")
+    edges = (line("l", "road_edge", 3.0), line("r", "road_edge", -3.2))
+    document.apply(LABEL, Change(added=edges))
+    for _ in range(2):  # the second time replaces what the first has drawn
+        edits.draw_widths()
+        drawn = [one for one in document.features() if one.kind == "width_line"]
+        assert [one.attributes["name"] for one in drawn] == ["6.2"] * 3
+        assert told[-1].en.startswith("3 width lines drawn")
+    document.undo()
+    document.undo()
+    assert {one.kind for one in document.features()} == {"road_center", "road_edge"}

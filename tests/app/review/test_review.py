@@ -145,6 +145,8 @@ def test_all_from_a_confidence_up_are_accepted_in_one_step(
     assert {one.id for one in desk.document.features() if one.status is Status.ACCEPTED} == sure
     assert desk.current().id == by_confidence(found)[0]
     assert "Accept 5 candidates" in str(desk.document.undo_stack.undo_label)
+    accepted = [one for one in desk.document.features() if one.status is Status.ACCEPTED]
+    assert all(one.provenance.unseen for one in accepted)
     desk.document.undo()
     assert desk.review.progress.left == COUNT
     assert desk.review.count_from(0.9) == 5

@@ -72,15 +72,15 @@ def test_what_a_map_can_be_written_as_can_be_chosen() -> None:
     for one in FORMATS.maps():
         assert one.writes_map or one.writes[Content.FEATURES]
     assert [option.id for option in FORMATS.map_options()] == [
-        "dxf_version", "dm_accuracy", "dm_company", "dm_approval", "delivery_start",
-        "delivery_end", "delivery_area", "delivery_advice", "delivery_folder",
-        "delivery_edition", "delivery_dtds", "sheet_scale", "sheet_division",
-        "sheet_overlap", "section_scale", "section_height_scale", "profile_scale",
-        "profile_height_scale", "sheet_paper", "sheet_title", "sheet_client", "sheet_maker",
-        "sheet_surveyor", "sheet_date", "encoding", "digits", "landxml_form",
-        "section_pitch", "section_stations", "section_reach", "section_depth",
-        "sheet_heights", "lane_pitch", "sheet_route", "check_points", "check_map",
-        "map_level",
+        "dxf_version", "dxf_heights", "dm_accuracy", "dm_company", "dm_approval",
+        "delivery_start", "delivery_end", "delivery_area", "delivery_advice",
+        "delivery_folder", "delivery_edition", "delivery_dtds", "sheet_scale",
+        "sheet_division", "drawing_layers", "sheet_overlap", "section_scale",
+        "section_height_scale", "profile_scale", "profile_height_scale", "sheet_paper",
+        "sheet_title", "sheet_client", "sheet_maker", "sheet_surveyor", "sheet_date",
+        "encoding", "digits", "landxml_form", "section_pitch", "section_stations",
+        "section_reach", "section_depth", "sheet_heights", "lane_pitch", "sheet_route",
+        "check_points", "check_map", "map_level",
     ]  # fmt: skip
 
 

@@ -12,7 +12,7 @@ import pytest
 
 from processing.core.errors import Cancelled, InUse, MissingInput, OutOfRange
 from processing.core.monitor import Monitor, SilentMonitor
-from processing.core.text import Text
+from processing.core.text import Language, Text
 from processing.map.feature import Status
 from processing.operations.import_files import ImportOperation, import_files
 from processing.operations.inputs import OperationInputs, inputs_of_paths
@@ -108,8 +108,24 @@ def test_sure_candidates_are_accepted_in_one_step_that_undo_takes_back(folder: P
     assert outcome.accepted == 4
     assert outcome.words[-1].en == "4 of them accepted"
     assert statuses(folder).count(Status.ACCEPTED) == 4
+    with closing(Project.open(folder, writing=False)) as opened:
+        unseen = [one.provenance.unseen for one in opened.features.all()]
+    assert unseen.count(True) == 4  # what nobody looked at is known after the project is reopened
     undo_step(UndoOperation(folder), SilentMonitor())
     assert statuses(folder) == [Status.CANDIDATE] * 6
+
+
+@pytest.mark.parametrize(
+    ("language", "header"),
+    [(None, "id,kind,"), ("en", "Feature ID,Kind,"), ("ja", "地物ID,種別ID,")],
+)
+def test_a_table_has_headers_in_the_language_that_is_asked_for(
+    folder: Path, tmp_path: Path, language: Language | None, header: str
+) -> None:
+    output = tmp_path / "found.csv"
+    asked = RunOperation("finder", OperationInputs(folder), output=output, language=language)
+    assert run_operation(asked, SilentMonitor()).paths == (output,)
+    assert output.read_text(encoding="utf-8-sig").startswith(header)
 
 
 def test_a_second_run_replaces_what_nobody_decided_on(folder: Path) -> None:

@@ -18,7 +18,12 @@ from processing.methods.earthwork.volumes.volume_parameters import VolumeParamet
 from processing.operations.export import ExportRequest
 from processing.operations.import_files import ImportOperation
 from processing.operations.inputs import OperationInputs
-from processing.operations.map_steps import NumberOperation, TakeMapOperation, UndoOperation
+from processing.operations.map_steps import (
+    NumberOperation,
+    TakeMapOperation,
+    UndoOperation,
+    WidthOperation,
+)
 from processing.operations.operation_files import (
     operation_from_text,
     operation_text,
@@ -135,9 +140,10 @@ volumes = st.builds(
 )
 undos = st.builds(UndoOperation, paths)
 numberings = st.builds(NumberOperation, paths)
+widths = st.builds(WidthOperation, paths, st.floats(1, 1000))
 takings = st.builds(TakeMapOperation, paths, paths)
 operations = st.one_of(
-    runs, imports, exports, scores, volumes, simulations, undos, numberings, takings
+    runs, imports, exports, scores, volumes, simulations, undos, numberings, widths, takings
 )
 
 

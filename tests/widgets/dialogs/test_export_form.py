@@ -41,6 +41,8 @@ def test_what_is_chosen_is_asked_for(qtbot: QtBot, tmp_path: Path) -> None:
     assert request.formats == ("tiny",)
     expected = {
         "dxf_version": "R2000",
+        "dxf_heights": "3d",
+        "drawing_layers": "codes",
         "encoding": "utf-8",
         "digits": 3,
         "dm_accuracy": 34,

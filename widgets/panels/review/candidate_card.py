@@ -27,9 +27,9 @@ from widgets.feature_drawing.feature_style import colour_of_kind
 from widgets.feature_drawing.swatch import SWATCH_PX, swatch_of
 from widgets.panels.attributes.photo_row import PhotoRow
 from widgets.panels.feature_words import (
-    STATUS_NAMES,
     name_of_kind,
     name_of_origin,
+    name_of_status,
     words_of_value,
 )
 from widgets.panels.geometry_facts import facts_of
@@ -161,7 +161,7 @@ class CandidateCard(QFrame):
         is_decided = feature.status.value != "candidate"
         self._status.setVisible(is_decided)
         if is_decided:
-            status = STATUS_NAMES[feature.status].in_language(self._language)
+            status = name_of_status(feature, self._language)
             self._status.setText(self.tr("Decided: {status}").format(status=status))
 
     def _facts(self, feature: Feature, catalogue: Catalogue) -> list[tuple[str, str]]:

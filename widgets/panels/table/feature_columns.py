@@ -16,9 +16,9 @@ from processing.map.feature import AttributeValue, Feature, Status
 from processing.map.feature_query import natural_key
 from widgets.panels.feature_words import (
     HAND,
-    STATUS_NAMES,
     name_of_kind,
     name_of_origin,
+    name_of_status,
     words_of_value,
 )
 from widgets.panels.geometry_facts import area_m2, length_m
@@ -167,12 +167,11 @@ class FeatureColumns:
 
     def _status(self) -> FeatureColumn:
         language = self._language
-        names = {status: name.in_language(language) for status, name in STATUS_NAMES.items()}
         return FeatureColumn(
             "status",
             Text("Status", "状態").in_language(language),
             Text("Whether a person has agreed to it", "人による判定の状態").in_language(language),
-            lambda one: names[one.status],
+            lambda one: name_of_status(one, language),
             lambda one: (_ORDER_OF_STATUS[one.status],),
         )
 

@@ -177,6 +177,7 @@ def _numbers(check: MapCheck, crs: str) -> dict[str, Any]:
                 "kind": one.kind,
                 "accepted": one.accepted,
                 "by_tools": one.by_tools,
+                "unseen": one.unseen,
                 "candidates": one.candidates,
                 "rejected": one.rejected,
                 "precision": _rounded(one.precision),

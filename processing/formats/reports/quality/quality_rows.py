@@ -27,6 +27,7 @@ KIND_COLUMNS = (
     Text("Code", "分類コード"),
     Text("Handed in", "納品"),
     Text("Found by tools", "うち自動抽出"),
+    Text("Not looked at", "うち目視なし"),
     Text("Undecided", "未確認"),
     Text("Rejected", "却下"),
     Text("Precision", "適合率"),
@@ -84,7 +85,9 @@ _CONTRACTOR = Text("Contractor", "作業機関")
 _HEIGHTS = Text("Heights", "標高の基準")
 _UNKNOWN = Text("not known", "不明")
 _FEATURES = Text("Features handed in", "納品する地物")
-_DECIDED = Text("Decided on, of what tools found", "自動抽出のうち採否を決めた割合")
+_DECIDED = Text(
+    "Looked at and decided on, of what tools found", "自動抽出のうち目視で採否を決めた割合"
+)
 _ERRORS = Text("Errors", "不適合の件数")
 _LOOKS = Text("To be looked at", "要確認の件数")
 
@@ -210,7 +213,7 @@ def kind_rows(facts: QualityFacts) -> Iterator[tuple[Text, ...]]:
     """
     for one in facts.check.kinds:
         code = facts.catalogue[one.kind].dm_code
-        counts = (one.accepted, one.by_tools, one.candidates, one.rejected)
+        counts = (one.accepted, one.by_tools, one.unseen, one.candidates, one.rejected)
         yield (
             facts.kind_name(one.kind),
             Text.same(code) if code else NO_CODE,

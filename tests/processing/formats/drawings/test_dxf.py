@@ -87,7 +87,32 @@ def test_a_line_is_a_3d_polyline_on_the_layer_of_its_code(
     assert entity.dxf.layer == "2101_道路縁"
     assert doc.layers.get("2101_道路縁").color == catalogue["road_edge"].aci
     data = [tag.value for tag in entity.get_xdata(APP_ID)]
-    assert data[:3] == ["id-road_edge", "road_edge", "accepted"]
+    assert data == ["id-road_edge", "road_edge", "accepted", 1.0, "hand"]
+
+
+@pytest.mark.parametrize("version", _VERSIONS)
+def test_a_drawing_in_plan_has_no_heights(
+    tmp_path: Path, catalogue: Catalogue, version: DxfVersion
+) -> None:
+    features = [
+        _feature("gutter_l", Geometry.LINE, *_LINE),
+        _feature("gutter_lid", Geometry.AREA, *_LINE, thickness_m=0.1),
+        _tree(number="7"),
+    ]
+    path = tmp_path / "plan.dxf"
+    write_dxf(path, features, catalogue, version=version, is_flat=True)
+    drawing = ezdxf.filemanagement.readfile(path)
+    assert not drawing.audit().errors
+    space = drawing.modelspace()
+    assert not space.query("3DFACE")
+    line, area = space.query("POLYLINE LWPOLYLINE")
+    assert line.dxftype() == ("POLYLINE" if version == "R12" else "LWPOLYLINE")
+    assert (line.is_closed, area.is_closed) == (False, True)
+    is_light = line.dxftype() == "LWPOLYLINE"
+    places = line.get_points("xy") if is_light else [one.dxf.location for one in line.vertices]
+    assert [(one[0], one[1]) for one in places] == [one[:2] for one in _LINE]
+    assert line.dxf.linetype == "BYLAYER"
+    assert all(one.dxf.insert.z == 0.0 for one in space.query("INSERT TEXT"))
 
 
 @pytest.mark.parametrize("version", _VERSIONS)

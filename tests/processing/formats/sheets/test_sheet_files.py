@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 from typing import Any
 
@@ -18,16 +19,20 @@ from processing.formats.drawings.drawn_features import read_dxf_features
 from processing.formats.drawings.dxf_document import SHEET_MARK
 from processing.formats.sheets.drawing_sheet import DrawingSheet
 from processing.formats.sheets.grid_division import map_grid, plain_grid
+from processing.formats.sheets.label_places import SheetLabel, place_labels
 from processing.formats.sheets.map_looks import map_shapes
 from processing.formats.sheets.paper_shapes import PaperLine, PaperWords
 from processing.formats.sheets.sheet_clips import SheetClips
 from processing.formats.sheets.sheet_column import LegendRow, legend_box
 from processing.formats.sheets.sheet_layout import layout_of
+from processing.formats.sheets.slope_marks import slope_shapes
+from processing.formats.work_facts import WorkFacts
 from processing.map.catalogue import Catalogue, Geometry
 from processing.map.catalogue_file import read_catalogue
 from processing.map.feature import Feature, Position, Vertex
 from processing.operations.export import ExportRequest, export
 from resources import path_of
+from tests.pages import picture_of
 
 _EAST, _NORTH = -8000.0, -36200.0
 
@@ -202,3 +207,117 @@ def test_a_dense_legend_stays_legible_and_counts_what_has_no_room() -> None:
         words = [one for one in shapes if isinstance(one, PaperWords)]
         assert words[-1].words == last
         assert min(one.height for one in words) >= 2.3
+
+
+def test_what_surrounds_the_map_lies_on_the_layers_of_its_codes(
+    tmp_path: Path, catalogue: Catalogue
+) -> None:
+    work = WorkFacts(work="道路台帳図化業務", client="見本市", contractor="見本測量")
+    request = ExportRequest(("sheets",), tmp_path, "ja", {"sheet_division": "route"})
+    export(_street(), catalogue, "EPSG:6677", request, work=work)
+    flat = ezdxf.filemanagement.readfile(tmp_path / "sheets" / "features_001.dxf")
+    layers = {entity.dxf.layer for entity in flat.modelspace()}
+    standard = ("7901", "7902", "7903", "7904", "7905", "7911", "7912", "7913", "8201", "8202")
+    assert {layer[:4] for layer in layers} >= {*standard, "8204", "8205", "8208", "8211", "8266"}
+    words = {entity.dxf.layer: entity.dxf.text for entity in flat.modelspace().query("TEXT")}
+    # The project's work details fill the title block in.
+    assert words["8201_図面タイトル"] == "道路台帳図化業務"
+    assert (words["8204_計画機関名"], words["8205_作業機関名"]) == ("見本市", "見本測量")
+
+
+def test_a_client_gets_the_layers_of_the_standard_for_cad_drawings(
+    tmp_path: Path, catalogue: Catalogue
+) -> None:
+    request = ExportRequest(("sheets", "dxf"), tmp_path, "ja", {"drawing_layers": "cad"})
+    paths = export(_street(), catalogue, "EPSG:6677", request)
+    for path in paths:
+        if path.suffix == ".dxf":
+            drawing = ezdxf.filemanagement.readfile(path)
+            spaces = [
+                drawing.modelspace(),
+                *(drawing.paperspace(n) for n in drawing.layout_names_in_taborder()[1:]),
+            ]
+            layers = {entity.dxf.layer for space in spaces for entity in space}
+            assert all(layer.startswith(("S-", "0", "VIEWPORT")) for layer in layers), (
+                path,
+                layers,
+            )
+            assert "S-BGD-TXT" in layers  # words of the map
+            assert not any(layer.endswith("_文字") for layer in layers)
+            assert not drawing.audit().errors
+
+
+def test_lines_of_sheets_lie_in_plan_where_every_program_shows_their_patterns(
+    tmp_path: Path, catalogue: Catalogue
+) -> None:
+    request = ExportRequest(("sheets",), tmp_path, "ja", {"sheet_division": "route"})
+    export(_street(), catalogue, "EPSG:6677", request)
+    for name in ("features_001.dxf", "features_layouts.dxf"):
+        drawing = ezdxf.filemanagement.readfile(tmp_path / "sheets" / name)
+        lines = drawing.modelspace().query("POLYLINE LWPOLYLINE")
+        assert lines
+        assert not any(one.dxftype() == "POLYLINE" and one.is_3d_polyline for one in lines)
+
+
+def test_a_reader_hides_the_layers_of_the_pdf(tmp_path: Path, catalogue: Catalogue) -> None:
+    request = ExportRequest(("sheets",), tmp_path, "ja", {"sheet_paper": "A3"})
+    export(_street(), catalogue, "EPSG:6677", request)
+    path = tmp_path / "sheets.pdf"
+    shown = picture_of(path)
+    assert (shown < 128).any()
+    data = path.read_bytes()
+    assert "7901_図枠外枠".encode("utf-16-be").replace(b"\\", b"\\\\") in _unescaped(data)
+    # Of the same length, so that no place in the file moves: all layers are hidden.
+    assert data.count(b"/ON [") == 1
+    path.write_bytes(data.replace(b"/ON [", b"/OFF["))
+    assert (picture_of(path) == 255).all()
+
+
+def _unescaped(data: bytes) -> bytes:
+    """Bytes of strings as they are meant: octal numbers read, signs behind a backslash kept."""
+    return re.sub(rb"\\([0-7]{3})", lambda found: bytes([int(found[1], 8)]), data)
+
+
+def test_words_of_lines_that_go_straight_up_read_alike() -> None:
+    window = shapely.box(0.0, 0.0, 200.0, 100.0)
+    lines = [
+        shapely.LineString([(20.0 * n + 10.0, 20.0), (20.0 * n + 10.0 + off, 80.0)])
+        for n, off in enumerate((-0.5, -0.01, 0.0, 0.01, 0.5))
+    ]
+    lines += [line.reverse() for line in lines]
+    for line in lines:
+        (place,) = place_labels([SheetLabel("f", "6.0", 2.0, line)], window, [], [])
+        assert place is not None
+        assert place.angle_deg == pytest.approx(90.0, abs=0.6)
+
+
+def test_slopes_have_long_and_short_hachures_towards_their_foot(catalogue: Catalogue) -> None:
+    layout = layout_of("A1")
+    sheet = DrawingSheet("a", (_EAST, _NORTH), (360.0, 260.0), 500, 30.0)
+    for top, foot in (((0.0, 0.0), (0.0, -4.0)), ((0.0, 0.0), (0.0, 4.0))):  # right, then left
+        slope = [
+            _feature("t", "slope_top", Geometry.LINE, (0.0, top[1], 9.0), (20.5, top[1], 9.0)),
+            _feature("f", "slope_foot", Geometry.LINE, (-1.0, foot[1], 5.0), (21.0, foot[1], 5.0)),
+        ]
+        marks = list(slope_shapes(slope, catalogue, sheet, layout))
+        # 4 m are 8 mm wide: 4 mm apart on the 41 mm of the top.
+        assert len(marks) == 11
+        lengths = [math.dist(*mark.places) for mark in marks]
+        assert lengths == pytest.approx([8.0, 4.0] * 5 + [8.0])
+        ends = sheet.on_ground([mark.places[1] for mark in marks[::2]], layout)
+        assert ends[:, 1] == pytest.approx(_NORTH + foot[1])
+        assert {mark.pen.layer for mark in marks} == {"6101_人工斜面"}
+        assert not list(slope_shapes(slope[:1], catalogue, sheet, layout))
+
+
+def test_a_wide_slope_has_hachures_of_ten_millimetres(catalogue: Catalogue) -> None:
+    layout = layout_of("A1")
+    sheet = DrawingSheet("a", (_EAST, _NORTH), (360.0, 260.0), 500)
+    wide = [
+        _feature("t", "slope_top", Geometry.LINE, (0.0, 0.0, 9.0), (20.0, 0.0, 9.0)),
+        _feature("f", "slope_foot", Geometry.LINE, (-1.0, -15.0, 5.0), (21.0, -15.0, 5.0)),
+    ]
+    lengths = [math.dist(*mark.places) for mark in slope_shapes(wide, catalogue, sheet, layout)]
+    assert max(lengths) == pytest.approx(10.0)
+    narrow = [wide[0], _feature("n", "slope_foot", Geometry.LINE, (0.0, -0.2, 9), (20.0, -0.2, 9))]
+    assert not list(slope_shapes(narrow, catalogue, sheet, layout))

@@ -2,17 +2,26 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
+import shapely
+from hypothesis import given
+from hypothesis import strategies as st
 
 from processing.core.errors import OutOfRange, Unsuitable
 from processing.core.text import Text
+from processing.formats.survey.dm_reading import read_dm_features
+from processing.formats.survey.line_arcs import line_parts
 from processing.formats.survey.map_sheets import MapSheet, sheet_at
 from processing.map.catalogue import Catalogue, Geometry
 from processing.map.catalogue_file import read_catalogue
+from processing.map.drafting.constructions import arc_through
 from processing.map.feature import Feature, Position, Status, Vertex
 from processing.operations.export import ExportRequest, export
 from resources import path_of
@@ -225,3 +234,51 @@ def test_candidates_are_in_no_format_that_can_not_mark_them(
             assert sum("candidates: 1 " in one.en for one in notes) == number
             contents.append([path.stat().st_size for path in paths])
         assert contents[0] == contents[1]
+
+
+def test_a_centre_line_is_straight_and_on_arcs_and_comes_back(
+    tmp_path: Path, catalogue: Catalogue
+) -> None:
+    east, north = -7890.0, -36050.0
+    turn = math.sqrt(0.5) * 40.0
+    arc = arc_through(
+        (east, north, 10.0),
+        (east + turn, north + 40.0 - turn, 10.5),
+        (east + 40.0, north + 40.0, 11.0),
+    )
+    assert len(arc) > 10
+    line = ((east - 50.0, north, 9.0), *arc, (east + 40.0, north + 49.0, 12.0))
+    centre = _feature("road_center", Geometry.LINE, *line)
+    sheets, _ = _written(tmp_path, catalogue, centre)
+    elements = sheets[_ON_SHEET].elements
+    assert [(one.type, one.code) for one in elements] == [
+        ("E2", "2505"), ("E4", "2505"), ("E2", "2505"),
+    ]  # fmt: skip
+    straight, bent, rest = elements
+    assert (straight.places[-1], bent.places[-1]) == (bent.places[0], rest.places[0])
+    assert len(bent.places) == 3
+    assert math.dist(bent.places[1][:2], (east, north + 40.0)) == pytest.approx(40.0, abs=0.003)
+    read = read_dm_features(tmp_path / f"{_ON_SHEET}.dm")
+    drawn, back = shapely.LineString(line), [shapely.LineString(one.xyz) for one in read.features]
+    assert drawn.hausdorff_distance(shapely.MultiLineString(back)) < 0.02
+    assert back[1].length == pytest.approx(shapely.LineString(arc).length, abs=0.02)
+
+
+def test_a_measured_line_that_bends_is_no_arc(tmp_path: Path, catalogue: Catalogue) -> None:
+    """Twenty metres of road with heights of its own stay what was drawn."""
+    around = [(40.0 * math.sin(a), 40.0 - 40.0 * math.cos(a)) for a in np.linspace(0, 0.5, 40)]
+    places = [
+        (-7890.0 + x, -36050.0 + y, 10.0 + 0.05 * (at % 2)) for at, (x, y) in enumerate(around)
+    ]
+    sheets, _ = _written(tmp_path, catalogue, _feature("road_center", Geometry.LINE, *places))
+    (element,) = sheets[_ON_SHEET].elements
+    assert (element.type, len(element.places)) == ("E2", 40)
+
+
+@given(st.lists(st.tuples(st.integers(0, 300_000), st.integers(0, 400_000), st.integers(0, 9999)),
+                min_size=2, max_size=12))  # fmt: skip
+def test_parts_of_a_line_join_whatever_it_is(places: list[tuple[int, int, int]]) -> None:
+    parts = list(line_parts(places))
+    assert parts[0][1][0] == places[0]
+    assert parts[-1][1][-1] == places[-1]
+    assert all(one[1][-1] == other[1][0] for one, other in pairwise(parts))

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import replace
 from itertools import count
 
 import pytest
@@ -157,6 +159,30 @@ def test_signs_without_number_undecided_and_unmeasured_things_are_told(
     assert found.decided_share == pytest.approx(2 / 3)
     trees = next(one for one in found.kinds if one.kind == "street_tree")
     assert (trees.accepted, trees.candidates, trees.rejected, trees.by_tools) == (1, 1, 1, 1)
+
+
+def test_what_was_accepted_for_its_confidence_alone_counts_as_looked_at_by_nobody(
+    catalogue: Catalogue,
+) -> None:
+    alone = Provenance("trees", 1, {}, 0.95, "r1", unseen=True)
+    trees = [
+        replace(_point((3.0 * at, 0)), provenance=replace(alone, unseen=at < 3)) for at in range(5)
+    ]
+    trees[4] = trees[4].with_status(Status.REJECTED)
+    found = check_map(trees, catalogue)
+    assert [(one.rule, one.features) for one in found.findings] == [
+        ("unseen", (one.id,)) for one in trees[:3]
+    ]
+    (counted,) = found.kinds
+    assert (counted.by_tools, counted.unseen, counted.decided) == (4, 3, 2)
+    assert counted.precision == 0.5
+    assert found.decided_share == pytest.approx(2 / 5)
+    (nobody,) = check_map(trees[:3], catalogue).kinds
+    assert math.isnan(nobody.precision)
+    assert math.isnan(nobody.recall)
+    seen = [one.with_status(Status.ACCEPTED) for one in trees[:3]]
+    assert check_map(seen, catalogue).decided_share == 1.0
+    assert check_map(seen, catalogue).findings == ()
 
 
 _METRES = st.floats(-50, 50).map(lambda value: round(value, 2))

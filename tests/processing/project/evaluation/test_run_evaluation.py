@@ -70,6 +70,26 @@ def test_a_run_is_evaluated_by_what_was_decided_and_drawn(drive: Drive) -> None:
     assert found.is_whole_tool
 
 
+def test_what_was_accepted_for_its_confidence_is_found_but_says_nothing_of_precision(
+    drive: Drive,
+) -> None:
+    made = found_lines(10, drive=drive.id)
+    originals = {one.id: one for one in made.change.added}
+    lines = made.change.added
+    judged = [
+        *(one.with_status(Status.ACCEPTED, unseen=True) for one in lines[:6]),
+        *(one.with_status(Status.ACCEPTED) for one in lines[6:8]),
+        *(one.with_status(Status.REJECTED) for one in lines[8:]),
+        by_hand("missed", *within(drive)),
+        by_hand("missed too", *within(drive)),
+    ]
+    (found,) = evaluate_runs(judged, [made.run], [drive], originals)
+    assert (found.undecided, found.accepted, found.rejected) == (6, 2, 2)
+    assert found.precision.value == 0.5
+    assert found.recall.value == 8 / 10
+    assert sum(one.accepted.of for one in found.reliability.bins) == 4
+
+
 def test_several_runs_of_a_tool_are_evaluated_together_and_one_by_one(drive: Drive) -> None:
     first, second = found_lines(4, drive=drive.id), found_lines(6, seed=2, drive=drive.id)
     features = [
