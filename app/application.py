@@ -24,7 +24,7 @@ from app.help.crash_news import tell_of_crashes
 from app.help.help_actions import HelpActions
 from app.importing.file_actions import FileActions
 from app.importing.source_watch import SourceWatch
-from app.jobs.crash_report import WatchedRun, report_broken_runs, runs_folder
+from app.jobs.crash_report import NotedRun, report_broken_runs, runs_folder
 from app.jobs.jobs import JobQueue
 from app.keys.shortcut_editing import give_keys
 from app.layout.view_area import ViewArea
@@ -85,7 +85,7 @@ def run_window(request: WindowRequest) -> int:
     if request.headless_out is not None:
         return _do_demo_job(request.headless_out)
     broken = report_broken_runs(runs_folder())
-    watched = WatchedRun(runs_folder())
+    noted = NotedRun(runs_folder())
     parts = build_window(Settings(), user_documents_path() / "Zuka")
     parts.window.show()
     _close_on_signals(parts.window)
@@ -93,7 +93,7 @@ def run_window(request: WindowRequest) -> int:
     QTimer.singleShot(0, lambda: _fulfil(request, parts))
     QTimer.singleShot(0, parts.document.tiles.get_ready)
     status = int(application.exec())
-    watched.end()
+    noted.end()
     return status
 
 

@@ -26,7 +26,7 @@ def runs_folder() -> Path:
     return log_path().parent / "runs"
 
 
-class WatchedRun:
+class NotedRun:
     """A run of the window, noted on the disk until it ends properly.
 
     The note holds a lock that the system takes back from a dead process, so that a run that

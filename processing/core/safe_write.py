@@ -60,7 +60,7 @@ def _writing_folder(parent: Path) -> Iterator[Path]:
     folder = parent / f"{_WRITING}{uuid.uuid4().hex[:8]}"
     folder.mkdir()
     lock = FileLock(folder / _LOCK)
-    with suppress(OSError, NotImplementedError):  # some network disks have no locks
+    with suppress(OSError, RuntimeError):  # some network disks have no locks
         lock.acquire(timeout=0)
     try:
         yield folder
@@ -81,7 +81,7 @@ def remove_broken_writing(parent: Path) -> None:
             if folder.is_symlink() or mark.is_symlink() or not mark.is_file():
                 continue
             lock = FileLock(mark)
-            with suppress(OSError, NotImplementedError):  # held: somebody is writing there
+            with suppress(OSError, RuntimeError):  # held: somebody is writing there
                 lock.acquire(timeout=0)
                 _remove(folder, lock)
 

@@ -7,13 +7,13 @@ import subprocess
 import sys
 from pathlib import Path
 
-from app.jobs.crash_report import WatchedRun, report_broken_runs
+from app.jobs.crash_report import NotedRun, report_broken_runs
 
 _RUN = """
 import ctypes, sys
 from pathlib import Path
-from app.jobs.crash_report import WatchedRun
-run = WatchedRun(Path(sys.argv[1]))
+from app.jobs.crash_report import NotedRun
+run = NotedRun(Path(sys.argv[1]))
 print("begun", flush=True)
 {ending}
 """
@@ -68,5 +68,5 @@ def test_ten_reports_are_kept(tmp_path: Path) -> None:
 def test_a_folder_that_cannot_be_written_stops_nobody(tmp_path: Path) -> None:
     occupied = tmp_path / "runs"
     occupied.write_text("a file", encoding="utf-8")
-    WatchedRun(occupied).end()
+    NotedRun(occupied).end()
     assert report_broken_runs(occupied) == ()
