@@ -16,8 +16,8 @@ from processing.tools.registry import TOOLS
 from processing.tools.tool import CandidateResult, Finder, Needs, Tool
 from resources import UnknownResource, path_of
 from widgets.panels.processing.parameter_form import ParameterForm
-from widgets.panels.processing.parameter_picture import PICTURE_PX, ParameterPicture, picture_source
 from widgets.panels.processing.processing_panel import ProcessingPanel
+from widgets.pictures.parameter_picture import PICTURE_PX, ParameterPicture, picture_source
 
 SCENES = sorted(path.stem for path in path_of("pictures/parameters").glob("*.svg"))
 
