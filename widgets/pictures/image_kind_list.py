@@ -16,7 +16,10 @@ from processing.core.text import Language
 from processing.recording.kinds import ImageKind
 from widgets.pictures.parameter_picture import picture_renderer
 
-_PICTURE_PX, _ROOM_PX, _WORDS_PX = QSize(128, 56), 8, 236
+_PICTURE_PX, _ROOM_PX, _WORDS_PX = QSize(128, 56), 6, 250
+_LINES = 4
+"""A name, and its explanation in either language."""
+
 
 Index = QModelIndex | QPersistentModelIndex
 
@@ -40,7 +43,8 @@ class ImageKindList(QStyledItemDelegate):
 
     @override
     def sizeHint(self, option: QStyleOptionViewItem, index: Index) -> QSize:
-        return QSize(0, _PICTURE_PX.height() + 2 * _ROOM_PX)
+        words_px = _LINES * option.fontMetrics.lineSpacing() + 2
+        return QSize(0, max(_PICTURE_PX.height(), words_px) + 2 * _ROOM_PX)
 
     @override
     def paint(self, painter: QPainter, option: QStyleOptionViewItem, index: Index) -> None:
