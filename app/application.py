@@ -292,6 +292,7 @@ def _add_actions(parts: WindowParts, files: FileActions, change: WindowChange) -
     parts.start_page.simulation_requested.connect(files.simulations.choose)
     parts.project_tree.trajectory_requested.connect(files.drives.choose_trajectory)
     parts.project_tree.images_requested.connect(files.drives.choose_images)
+    parts.project_tree.properties_requested.connect(files.properties.choose)
     parts.project_tree.removal_requested.connect(files.drives.remove)
     for view in (parts.image_views, parts.map_view):
         view.open_requested.connect(files.choose_project)

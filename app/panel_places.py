@@ -50,13 +50,15 @@ def _right(
     *,
     behind: str = "processing",
     narrow_behind: str = "attributes",
+    middling_behind: str | None = "processing",
     is_hidden: bool = False,
     front_px: tuple[tuple[ViewLayout, int], ...] = (),
     worked_in_px: int = 0,
 ) -> PanelPlace:
-    """At the right of a wide window; in a narrow one with the layers or below them.
+    """At the right of a wide window, one above the other; in a narrower one behind each other.
 
-    There each place has as many tabs as can be read.
+    In a narrow one they are with the layers or below them, where each place has as many tabs as
+    can be read.
     """
     return PanelPlace(
         _RIGHT,
@@ -64,6 +66,7 @@ def _right(
         380,
         behind=behind,
         narrow_behind=narrow_behind,
+        middling_behind=middling_behind,
         is_hidden=is_hidden,
         front_px=front_px,
         worked_in_px=worked_in_px,
@@ -107,13 +110,13 @@ PANELS: tuple[Panel, ...] = (
         "processing",
         Text("Processing", "処理"),
         lambda parts: parts.processing_panel,
-        _right(behind="", worked_in_px=480),
+        _right(behind="", middling_behind="", worked_in_px=480),
     ),
     Panel(
         "jobs",
         Text("Jobs", "ジョブ"),
         lambda parts: parts.jobs_panel,
-        _right(narrow_behind="layers"),
+        _right(narrow_behind="layers", middling_behind=None),
     ),
     Panel(
         "review",

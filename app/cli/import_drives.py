@@ -41,7 +41,8 @@ def command(arguments: argparse.Namespace) -> int:
     What the project has already is not imported again; with a trajectory or images it is completed.
     """
     request = replace(request_of(arguments), labels=arguments.labels)
-    outcome = import_files(ImportOperation(arguments.project, request), terminal_monitor())
+    operation = ImportOperation(arguments.project, request, replaces=tuple(arguments.replace))
+    outcome = import_files(operation, terminal_monitor())
     _report(outcome.drives, outcome.brought, request)
     return 0
 

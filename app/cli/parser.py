@@ -127,7 +127,7 @@ def _add_route_commands(commands: _Commands[_Parser]) -> None:
     widths.set_defaults(module="maps.widths")
 
 
-def _add_working_commands(commands: _Commands[_Parser]) -> None:
+def _add_import(commands: _Commands[_Parser]) -> None:
     importing = commands.add_parser("import", help="make delivered files a project's drives")
     importing.add_argument("project", type=Path, metavar="PROJECT")
     _add_inputs(importing, least="*")
@@ -137,7 +137,18 @@ def _add_working_commands(commands: _Commands[_Parser]) -> None:
         default="label",
         help="where labels of points come from: an extra dimension, or the delivered classes",
     )
+    importing.add_argument(
+        "--replace",
+        action="append",
+        default=[],
+        metavar="DRIVE",
+        help="a drive, by name, whose place the new files take; the map stays",
+    )
     importing.set_defaults(module="import_drives")
+
+
+def _add_working_commands(commands: _Commands[_Parser]) -> None:
+    _add_import(commands)
     checking = commands.add_parser("check", help="what is damaged in a project")
     checking.add_argument("project", type=Path, metavar="PROJECT")
     checking.add_argument(

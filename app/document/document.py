@@ -295,15 +295,25 @@ class Document(QObject):
         project = self._need_project()
         return self.drive_results.start(project, request, lambda: self._drop_if_empty(project), ())
 
-    def import_files(self, request: ImportRequest, only: Collection[str] = ()) -> str:
+    def import_files(
+        self,
+        request: ImportRequest,
+        only: Collection[str] = (),
+        *,
+        replacing: Collection[str] = (),
+    ) -> str:
         """Import delivered files, or complete drives with them, in the background; gives the job.
 
         Parameters
         ----------
         only : collection of str
             Ids of drives that trajectories and images without points are for.
+        replacing : collection of str
+            Ids of drives that the new ones take the place of.
         """
-        return self.drive_results.start(self._need_project(), request, lambda: None, only)
+        return self.drive_results.start(
+            self._need_project(), request, lambda: None, only, replacing=replacing
+        )
 
     def remove_drives(self, ids: Iterable[str]) -> bool:
         """Take drives out of the project as one undoable step; says whether it could."""

@@ -23,7 +23,7 @@ from processing.project.drive_removal import removal_of
 from processing.project.importing.drive_completion import carry_results_again
 from processing.project.importing.import_request import ImportRequest
 from processing.project.project import Project
-from processing.recording.camera_images.image_store import IMAGES
+from processing.project.store.open_drives import READ_AT_OPENING
 from widgets.shared.shared_state import SharedState
 
 _CARRYING = Text("Taking over labels", "ラベルの引き継ぎ")
@@ -78,6 +78,8 @@ class DriveResults(QObject):
         request: ImportRequest,
         otherwise: Callable[[], None],
         only: Collection[str],
+        *,
+        replacing: Collection[str] = (),
     ) -> str:
         """Bring files in, in the background; gives the job's id.
 
@@ -87,11 +89,16 @@ class DriveResults(QObject):
             Called where nothing comes of it.
         only : collection of str
             As of :func:`processing.project.additions.bring_in`.
+        replacing : collection of str
+            Ids of drives that go when the new ones are there.
         """
         title, work = import_work(request, project, only)
-        return self._job_results.start(
-            project, title, work, lambda brought: self._take(project, brought), otherwise=otherwise
-        )
+
+        def take(brought: Additions) -> None:
+            there = [drive.id for drive in project.drives if drive.id in replacing]
+            self._take(project, replace(brought, replaced=tuple(there)))
+
+        return self._job_results.start(project, title, work, take, otherwise=otherwise)
 
     def remove(
         self, project: Project, ids: Iterable[str], apply: Callable[[Text, Change], bool]
@@ -133,7 +140,7 @@ class DriveResults(QObject):
         others = list(change.drive_ids)
         if change.files is not None:
             files = change.files
-            others += [id_ for id_ in files.drives if IMAGES in files.names_of(id_)]
+            others += [id_ for id_ in files.drives if READ_AT_OPENING & set(files.names_of(id_))]
         if others:
             self.follow(project, others)
             self.taken.emit(())
@@ -158,6 +165,8 @@ class DriveResults(QObject):
         if brought.completed and self._has_to_wait(project, brought):
             return
         has_moved = any(one.places_before is not None for one in brought.completed)
+        has_moved = has_moved or bool(brought.replaced and brought.folders)
+        ids = {feature.id for feature in project.features.all()} if has_moved else set()
         if has_moved:
             self.points_leaving.emit()
         drives = take_over(project, brought)
@@ -166,10 +175,9 @@ class DriveResults(QObject):
         new = drives[: len(brought.folders)]
         others = drives[len(brought.folders) :]
         if drives:
-            self.follow(project, [drive.id for drive in others])
+            self.follow(project, [*(drive.id for drive in others), *brought.replaced])
         if has_moved:
-            ids = tuple(feature.id for feature in project.features.all())
-            self._shared.map_changes.features_changed.emit(ids)
+            self._shared.map_changes.features_changed.emit(tuple(ids))
         self.taken.emit(drives)
         self.reported.emit(imported_words(drives, brought, project.crs))
         lacking = tuple(drive.id for drive in new if lacks_trajectory(drive))

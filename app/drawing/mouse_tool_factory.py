@@ -7,6 +7,7 @@ from processing.map.catalogue import Geometry
 from widgets.mouse_tools.drawing.draw_line import DrawLine
 from widgets.mouse_tools.drawing.draw_parallel import DrawParallel
 from widgets.mouse_tools.drawing.draw_point import DrawPoint
+from widgets.mouse_tools.drawing.draw_row import DrawRow
 from widgets.mouse_tools.drawing.draw_shape import DrawShape, ThreePointShape
 from widgets.mouse_tools.drawing.draw_template import DrawTemplate, TemplatePart
 from widgets.mouse_tools.drawing.measure import MeasureTool
@@ -33,6 +34,7 @@ def make_toolbox(document: Document) -> MouseToolbox:
         "area": DrawLine(document, shared, Geometry.AREA, in_background),
         "rectangle": DrawShape(document, shared, ThreePointShape.RECTANGLE),
         "circle": DrawShape(document, shared, ThreePointShape.CIRCLE),
+        "row": DrawRow(document, shared),
         "parallel": DrawParallel(document, shared),
         "edit": EditVertices(document, shared),
         "move": MoveFeatures(document, shared),

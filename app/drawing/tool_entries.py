@@ -122,6 +122,17 @@ TOOL_ENTRIES: tuple[ToolEntry, ...] = (
         toolbar=0,
     ),
     ToolEntry(
+        "row",
+        Text("Row of lids", "側溝蓋の列"),
+        "Shift+G",
+        "mdi6.view-column-outline",
+        Text(
+            "Click the first and the last lid, or one gap: lids are laid as those beside them.",
+            "最初と最後の蓋の中心、または1枚分の隙間をクリックすると、周囲の蓋に合わせて配置します。",
+        ),
+        toolbar=0,
+    ),
+    ToolEntry(
         "parallel",
         Text("Parallel copy", "平行複写"),
         "O",

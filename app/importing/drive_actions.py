@@ -7,12 +7,17 @@ from pathlib import Path
 from PySide6.QtCore import QCoreApplication
 from PySide6.QtWidgets import QFileDialog
 
+from app.importing.column_request import with_columns
 from app.window.action import Action
 from app.window.window_parts import WindowParts
+from processing.core.errors import UserError
 from processing.core.text import Text
-from processing.formats.format import Content
+from processing.formats.format import DELIVERED, Content
 from processing.formats.registry import FORMATS
+from processing.project.importing.dropped_files import request_of_files
 from processing.project.importing.import_request import ImportRequest
+
+DELIVERIES = Text("Deliveries", "納品ファイル")
 
 
 class DriveActions:
@@ -48,6 +53,17 @@ class DriveActions:
                 needs_project=True,
             ),
             Action(
+                "replace-drive",
+                Text("Replace the drive shown…", "表示中の走行データを差し替え…"),
+                self.choose_replacement,
+                "file",
+                hint=Text(
+                    "Imports a new delivery in the place of the drive in the image; the map stays.",
+                    "画像に表示中の走行データを新しい納品データに差し替えます。図面は残ります。",
+                ),
+                needs_project=True,
+            ),
+            Action(
                 "remove-drive",
                 Text("Remove the drive shown", "表示中の走行データを除く"),
                 self.remove,
@@ -74,6 +90,25 @@ class DriveActions:
         if paths:
             self._add(ImportRequest((), images=paths), drive)
 
+    def choose_replacement(self, drive: str = "") -> None:
+        """Ask for the files of a new delivery that takes the place of a drive."""
+        document = self._parts.document
+        id_ = drive or document.shared.view_settings.drive_id
+        title = QCoreApplication.translate("DriveActions", "Replace by a new delivery")
+        paths = self._choose_files(title, *DELIVERED) if id_ else ()
+        if not paths:
+            return
+        try:
+            request = request_of_files(paths, "")
+        except UserError as error:
+            self._parts.message_bar.show_error(error)
+            return
+
+        def start(clear: ImportRequest) -> None:
+            document.import_files(clear, replacing=(id_,))
+
+        with_columns(self._parts, request, start)
+
     def remove(self, drive: str = "") -> None:
         """Take a drive, or the one that the image shows, out of the project."""
         document = self._parts.document
@@ -84,12 +119,13 @@ class DriveActions:
     def _add(self, request: ImportRequest, drive: str) -> None:
         self._parts.document.import_files(request, (drive,) if drive else ())
 
-    def _choose_files(self, title: str, content: Content) -> tuple[Path, ...]:
+    def _choose_files(self, title: str, *contents: Content) -> tuple[Path, ...]:
         document = self._parts.document
         if document.project is None:
             return ()
         files = [file for drive in document.drives() for file in drive.delivered_files]
         folder = files[0].parent if files else document.project.folder.parent
-        kinds = FORMATS.filter_read(content).in_language(self._parts.language)
+        name = DELIVERIES if len(contents) > 1 else None
+        kinds = FORMATS.filter_read(*contents, name=name).in_language(self._parts.language)
         names, _ = QFileDialog.getOpenFileNames(self._parts.window, title, str(folder), kinds)
         return tuple(Path(name) for name in names)

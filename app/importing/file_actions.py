@@ -11,7 +11,8 @@ from PySide6.QtWidgets import QFileDialog
 from app.catalogue.catalogue_update import adopt_catalogue
 from app.importing.column_request import with_columns
 from app.importing.delivery_look import DeliveryLook
-from app.importing.drive_actions import DriveActions
+from app.importing.drive_actions import DELIVERIES, DriveActions
+from app.importing.drive_properties import DriveProperties
 from app.importing.existing_maps import ExistingMaps
 from app.importing.project_checking import ProjectChecking
 from app.importing.recent_menu import RecentMenu
@@ -37,8 +38,6 @@ from widgets.dialogs.import_drive import ImportForm, ImportOptions
 from widgets.dialogs.reference_systems import ReferenceSystemForm
 from widgets.dialogs.work_details import WorkDetailsForm
 
-_DELIVERIES = Text("Deliveries", "納品ファイル")
-
 
 class FileActions:
     """What the file menu does; also what a drop and the start page ask for."""
@@ -49,6 +48,7 @@ class FileActions:
         self._dialogs = ProjectDialogs(parts)
         self.simulations = Simulations(parts, projects_folder)
         self.drives = DriveActions(parts)
+        self.properties = DriveProperties(parts, self._dialogs, self.drives)
         self.recent = RecentMenu(parts)
         self._asked: tuple[str, ImportOptions] | None = None
         parts.jobs.failed.connect(self._on_jobs_failed)
@@ -59,7 +59,7 @@ class FileActions:
     def actions(self) -> tuple[Action, ...]:
         """The file menu, from top to bottom."""
         opening, *others = self._of_files()
-        adding = 1 + len(self.drives.actions())
+        adding = 2 + len(self.drives.actions())
         return grouped(
             (opening, self.recent.action()),
             others[:adding],
@@ -96,6 +96,7 @@ class FileActions:
                     "点群を軌跡・画像とともに読み込みます。元のファイルは変更しません。",
                 ),
             ),
+            self.properties.action(),
             *self.drives.actions(),
             self._existing_map(),
             self._simulate(),
@@ -257,7 +258,7 @@ class FileActions:
         folder = project.folder if project else self._new_project_for(files)
 
         def make() -> ImportForm:
-            kinds = FORMATS.filter_read(*DELIVERED, name=_DELIVERIES)
+            kinds = FORMATS.filter_read(*DELIVERED, name=DELIVERIES)
             form = ImportForm(
                 folder,
                 files,

@@ -6,7 +6,9 @@ from PySide6.QtCore import QObject, Qt
 
 from app.review.review import Review
 from app.review.review_actions import QUEUE_KEYS
+from app.review.run_comparing import RunComparing
 from app.runs.process_actions import one_click_buttons
+from app.window.project_dialogs import ProjectDialogs
 from app.window.window_parts import WindowParts
 from processing.map.catalogue import Geometry
 from processing.map.feature import Feature, Status
@@ -49,6 +51,8 @@ def connect_review(parts: WindowParts) -> None:
     panel.processing_requested.connect(wiring.on_panel_processing_requested)
     panel.ask_count_from(review.count_from)
     parts.project_tree.review_requested.connect(wiring.on_tree_review_requested)
+    comparing = RunComparing(parts, ProjectDialogs(parts))
+    parts.project_tree.comparison_requested.connect(comparing.choose)
     parts.document.shared.view_settings.shows_rejected_changed.connect(
         wiring.on_settings_shows_rejected_changed
     )

@@ -107,6 +107,17 @@ def rectangle(studio: ScreenshotWindow) -> None:
     studio.hover(studio.spot(RIGHT, at(9.0, -0.6)), CONTROL)
 
 
+def row_of_lids(studio: ScreenshotWindow) -> None:
+    """A row that goes on as the one grating that is there."""
+    studio.look(RIGHT, at(9.5, -0.6), 10)
+    studio.choose_kind("Grating")
+    studio.letter("R")
+    studio.draw(RIGHT, [at(8.0, -0.2), at(8.5, -0.2), at(8.5, -0.6)])
+    studio.letter("G", SHIFT)
+    studio.draw(RIGHT, [at(9.25, -0.4)])
+    studio.hover(studio.spot(RIGHT, at(10.75, -0.4)), CONTROL)
+
+
 def circle(studio: ScreenshotWindow) -> None:
     """A circle by three points, with its diameter."""
     studio.look(RIGHT, at(9.0, CARRIAGEWAY_M), 10)
@@ -187,6 +198,7 @@ DRAWING: Mapping[str, Callable[[ScreenshotWindow], None]] = {
     "draw-plane": plane,
     "draw-point": point,
     "draw-rectangle": rectangle,
+    "draw-row": row_of_lids,
     "draw-spline": spline,
     "draw-trace": trace,
     "draw-trace-stopped": trace_stopped,

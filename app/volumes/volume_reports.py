@@ -14,7 +14,7 @@ from processing.methods.earthwork.maps.contours import LevelLine
 from processing.methods.earthwork.surfaces.sides import Side
 from processing.methods.earthwork.volumes.volume_result import VolumeResult
 from processing.operations.volume_papers import VolumePapers, judged_ground
-from processing.project.volumes.volume import ChosenSide, KeptVolume, SideKind
+from processing.project.volumes.volume import ChosenSide, KeptVolume, SideKind, VolumeRequest
 from processing.project.work_details import WorkDetails
 from processing.project.work_store import ChosenLimits
 from processing.recording.drive import Drive
@@ -98,9 +98,16 @@ def _papers_of(given: ExportedVolume) -> VolumePapers:
         _side_facts(request.after, given),
         given.language,
         given.never,
-        "" if request.boundary is None else _BOUNDARY.in_language(given.language),
+        _name_of_area(request, given.language),
+        request.boundary,
         is_design_before=request.before.kind is SideKind.DESIGN,
     )
+
+
+def _name_of_area(request: VolumeRequest, language: Language) -> str:
+    if request.boundary is None:
+        return ""
+    return request.boundary_name or _BOUNDARY.in_language(language)
 
 
 def _side_facts(side: ChosenSide, given: ExportedVolume) -> SideFacts:
@@ -108,10 +115,9 @@ def _side_facts(side: ChosenSide, given: ExportedVolume) -> SideFacts:
         return SideFacts(_LEVEL.filled(height=side.height_m).in_language(given.language))
     if side.kind is SideKind.DESIGN:
         return SideFacts(side.name, PurePath(side.path).name)
+    drives = [drive for drive in given.drives if drive.id in side.drives]
     files = dict.fromkeys(
-        PurePath(source.path).name
-        for drive in given.drives
-        if drive.id in side.drives
-        for source in drive.info.sources
+        PurePath(source.path).name for drive in drives for source in drive.info.sources
     )
-    return SideFacts(side.name, ", ".join(files), side.measured_on)
+    points = sum(drive.count for drive in drives) if drives else None
+    return SideFacts(side.name, ", ".join(files), side.measured_on, points)

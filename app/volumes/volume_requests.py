@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -10,9 +11,9 @@ import shapely
 from shapely.geometry.base import BaseGeometry
 
 from processing.core.errors import MissingInput
-from processing.core.text import Text
+from processing.core.text import Language, Text
 from processing.formats.vectors.boundary_files import read_boundary
-from processing.map.catalogue import Geometry
+from processing.map.catalogue import Catalogue, Geometry
 from processing.map.feature import Feature
 from processing.methods.earthwork.geometry.boundary import boundary_polygon
 from processing.project.volumes.epochs import Epoch
@@ -74,6 +75,16 @@ def boundary_of_features(features: Iterable[Feature]) -> BaseGeometry:
         boundary_polygon([np.array([vertex.xyz[:2] for vertex in area.vertices])]) for area in areas
     ]
     return shapely.union_all(parts)
+
+
+def name_of_areas(features: Iterable[Feature], catalogue: Catalogue, language: Language) -> str:
+    """What areas of the map are called as a boundary: their kinds, and how many of each."""
+    kinds = Counter(one.kind for one in features if one.geometry is Geometry.AREA)
+    names = (
+        (catalogue[kind].name.in_language(language) if kind in catalogue else kind, count)
+        for kind, count in kinds.items()
+    )
+    return ", ".join(name if count == 1 else f"{name} × {count}" for name, count in names)
 
 
 def boundary_of_file(path: Path, layer: str, crs: str) -> BaseGeometry:

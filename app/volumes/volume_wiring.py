@@ -18,6 +18,7 @@ from app.volumes.volume_requests import (
     boundary_of_features,
     boundary_of_file,
     lines_of_features,
+    name_of_areas,
     reason_against,
 )
 from app.window.window_parts import WindowParts
@@ -174,11 +175,15 @@ class _VolumeWiring(QObject):
         if before is None or after is None:
             return None
         boundary: BaseGeometry | None = None
+        name = ""
         lines: tuple[BaseGeometry, ...] = ()
         if form.within is AreaChoice.SELECTED:
-            boundary = boundary_of_features(self._selected_features())
+            chosen = self._selected_features()
+            boundary = boundary_of_features(chosen)
+            name = name_of_areas(chosen, self._parts.document.catalogue(), self._parts.language)
         elif (area := form.boundary) is not None:
             boundary = boundary_of_file(area.path, area.layer, self._parts.document.crs())
+            name = f"{area.path.name}#{area.layer}" if area.layer else area.path.name
         if form.uses_lines:
             lines = lines_of_features(self._selected_features())
         values = parameter_values(VOLUME, form.parameters.value())
@@ -190,6 +195,7 @@ class _VolumeWiring(QObject):
             lines[0] if len(lines) == 1 else None,
             lines,
             self._parts.of(Earthwork).others_than((before, after)),
+            name,
         )
 
     def _selected_features(self) -> Sequence[Feature]:

@@ -31,9 +31,13 @@ from processing.core.text import Language, Text
 
 _ICON_PX = 20
 _BESIDE = "side-by-side"
-_NARROW_PX = 1800
+_NARROW_PX = 1500
 """Narrower windows have panels at one side only, so that the street keeps its room."""
+_WIDE_PX = 1800
+"""Wider ones have two panels above each other at the right; between, one that is tall."""
 _COLUMN_PX = 280
+_MIDDLING_PX = (240, 290)
+"""Of the columns at the left and the right, which leave two thirds to the street."""
 _LEFT = Qt.DockWidgetArea.LeftDockWidgetArea
 _BELOW = Qt.DockWidgetArea.BottomDockWidgetArea
 _HOLDS_NOTHING = "the window holds nothing yet"
@@ -297,25 +301,38 @@ class MainWindow(QMainWindow):
 
     def _place_docks(self) -> None:
         """Put the docks where they belong at first, in a window as wide as this."""
-        is_narrow = self.width() < _NARROW_PX
         self._in_front.clear()
         placed: list[DockPanel] = []
         for panel in self._panels:
-            dock, behind = (
-                self._docks[panel.id],
-                panel.place.narrow_behind if is_narrow else panel.place.behind,
-            )
-            is_beside = panel.place.area is not _BELOW
-            self.addDockWidget(_LEFT if is_narrow and is_beside else panel.place.area, dock)
+            dock, (area, behind) = self._docks[panel.id], self._standing_of(panel)
+            self.addDockWidget(area, dock)
             if behind:
                 self.tabifyDockWidget(self._docks[behind], dock)
                 self._in_front.append(self._docks[behind])
             else:
                 placed.append(panel)
         own = [self._docks[panel.id] for panel in placed]
-        widths = [_COLUMN_PX if is_narrow else panel.place.width for panel in placed]
-        self.resizeDocks(own, widths, Qt.Orientation.Horizontal)
+        self.resizeDocks(
+            own, [self._width_of(panel) for panel in placed], Qt.Orientation.Horizontal
+        )
         self.resizeDocks(own, [panel.place.height for panel in placed], Qt.Orientation.Vertical)
+
+    def _standing_of(self, panel: DockPanel) -> tuple[Qt.DockWidgetArea, str]:
+        """At which side a panel is in a window as wide as this, and behind which other."""
+        place = panel.place
+        if self.width() >= _WIDE_PX or place.area is _BELOW:
+            return place.area, place.behind
+        if self.width() < _NARROW_PX:
+            return _LEFT, place.narrow_behind
+        if place.middling_behind is not None:
+            return place.area, place.middling_behind
+        return _LEFT, place.narrow_behind
+
+    def _width_of(self, panel: DockPanel) -> int:
+        if self.width() >= _WIDE_PX:
+            return panel.place.width
+        is_narrow = self.width() < _NARROW_PX
+        return _COLUMN_PX if is_narrow else _MIDDLING_PX[panel.place.middling_behind is not None]
 
     def _remember_docks(self) -> None:
         """Keep how the docks stand, for the next time that a project is open."""

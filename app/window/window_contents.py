@@ -28,6 +28,9 @@ class PanelPlace:
         Id of the panel with which it shares a place, as a tab; empty for a place of its own.
     narrow_behind : str
         The same in a window too narrow for panels at both sides.
+    middling_behind : str or None
+        The same in a window with room for one panel at the right, as high as the window; None for
+        a panel that stands as in a narrow one.
     is_hidden : bool
         Whether it waits to be called by its action.
     key : str
@@ -43,6 +46,7 @@ class PanelPlace:
     height: int
     behind: str = ""
     narrow_behind: str = ""
+    middling_behind: str | None = None
     is_hidden: bool = False
     key: str = ""
     front_px: tuple[tuple[ViewLayout, int], ...] = ()

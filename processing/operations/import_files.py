@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
-from dataclasses import dataclass
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
 
+from processing.core.errors import OutOfRange, use_one_of
 from processing.core.monitor import Monitor
 from processing.core.text import Text
 from processing.image.images_of_drives import image_of
@@ -30,11 +31,14 @@ class ImportOperation:
     only : tuple of str
         Ids of drives that trajectories and images without point files are for; empty for all that
         lack them.
+    replaces : tuple of str
+        Ids or names of drives that the new ones take the place of.
     """
 
     project: Path
     request: ImportRequest
     only: tuple[str, ...] = ()
+    replaces: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -74,16 +78,32 @@ def import_files(operation: ImportOperation, monitor: Monitor) -> ImportOutcome:
     project = Project.create(folder, request.crs) if is_new else Project.open(folder)
     is_finished = False
     try:
+        going = _named(project, operation.replaces)
         brought = bring_prepared(request, home_of(project), monitor, only=operation.only)
         if request.crs and not brought.folders:
             project.set_crs(request.crs)
-        drives = take_over(project, brought)
+        drives = take_over(project, replace(brought, replaced=going))
         is_finished = True
     finally:
         project.close()
         if is_new and not is_finished and not unfinished_imports(project.folder):
             Project.remove_new(folder)
     return ImportOutcome(drives, brought)
+
+
+def _named(project: Project, names: Sequence[str]) -> tuple[str, ...]:
+    """The ids of drives by their ids or names."""
+    ids = {one: drive.id for drive in project.drives for one in (drive.info.name, drive.id)}
+    for name in names:
+        if name not in ids:
+            raise OutOfRange(
+                Text(
+                    "The project has no such drive.", "その走行データはプロジェクトにありません。"
+                ),
+                Text.same(name),
+                use_one_of(drive.info.name for drive in project.drives),
+            )
+    return tuple(dict.fromkeys(ids[name] for name in names))
 
 
 def bring_prepared(

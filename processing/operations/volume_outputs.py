@@ -15,11 +15,12 @@ from processing.core.text import Language, Text
 from processing.formats.format import Content
 from processing.formats.registry import FORMATS
 from processing.formats.surfaces.change_geotiff import write_change_geotiff
-from processing.formats.vectors.boundary_files import file_and_layer
+from processing.formats.vectors.boundary_files import file_and_layer, read_boundary
 from processing.formats.work_facts import SideFacts
 from processing.methods.earthwork.as_built.as_built import AsBuiltResult
 from processing.methods.earthwork.as_built.limits import AsBuiltLimits
 from processing.methods.earthwork.as_built.limits_file import as_built_limits, read_limits
+from processing.methods.earthwork.geometry.boundary import boundary_polygon
 from processing.methods.earthwork.geometry.triangle_surface import TriangleSurface
 from processing.methods.earthwork.geometry.volume_scope import VolumeScope
 from processing.methods.earthwork.surfaces.sides import EpochGround
@@ -166,10 +167,11 @@ class VolumeReports:
 
     def _papers(self) -> VolumePapers:
         before, after = self.sides
-        boundary = ""
+        boundary, area = "", None
         if self.parameters.boundary:
             file, layer = file_and_layer(self.parameters.boundary)
             boundary = f"{file.name}#{layer}" if layer else file.name
+            area = boundary_polygon(read_boundary(file, crs=self.crs, layer=layer).rings)
         today = datetime.now().astimezone().date()
         return VolumePapers(
             self.details.facts(self.crs, version("zuka"), today),
@@ -178,6 +180,7 @@ class VolumeReports:
             self.language,
             self.never,
             boundary,
+            area,
             is_design_before=isinstance(before.side, TriangleSurface),
         )
 

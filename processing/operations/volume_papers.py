@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from shapely.geometry.base import BaseGeometry
@@ -21,6 +21,7 @@ from processing.methods.earthwork.as_built.as_built import AsBuiltResult, evalua
 from processing.methods.earthwork.as_built.limits import AsBuiltLimits
 from processing.methods.earthwork.surfaces.sides import Side
 from processing.methods.earthwork.volumes.comparison_checks import ground_and_design
+from processing.methods.earthwork.volumes.other_methods import shown_sections
 from processing.methods.earthwork.volumes.volume_result import VolumeResult
 
 TABLE, WORKBOOK, PAPER = ".csv", ".xlsx", ".pdf"
@@ -41,6 +42,8 @@ class VolumePapers:
         Files that were read, which must not be overwritten.
     boundary : str
         What the area is called that was counted; empty where all was.
+    area : shapely geometry or None
+        That area, m, project CRS.
     is_design_before : bool
         Which of the two sides the form judges by.
     """
@@ -51,6 +54,7 @@ class VolumePapers:
     language: Language
     never: Sequence[Path]
     boundary: str = ""
+    area: BaseGeometry | None = None
     is_design_before: bool = False
 
     def write_report(
@@ -63,7 +67,13 @@ class VolumePapers:
         InUse, NoSpace, Cancelled
         """
         facts = VolumeFacts(
-            self.work, self.before, self.after, self.boundary, result.line, result.between
+            self.work,
+            self.before,
+            self.after,
+            self.boundary,
+            result.line,
+            result.between,
+            self.area,
         )
         language, never = self.language, self.never
         if ending == TABLE:
@@ -71,6 +81,9 @@ class VolumePapers:
         elif ending == WORKBOOK:
             write_volume_xlsx(path, result, facts, language, never=never)
         else:
+            if result.line is None:
+                shown = shown_sections(result.change, self.area, monitor)
+                facts = replace(facts, figures=shown)
             write_volume_report(path, result, facts, language, monitor=monitor, never=never)
 
     def write_form(

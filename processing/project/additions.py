@@ -13,6 +13,8 @@ from processing.core.errors import UNCHANGED, OutOfRange
 from processing.core.monitor import Monitor, PartMonitor
 from processing.core.text import Text
 from processing.formats.trajectories.image_list import read_image_list
+from processing.map.change import Change
+from processing.project.drive_removal import removal_of
 from processing.project.importing.drive_completion import CompletedDrive, complete_drive
 from processing.project.importing.import_request import ImportRequest
 from processing.project.importing.importing import import_drives
@@ -28,6 +30,7 @@ from processing.project.project import Project
 from processing.recording.camera_images.image_list import ImageList
 from processing.recording.columns.ordering import sample_column
 from processing.recording.drive import SCAN, Drive
+from processing.recording.drive_info import read_drive_info, write_drive_info
 
 _SAMPLE_POINTS = 200_000
 _SLACK_S = 1.0
@@ -70,6 +73,8 @@ class Additions:
         Point files that are in the project already.
     beside : tuple of Path
         Trajectories that lie beside the new files and were not given.
+    replaced : tuple of str
+        Ids of drives that the new ones take the place of.
     """
 
     folders: tuple[Path, ...] = ()
@@ -77,6 +82,7 @@ class Additions:
     images: Mapping[str, ImageList] = field(default_factory=dict)
     known: tuple[Path, ...] = ()
     beside: tuple[Path, ...] = ()
+    replaced: tuple[str, ...] = ()
 
     @property
     def are_none(self) -> bool:
@@ -144,12 +150,22 @@ def home_of(project: Project) -> Home:
 def take_over(project: Project, brought: Additions) -> tuple[Drive, ...]:
     """Let a project have what files brought, as one step; gives drives that are new or others.
 
+    A drive that one other takes the place of gives its name to it; its candidates go with it, what
+    was drawn or accepted stays where it is.
+
     Raises
     ------
     UserError
         As :meth:`Project.take_in`.
     """
-    return project.take_in(brought.folders, brought.completed, brought.images)
+    leaving = Change()
+    if brought.folders and brought.replaced:
+        old = [project.drive(id_) for id_ in brought.replaced]
+        leaving = removal_of(project, old)
+        if len(old) == len(brought.folders) == 1:
+            info = read_drive_info(brought.folders[0])
+            write_drive_info(brought.folders[0], replace(info, name=old[0].info.name))
+    return project.take_in(brought.folders, brought.completed, brought.images, leaving=leaving)
 
 
 def lacks_trajectory(drive: Drive) -> bool:

@@ -295,6 +295,8 @@ class Project:
         folders: tuple[Path, ...],
         completed: Sequence[CompletedDrive] = (),
         images: Mapping[str, ImageList] | None = None,
+        *,
+        leaving: Change | None = None,
     ) -> tuple[Drive, ...]:
         """Take new drives in, and what completes others, as one step that can be undone.
 
@@ -306,6 +308,8 @@ class Project:
             Finished temporary folders of new drives.
         images : mapping of str to ImageList
             By drive: all camera images that it has from now on.
+        leaving : Change, optional
+            Drives that the new ones take the place of, and what goes with them.
 
         Returns
         -------
@@ -320,24 +324,23 @@ class Project:
         NoSpace, InUse, BadFile
             Nothing was changed.
         """
-        images = images or {}
+        images, going = images or {}, leaving or Change()
         new = [Drive(folder) for folder in folders]
-        for one in completed:
-            if one.id not in self._folders.ids or not one.fits(self.drive(one.id)):
-                raise drive_changed(one.name)
+        self._refuse_changed(completed)
         others = dict.fromkeys([*(one.id for one in completed), *images])
         if not (new or others):
             return ()
         crs = self._crs_with(new)
+        built = tuple(self._folders.listed(one.id) for one in completed)
         change = Change(
             replaced=self.features.points_elsewhere(_positions(completed)),
-            removed_drives=tuple(self._folders.listed(one.id) for one in completed),
+            removed=going.removed,
+            removed_drives=(*built, *going.removed_drives),
             files=self._with_images(images, completed),
             system=None if crs == self.crs else SystemChange(self.crs, crs),
         )
-        label = _label_of(
-            [drive.info.name for drive in new], [self.drive(id_).info.name for id_ in others]
-        )
+        had = [self.drive(id_).info.name for id_ in others]
+        label = _label_of([one.info.name for one in new], had, going)
         arriving = {drive.id: folder for drive, folder in zip(new, folders, strict=True)}
         with (
             self._folders.moving_in(arriving, {one.id: one.folder for one in completed}) as moved,
@@ -417,6 +420,11 @@ class Project:
         """Close the database and let others have the project; may be called again."""
         self._closing.close()
 
+    def _refuse_changed(self, completed: Sequence[CompletedDrive]) -> None:
+        for one in completed:
+            if one.id not in self._folders.ids or not one.fits(self.drive(one.id)):
+                raise drive_changed(one.name)
+
     def _crs_with(self, new: list[Drive]) -> str:
         """The project's reference system once drives are in it."""
         crs = self.crs
@@ -464,7 +472,7 @@ def _positions(completed: Sequence[CompletedDrive]) -> dict[str, NDArray[np.int6
     return {one.id: where for one in completed if (where := one.positions()) is not None}
 
 
-def _label_of(new: Sequence[str], others: Sequence[str]) -> Text:
+def _label_of(new: Sequence[str], others: Sequence[str], going: Change) -> Text:
     """What the undo menu calls drives that came, or got what they lacked."""
     names = [*new, *others]
     listed = ", ".join(names[:_MOST_NAMES])
@@ -473,4 +481,6 @@ def _label_of(new: Sequence[str], others: Sequence[str]) -> Text:
         if new
         else Text("Add to {names}", "{names} への追加")
     )
+    if going.removed_drives:
+        words = Text("Replace by {names}", "{names} への差し替え")
     return words.filled(names=listed if len(names) <= _MOST_NAMES else f"{listed} …")

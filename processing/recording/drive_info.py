@@ -6,6 +6,7 @@ import dataclasses
 import json
 import math
 from dataclasses import dataclass
+from datetime import date
 from pathlib import Path
 from typing import Any
 
@@ -74,6 +75,8 @@ class DriveInfo:
         ``source_index`` say it.
     scanner_position : tuple of float or None
         Where a standing scanner was, m, project CRS; None for others and where it is not known.
+    measured_on : str
+        Day that somebody said it was measured on, as ``2026-04-01``; empty where the times count.
     """
 
     id: str
@@ -93,6 +96,7 @@ class DriveInfo:
     cells_per_row: int = 0
     source_runs: tuple[SourceRun, ...] = ()
     scanner_position: Triple | None = None
+    measured_on: str = ""
 
     @property
     def has_measured_times(self) -> bool:
@@ -181,6 +185,8 @@ def _check(values: dict[str, Any]) -> None:
         # The extent of no points is none.
         if not all(map(math.isfinite, values[name])) and values["count"]:
             raise ValueError(name)
+    if values.get("measured_on"):
+        date.fromisoformat(values["measured_on"])
     for run in values["source_runs"]:
         if not 0 <= run.source < len(values["sources"]) or min(run.start, run.first_index) < 0:
             message = "source_runs"

@@ -366,6 +366,21 @@ kept</source>
     </message>
 </context>
 <context>
+    <name>CompareRunsForm</name>
+    <message>
+        <source>Compare runs</source>
+        <translation>実行結果の比較</translation>
+    </message>
+    <message>
+        <source>Keep this run</source>
+        <translation>この結果を残す</translation>
+    </message>
+    <message>
+        <source>{count} candidates, {alone} of them only here</source>
+        <translation>候補{count}件、うちこの結果だけのもの{alone}件</translation>
+    </message>
+</context>
+<context>
     <name>ConfidenceBar</name>
     <message>
         <source>Confidence: how sure the tool is of it, 0 to 1</source>
@@ -470,6 +485,49 @@ kept</source>
     <message>
         <source>Add camera images</source>
         <translation>カメラ画像を追加</translation>
+    </message>
+    <message>
+        <source>Replace by a new delivery</source>
+        <translation>新しい納品データに差し替え</translation>
+    </message>
+</context>
+<context>
+    <name>DrivePropertiesForm</name>
+    <message>
+        <source>Properties of a drive</source>
+        <translation>走行データのプロパティ</translation>
+    </message>
+    <message>
+        <source>Name</source>
+        <translation>名称</translation>
+    </message>
+    <message>
+        <source>Measured on</source>
+        <translation>計測日</translation>
+    </message>
+    <message>
+        <source>unknown, for instance 2026-04-01</source>
+        <translation>不明（例: 2026-04-01）</translation>
+    </message>
+    <message>
+        <source>Trajectory…</source>
+        <translation>走行軌跡…</translation>
+    </message>
+    <message>
+        <source>Camera images…</source>
+        <translation>カメラ画像…</translation>
+    </message>
+    <message>
+        <source>Reference system…</source>
+        <translation>座標参照系…</translation>
+    </message>
+    <message>
+        <source>Replace by a new delivery…</source>
+        <translation>新しい納品データに差し替え…</translation>
+    </message>
+    <message>
+        <source>Remove from the project</source>
+        <translation>プロジェクトから除く</translation>
     </message>
 </context>
 <context>
@@ -1444,32 +1502,12 @@ kept</source>
         <translation>カメラ画像を追加…</translation>
     </message>
     <message>
+        <source>Properties…</source>
+        <translation>プロパティ…</translation>
+    </message>
+    <message>
         <source>Remove from the project</source>
         <translation>プロジェクトから除く</translation>
-    </message>
-    <message>
-        <source>{count} points</source>
-        <translation>{count} 点</translation>
-    </message>
-    <message>
-        <source>{size} m</source>
-        <translation>{size} m</translation>
-    </message>
-    <message>
-        <source>reference system unknown</source>
-        <translation>座標参照系は不明</translation>
-    </message>
-    <message>
-        <source>No revolutions of a scanner: {reason}</source>
-        <translation>スキャナの回転なし: {reason}</translation>
-    </message>
-    <message>
-        <source>{pulses} pulses per revolution. {how}</source>
-        <translation>1回転あたり{pulses}パルス。{how}</translation>
-    </message>
-    <message>
-        <source>{rate} revolutions per second, {pulses} pulses per revolution</source>
-        <translation>毎秒{rate}回転、1回転あたり{pulses}パルス</translation>
     </message>
 </context>
 <context>
@@ -1477,6 +1515,10 @@ kept</source>
     <message>
         <source>Review this run</source>
         <translation>この実行の候補を確認</translation>
+    </message>
+    <message>
+        <source>Compare with another run…</source>
+        <translation>ほかの実行結果と比較…</translation>
     </message>
     <message>
         <source>Show its features</source>

@@ -9,8 +9,8 @@ from PySide6.QtWidgets import QHBoxLayout, QToolButton, QVBoxLayout, QWidget
 
 from processing.recording.kinds import ImageKind
 from widgets.image_view.view import ImageView
+from widgets.pictures.image_view_settings import ImageViewSettings
 from widgets.shared.image_orientation import ImageOrientation
-from widgets.shared.image_view_settings import ImageViewSettings
 from widgets.shared.view_settings import ViewSettings
 
 

@@ -18,8 +18,8 @@ from widgets.image_view.orientation.viewport import Viewport
 from widgets.image_view.panes import Pane, PaneHeader, SecondaryImage, ShownImage
 from widgets.image_view.view import ImageView
 from widgets.mouse_tools.mouse_tool import MouseTool
+from widgets.pictures.image_view_settings import ImageViewSettings
 from widgets.shared.cursor import PickedPosition
-from widgets.shared.image_view_settings import ImageViewSettings
 from widgets.shared.map_source import MapSource
 from widgets.shared.own_settings import OwnSettings
 from widgets.shared.shared_state import SharedState

@@ -6,7 +6,7 @@ from PySide6.QtCore import QSignalBlocker, Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QSpinBox, QToolButton, QWidget
 
 from processing.core.text import Language
-from widgets.shared.image_view_settings import ImageViewSettings
+from widgets.pictures.image_view_settings import ImageViewSettings
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
 

@@ -63,6 +63,11 @@ class ShownDrives:
         vehicle_path = self._way()
         return None if vehicle_path is None else overviews.along_path(vehicle_path, near)
 
+    def above_ground(self, camera: SceneCamera) -> SceneCamera:
+        """The camera that somebody wants, but not below the road of the drive."""
+        vehicle_path = self._way()
+        return camera if vehicle_path is None else overviews.above_ground(camera, vehicle_path)
+
     def course_deg(self, near: Floats) -> float:
         """Direction of the drive at a place, clockwise from grid north; north if unknown."""
         vehicle_path = self._way()

@@ -117,7 +117,7 @@ class SceneView(QWidget):
         shared.view_settings.hidden_drives_changed.connect(self._on_settings_image_changed)
         for changed in (shared.sketch.changed, shared.snap.mark_changed, hand.acted):
             changed.connect(self._paint_overlay)
-        hand.camera_moved.connect(self.look_from)
+        hand.camera_moved.connect(self._on_mouse_camera_moved)
         hand.menu_requested.connect(self._on_mouse_menu_requested)
         hand.everything_requested.connect(self.show_everything)
         hand.selection_requested.connect(self.center_on_selection)
@@ -327,6 +327,9 @@ class SceneView(QWidget):
     def _on_settings_image_changed(self) -> None:
         if self._drives.read():
             self._use_drives()
+
+    def _on_mouse_camera_moved(self, camera: SceneCamera) -> None:
+        self.look_from(self._drives.above_ground(camera))
 
     def _on_mouse_menu_requested(self, where: QPointF) -> None:
         is_shaded = self._cloud is not None and self._cloud.is_shading_wanted

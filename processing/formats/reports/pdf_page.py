@@ -83,11 +83,14 @@ class Paper:
         """Words in the paper's language."""
         return words if isinstance(words, str) else words.in_language(self.language)
 
-    def next_page(self) -> None:
-        """End the page and begin another."""
+    def next_page(self, size_mm: tuple[float, float] | None = None) -> None:
+        """End the page and begin another, of this size where one is given."""
         self._layers.end()
         self._canvas.showPage()
         self.page += 1
+        if size_mm is not None:
+            self.width_mm, self.height_mm = size_mm
+            self._canvas.setPageSize((size_mm[0] * POINTS_OF_MM, size_mm[1] * POINTS_OF_MM))
 
     def foot(self, software: str, margin_mm: float) -> None:
         """Say below the page what made it, and its number."""

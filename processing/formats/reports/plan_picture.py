@@ -6,7 +6,9 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
+from shapely.geometry.base import BaseGeometry
 
 from processing.core.text import Text
 from processing.formats.reports.pdf_page import GREY, Paper, Rgb
@@ -32,6 +34,11 @@ _LEGIBLE = 2500
 _PART_SCALES = (500, 1000, 2000, 2500, 5000)
 _MOST_PARTS, _MOST_LOOKED_AT = 12, 2000
 _LEGEND_ROW_MM, _LEGEND_BOX_MM = 4.8, 7.0
+
+OUTLINE: Rgb = (176, 0, 96)
+"""Colour of the edge of what was counted: none of the map's own, and dark in grey print."""
+
+_OUTLINE_MM = 0.45
 
 NO_VALUE: Rgb = (228, 228, 228)
 """Colour of cells that ought to have a value and have none."""
@@ -117,6 +124,8 @@ def draw_plan(
     size_mm: tuple[float, float],
     plan: PlanPicture,
     scale: int | None = None,
+    *,
+    outline: BaseGeometry | None = None,
 ) -> None:
     """Draw a map with its frame, coordinates, scale bar and north arrow within a rectangle.
 
@@ -124,6 +133,8 @@ def draw_plan(
     ----------
     scale : int, optional
         Denominator; without, that of :func:`scale_of`.
+    outline : shapely geometry, optional
+        An area whose edge is drawn, m, project CRS.
     """
     frame = (corner[0] + _LEFT_MM, corner[1])
     frame_mm = frame_of(size_mm)
@@ -133,7 +144,10 @@ def draw_plan(
     left = frame[0] + 0.5 * (frame_mm[0] - picture_mm[0])
     top = frame[1] + 0.5 * (frame_mm[1] - picture_mm[1])
     paper.picture((left, top), picture_mm, plan.rgb)
-    _draw_ticks(paper, (frame, frame_mm), (left, top + picture_mm[1]), plan, scale)
+    lower_left = left, top + picture_mm[1]
+    if outline is not None:
+        _draw_outline(paper, (frame, frame_mm), lower_left, (plan, scale), outline)
+    _draw_ticks(paper, (frame, frame_mm), lower_left, plan, scale)
     paper.box(frame, frame_mm)
     foot = frame[1] + frame_mm[1] + _BELOW_MM + 0.5 * _FOOT_MM
     _draw_bar(paper, (frame[0], foot), scale)
@@ -289,6 +303,28 @@ def _draw_ticks(
         for other in down:
             paper.line([(position - 1.2, other), (position + 1.2, other)], colour=GREY)
             paper.line([(position, other - 1.2), (position, other + 1.2)], colour=GREY)
+
+
+def _draw_outline(
+    paper: Paper,
+    frame: tuple[tuple[float, float], tuple[float, float]],
+    lower_left: tuple[float, float],
+    placed: tuple[PlanPicture, int],
+    outline: BaseGeometry,
+) -> None:
+    """The edge of an area, as far as it lies within the frame."""
+    (x, y), (width, height) = frame
+    (plan, scale), (left, low) = placed, lower_left
+    mm = 1000 / scale
+    on_paper_mm = shapely.transform(
+        shapely.boundary(outline),
+        lambda xy: np.column_stack(
+            [left + (xy[:, 0] - plan.west) * mm, low - (xy[:, 1] - plan.south) * mm]
+        ),
+    )
+    seen = shapely.clip_by_rect(on_paper_mm, x, y, x + width, y + height)
+    for part in shapely.get_parts(shapely.line_merge(seen)):
+        paper.line(shapely.get_coordinates(part).tolist(), _OUTLINE_MM, OUTLINE)
 
 
 def _within(origin: float, low: float, high: float, step: float) -> list[float]:

@@ -9,6 +9,7 @@ from pathlib import Path
 from processing.core.monitor import Monitor, SilentMonitor
 from processing.core.text import Language, Text
 from processing.formats.reports.pdf_page import (
+    A4_LANDSCAPE,
     A4_PORTRAIT,
     Paper,
     break_lines,
@@ -47,7 +48,7 @@ from processing.formats.reports.volume_rows import (
 from processing.methods.earthwork.maps.heat_map import change_classes, change_limit
 from processing.methods.earthwork.volumes.volume_result import VolumeResult
 
-_MARGIN_MM, _GAP_MM = 14.0, 5.0
+_MARGIN_MM, _GAP_MM, _FOOT_MM = 14.0, 5.0, 4.0
 _LABEL_MM = 30.0
 _HEAD_SIZE, _TYPE = 10.5, 8.5
 _LEGEND_ROWS = 5
@@ -58,6 +59,7 @@ _WORK = Text("Work", "工事")
 _SURFACES = Text("Surfaces", "比較した地盤面")
 _METHOD = Text("Method", "計算方法")
 _QUANTITIES = Text("Quantities", "数量")
+_OUTLINE = Text("Outlined: {name}", "枠線: {name}")
 _FILLED = Text("not measured, filled in", "未計測（補間）")
 _SECTIONS = Text("Sections along {name}", "断面（{name}）")
 _LINES = Text(
@@ -95,8 +97,8 @@ def write_volume_report(
     with write_report_page(path, A4_PORTRAIT, language, title, never=never) as paper:
         _draw_numbers(paper, result, facts)
         monitor.check()
-        _next_page(paper, facts)
-        _draw_map(paper, plan, limit_m, MAP_TITLE)
+        _next_page(paper, facts, _sheet_of(plan))
+        _draw_map(paper, plan, limit_m, facts)
         _draw_parts(paper, plan, limit_m, facts)
         monitor.check()
         _draw_section_table(paper, facts)
@@ -105,11 +107,19 @@ def write_volume_report(
         monitor.check()
 
 
-def _next_page(paper: Paper, facts: VolumeFacts) -> float:
+def _next_page(
+    paper: Paper, facts: VolumeFacts, size_mm: tuple[float, float] | None = None
+) -> float:
     """End a page; gives where the next one begins."""
     paper.foot(facts.work.software, _MARGIN_MM)
-    paper.next_page()
+    paper.next_page(size_mm)
     return _MARGIN_MM
+
+
+def _sheet_of(plan: PlanPicture) -> tuple[float, float]:
+    """Sheets of maps lie for a site that is wider than high."""
+    is_wide = plan.east - plan.west > plan.north - plan.south
+    return A4_LANDSCAPE if is_wide else A4_PORTRAIT
 
 
 def _width(paper: Paper) -> float:
@@ -117,7 +127,7 @@ def _width(paper: Paper) -> float:
 
 
 def _bottom(paper: Paper) -> float:
-    return paper.height_mm - _MARGIN_MM - 4.0
+    return paper.height_mm - _MARGIN_MM - _FOOT_MM
 
 
 def _draw_heading(paper: Paper, y: float, words: Text) -> float:
@@ -196,7 +206,7 @@ def _draw_parts(paper: Paper, plan: PlanPicture, limit_m: float, facts: VolumeFa
     for number, part in enumerate(parts, 1):
         _next_page(paper, facts)
         title = _PART.filled(title=MAP_TITLE, number=number, count=len(parts))
-        _draw_map(paper, part, limit_m, title, scale)
+        _draw_map(paper, part, limit_m, facts, (title, scale))
 
 
 def _map_size(paper: Paper) -> tuple[float, float]:
@@ -204,11 +214,21 @@ def _map_size(paper: Paper) -> tuple[float, float]:
 
 
 def _draw_map(
-    paper: Paper, plan: PlanPicture, limit_m: float, title: Text, scale: int | None = None
+    paper: Paper,
+    plan: PlanPicture,
+    limit_m: float,
+    facts: VolumeFacts,
+    part: tuple[Text, int | None] = (MAP_TITLE, None),
 ) -> None:
+    """A map with its title and its legend; a part of one has a title and a scale of its own."""
+    title, scale = part
     y = _draw_heading(paper, _MARGIN_MM, title)
     size = _map_size(paper)
-    draw_plan(paper, (_MARGIN_MM, y), size, plan, scale)
+    draw_plan(paper, (_MARGIN_MM, y), size, plan, scale, outline=facts.area)
+    if facts.area is not None:
+        end = paper.width_mm - _MARGIN_MM
+        name = _OUTLINE.filled(name=facts.boundary)
+        paper.text(end, _MARGIN_MM + 2.5, name, 7.5, "right", width=0.5 * _width(paper))
     classes = change_classes(limit_m)
     unit = (class_digits(limit_m), "m")
     top, half = y + size[1] + 3.0, _width(paper) / 2
@@ -237,29 +257,30 @@ def _draw_section_table(paper: Paper, facts: VolumeFacts) -> None:
     cells.append(
         (TableCell(TOTAL, is_head=True), distance, TableCell(""), cut, TableCell(""), fill)
     )
-    width = _width(paper)
+    width = A4_PORTRAIT[0] - 2 * _MARGIN_MM
     table = Table(_MARGIN_MM, (width - 5 * 29.0, *(29.0,) * 5), _TYPE)
     head: TableRow = [TableCell(words, "centre", is_head=True) for words in SECTION_COLUMNS]
     title = _SECTIONS.filled(name=facts.line.name)
     table.draw_over_pages(
         paper,
         [head, *cells],
-        lambda: _draw_heading(paper, _next_page(paper, facts), title),
-        _bottom(paper),
+        lambda: _draw_heading(paper, _next_page(paper, facts, A4_PORTRAIT), title),
+        A4_PORTRAIT[1] - _MARGIN_MM - _FOOT_MM,
     )
 
 
 def _draw_figures(paper: Paper, facts: VolumeFacts, monitor: Monitor) -> None:
-    if facts.line is None:
+    line = facts.line or facts.figures
+    if line is None:
         return
-    y, width = math.inf, _width(paper)
-    for section in facts.line.sections:
+    y = math.inf
+    for section in line.sections:
         monitor.check()
         if y + _FIGURE_MM > _bottom(paper):
-            start = _next_page(paper, facts)
-            y = _draw_heading(paper, start, _SECTIONS.filled(name=facts.line.name))
+            start = _next_page(paper, facts, A4_PORTRAIT)
+            y = _draw_heading(paper, start, _SECTIONS.filled(name=line.name))
             paper.text(paper.width_mm - _MARGIN_MM, start + 2.5, _LINES, 7.5, "right")
-        draw_section(paper, (_MARGIN_MM, y), (width, _FIGURE_MM - 3.0), section)
+        draw_section(paper, (_MARGIN_MM, y), (_width(paper), _FIGURE_MM - 3.0), section)
         y += _FIGURE_MM
 
 

@@ -7,6 +7,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
+from shapely.geometry.base import BaseGeometry
+
 from processing.core.text import Text
 from processing.formats.work_facts import (
     NOTHING,
@@ -97,6 +99,10 @@ class VolumeFacts:
     between : tuple of (float, float)
         Cut and fill told at each section but the first, m³; NaN at one that is halfway only.
         Empty: mean of the areas at both ends times the distance.
+    area : shapely geometry or None
+        The boundary, m, project CRS: drawn on the map.
+    figures : SectionedLine or None
+        Sections that only show the ground, where none were needed for the volume.
     """
 
     work: WorkFacts
@@ -105,6 +111,8 @@ class VolumeFacts:
     boundary: str = ""
     line: SectionedLine | None = None
     between: tuple[tuple[float, float], ...] = ()
+    area: BaseGeometry | None = None
+    figures: SectionedLine | None = None
 
 
 @dataclass(frozen=True)

@@ -1,13 +1,17 @@
-"""Intensity toned for the eye: the fall with range taken out, dark and bright read in one picture.
+"""Intensity toned for the eye: range and incidence taken out, dark and bright in one picture.
 
 A return is the weaker the farther it comes from, so that asphalt beside the vehicle is grey and
 across the road black. How intensity falls with range is measured on the recording itself: the
-median in each band of range, over pieces of the whole drive. What is left of the differences goes
-through a curve by ranks, which gives dark surfaces as much of the scale as bright ones.
+median in each band of range, over pieces of the whole drive. A surface that is seen askew returns
+less than one that faces the scanner: where the drive has normals, that is measured and taken out
+in the same way. Joints and wear are then lifted off what lies around them along the scan line, and
+what is left of the differences goes through a curve by ranks, which gives dark surfaces as much of
+the scale as bright ones.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
@@ -22,6 +26,23 @@ _PIECES, _PIECE_POINTS = 128, 1024
 
 _BANDS = 24
 """Bands of range with as many points each: each median rests on thousands of points."""
+
+_FACING_BANDS = 12
+"""The same of how squarely surfaces are seen: it changes less than range does."""
+
+_LEAST_SHARE = 0.05
+"""Nothing is made brighter than twenty times."""
+
+_MOST_ASKEW = 0.05
+"""Cosine of incidence below which a normal says nothing of the light."""
+
+_AROUND, _STEP = 24, 3
+"""Points along the scan line before and behind, every third of them, that are around a point: some
+decimetres on the road, whatever the scanner's rate."""
+
+_LIFT, _MOST_TIMES = 0.4, 3.0
+"""Power of the share of a value in what lies around it, and the most that it counts: noise of even
+asphalt stays below the steps of the curve."""
 
 _NEAREST_M = 0.1
 """Nothing is measured nearer; a range of 0 has no logarithm."""
@@ -48,10 +69,20 @@ def toned_intensity(
     -------
     uint8 array of the shape of points
     """
-    values = np.asarray(drive.columns["intensity"][points], np.float64)
-    has_trajectory = drive.trajectory is not None
-    curve = _curve_of(drive.folder, drive.count, has_trajectory=has_trajectory)
-    return curve.tones(values, _ranges(drive, points), low, high)
+    has_trajectory, has_normals = drive.trajectory is not None, drive.columns.has("normal")
+    curve = _curve_of(
+        drive.folder, drive.count, has_trajectory=has_trajectory, has_normals=has_normals
+    )
+    seen = _seen(drive, points)
+    return curve.tones(_lifted(drive, points), seen.ranges, low, high, facing=seen.facing)
+
+
+@dataclass(frozen=True)
+class _Seen:
+    """How points were seen: from how far, m, and how squarely, 0 to 1; None where unknown."""
+
+    ranges: Floats | None = None
+    facing: Floats | None = None
 
 
 class ToneCurve:
@@ -63,23 +94,36 @@ class ToneCurve:
         Intensities of points from all over the drive.
     ranges : (n,) float64 or None
         How far away they were, m; None where that isn't known.
+    facing : (n,) float64 or None
+        Cosines of incidence; NaN of a point without a normal.
 
     Attributes
     ----------
     ranges, medians : (k,) float64
         Intensity to be expected at a range; empty where ranges aren't known.
+    cosines, shares_facing : (m,) float64
+        Share of it that is to be expected at an incidence; empty where that isn't known.
     shares, values : (n,) float64
         Shares of points, 0 to 1, and the value that so many don't exceed.
     """
 
-    def __init__(self, values: Floats, ranges: Floats | None) -> None:
-        self.ranges = self.medians = np.zeros(0)
+    def __init__(self, values: Floats, ranges: Floats | None, facing: Floats | None = None) -> None:
+        self.ranges = self.medians = self.cosines = self.shares_facing = np.zeros(0)
         if ranges is not None and values.size >= _BANDS:
             bands = np.array_split(np.argsort(ranges, kind="stable"), _BANDS)
             middles = [np.median(ranges[band]) for band in bands]
             self.ranges = np.maximum(np.array(middles), _NEAREST_M)
             self.medians = np.maximum([np.median(values[band]) for band in bands], 1.0)
             values = values / self._expected(ranges)
+        known = np.zeros(0, bool) if facing is None else np.isfinite(facing)
+        if facing is not None and known.sum() >= _FACING_BANDS:
+            order = np.flatnonzero(known)[np.argsort(facing[known], kind="stable")]
+            bands = np.array_split(order, _FACING_BANDS)
+            self.cosines = np.array([np.median(facing[band]) for band in bands])
+            whole = max(float(np.median(values[known])), 1e-9)
+            shares = np.array([np.median(values[band]) / whole for band in bands])
+            self.shares_facing = np.maximum(shares, _LEAST_SHARE)
+            values = values / self._share_facing(facing)
         self.shares = np.linspace(0.0, 1.0, _RANKS)
         self.values = np.quantile(values, self.shares) if values.size else self.shares.copy()
 
@@ -90,18 +134,33 @@ class ToneCurve:
         )
         return np.asarray(np.exp(fall))
 
+    def _share_facing(self, facing: Floats) -> Floats:
+        share = np.interp(facing, self.cosines, self.shares_facing)
+        # Beyond the last band as light falls on any surface: with the cosine.
+        ends = self.cosines[[0, -1]]
+        share = share * np.clip(facing / ends[0], None, 1.0) * np.maximum(facing / ends[1], 1.0)
+        return np.asarray(np.where(np.isfinite(facing), share, 1.0))
+
     def tones(
-        self, values: Floats, ranges: Floats | None, low: float, high: float
+        self,
+        values: Floats,
+        ranges: Floats | None,
+        low: float,
+        high: float,
+        *,
+        facing: Floats | None = None,
     ) -> NDArray[np.uint8]:
         """Intensities as 0 to 255, black and white at these percentiles.
 
         Parameters
         ----------
-        values, ranges : float64 arrays of one shape
+        values, ranges, facing : float64 arrays of one shape
             As those that the curve was learnt from.
         """
         if ranges is not None and self.ranges.size:
             values = values / self._expected(ranges)
+        if facing is not None and self.cosines.size:
+            values = values / self._share_facing(facing)
         ends = np.interp([low / 100, high / 100], self.shares, self.values)
         by_size = np.clip((values - ends[0]) / max(float(ends[1] - ends[0]), 1e-9), 0.0, 1.0)
         ranked = np.interp(values, self.values, self.shares)
@@ -110,27 +169,45 @@ class ToneCurve:
 
 
 @lru_cache(maxsize=64)
-def _curve_of(folder: Path, count: int, *, has_trajectory: bool) -> ToneCurve:
-    """What is learnt of a drive once; a trajectory that is added later makes ranges known."""
+def _curve_of(folder: Path, count: int, *, has_trajectory: bool, has_normals: bool) -> ToneCurve:
+    """What is learnt of a drive once; what it gets later makes range and incidence known."""
     drive = Drive(folder)
     starts = np.linspace(0, max(0, count - _PIECE_POINTS), _PIECES).astype(np.int64)
     points = np.unique(starts[:, None] + np.arange(min(count, _PIECE_POINTS)))
-    values = np.asarray(drive.columns["intensity"][points], np.float64)
-    return ToneCurve(values, _ranges(drive, points) if has_trajectory else None)
+    seen = _seen(drive, points) if has_trajectory else _Seen()
+    return ToneCurve(_lifted(drive, points), seen.ranges, seen.facing if has_normals else None)
 
 
-def _ranges(drive: Drive, points: NDArray[np.int64]) -> Floats | None:
-    """From the vehicle's reference point to each point, m; None where that isn't known."""
+def _lifted(drive: Drive, points: NDArray[np.int64]) -> Floats:
+    """Intensities, those that differ from what lies around them made to differ more."""
+    column = drive.columns["intensity"]
+    values = np.asarray(column[points], np.float64)
+    steps = [step for step in range(-_AROUND, _AROUND + 1, _STEP) if step]
+    around = np.stack([column[np.clip(points + step, 0, drive.count - 1)] for step in steps])
+    # The median, not the mean: beside paint asphalt stays as it is.
+    usual = np.median(around.astype(np.float32), axis=0)
+    share = values / np.maximum(usual, 1.0)
+    return np.asarray(values * np.clip(share, 1 / _MOST_TIMES, _MOST_TIMES) ** _LIFT)
+
+
+def _seen(drive: Drive, points: NDArray[np.int64]) -> _Seen:
+    """From the vehicle's reference point to each point; nothing where that isn't known."""
     trajectory = drive.trajectory
     if trajectory is None or not drive.columns.has("time"):
-        return None
+        return _Seen()
     times = np.asarray(drive.columns["time"][points], np.float64)
     times = np.clip(times, trajectory.time[0], trajectory.time[-1])
     seen_from = np.stack(
         [np.interp(times, trajectory.time, axis) for axis in trajectory.xyz.T], axis=-1
     )
     if not np.isfinite(seen_from).all():
-        return None
+        return _Seen()
     flat = np.asarray(points).ravel()
     away = drive.xyz(flat).reshape(*np.shape(points), 3) - seen_from
-    return np.asarray(np.linalg.norm(away, axis=-1))
+    ranges = np.asarray(np.linalg.norm(away, axis=-1))
+    if not drive.columns.has("normal"):
+        return _Seen(ranges)
+    normals = np.asarray(drive.columns["normal"][flat], np.float64).reshape(away.shape)
+    long = np.linalg.norm(normals, axis=-1) * np.maximum(ranges, _NEAREST_M)
+    cosines = np.abs((normals * away).sum(axis=-1)) / np.maximum(long, 1e-9)
+    return _Seen(ranges, np.where((long > 0) & (cosines >= _MOST_ASKEW), cosines, np.nan))

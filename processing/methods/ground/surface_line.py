@@ -34,10 +34,13 @@ class SurfaceLine:
         Offset and height, m, by rising offset; two at least.
     is_filled : bool
         Whether nothing was measured there: the height follows from what lies around.
+    epoch : int
+        Number of the survey whose ground it is, among those that are shown.
     """
 
     positions: Floats
     is_filled: bool
+    epoch: int = 0
 
 
 def surface_lines(surface: StoredSurface, cut: Cut) -> tuple[SurfaceLine, ...]:

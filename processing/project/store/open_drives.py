@@ -12,6 +12,10 @@ from processing.project.store.drive_folders import DriveFolders
 from processing.recording.camera_images.image_store import IMAGES
 from processing.recording.columns.mapped_pages import MappedPages
 from processing.recording.drive import Drive
+from processing.recording.drive_info import FILE_NAME
+
+READ_AT_OPENING = frozenset({IMAGES, FILE_NAME})
+"""Files of a drive that steps exchange, and that it reads once."""
 
 
 class OpenDrives:
@@ -72,9 +76,11 @@ class OpenDrives:
         to(self.all)
 
     def follow_files(self, files: StepFiles) -> None:
-        """Files of drives are others now; a list of images is read when a drive is opened."""
+        """Files of drives are others now; some are read when a drive is opened."""
         self.open(
-            id_ for id_ in files.drives if IMAGES in files.names_of(id_) and id_ in self._drives
+            id_
+            for id_ in files.drives
+            if READ_AT_OPENING & set(files.names_of(id_)) and id_ in self._drives
         )
 
     def misfits(self, change: Change) -> list[str]:

@@ -68,6 +68,8 @@ class VolumeRequest:
         Lines in space that triangles don't cross.
     others : tuple of ChosenSide
         Other epochs, which tell the shape of ground that a compared one did not show.
+    boundary_name : str
+        What was chosen as the boundary, as people call it.
     """
 
     before: ChosenSide
@@ -77,6 +79,7 @@ class VolumeRequest:
     line: BaseGeometry | None = None
     break_lines: tuple[BaseGeometry, ...] = ()
     others: tuple[ChosenSide, ...] = ()
+    boundary_name: str = ""
 
 
 @dataclass(frozen=True)

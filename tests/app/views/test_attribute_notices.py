@@ -17,7 +17,7 @@ from processing.image.images_of_drives import image_of
 from processing.recording.drive import Drive
 from processing.recording.kinds import ImageKind
 from tests.processing.image.recordings import small_drive
-from widgets.shared.image_view_settings import ImageViewSettings
+from widgets.pictures.image_view_settings import ImageViewSettings
 from widgets.shared.map_changes import MapChanges
 from widgets.shared.view_settings import ViewSettings
 

@@ -14,6 +14,7 @@ from processing.map.catalogue import Geometry
 from processing.map.change import Change, Replacement
 from processing.map.feature import Feature, Status, Vertex, new_feature_id
 from processing.operations.runs.repeated_runs import are_known, runs_before, with_earlier_decisions
+from processing.operations.runs.run_comparison import compare_runs, keep_run, runs_to_compare
 from processing.project.project import Project
 from processing.project.results.found_features import FoundFeatures
 from processing.tools.tool import CandidateResult
@@ -248,3 +249,40 @@ def test_a_second_run_tells_what_it_found_again_what_is_new_and_what_is_gone(
     store(project, lines(0, 10, 20))
     second = store(project, lines(0, 10, 50, 60))
     assert "2 found again, 2 new, 1 gone" in second.run.summary.en
+
+
+def test_two_runs_are_held_against_each_other_whatever_became_of_their_candidates(
+    project: Project,
+) -> None:
+    first = store(project, lines(0, 10, 20)).run
+    second = store(project, lines(0, 10, 50, 60)).run
+    assert [run.id for run in runs_to_compare(project, second.id)] == [second.id, first.id]
+    former, latter = compare_runs(project, first, second)
+    assert former.in_both == (True, True, False)
+    assert latter.in_both == (True, True, False, False)
+
+
+def test_the_former_run_is_kept_and_the_latter_comes_back_as_one_step_each(
+    project: Project,
+) -> None:
+    first = store(project, lines(0, 10, 20)).run
+    second = store(project, lines(0, 10, 50)).run
+    project.features.apply(LABEL, keep_run(project, first))
+    assert positions(project) == [0, 10, 20]
+    assert {one.provenance.run for one in project.features.all()} == {first.id}
+    project.features.undo()
+    assert {one.provenance.run for one in project.features.all()} == {second.id}
+    project.features.redo()
+    project.features.apply(LABEL, keep_run(project, second))
+    assert positions(project) == [0, 10, 50]
+
+
+def test_what_was_decided_meanwhile_stays_when_another_run_is_kept(project: Project) -> None:
+    first = store(project, lines(0, 10, 20)).run
+    store(project, lines(0, 10, 50))
+    kept = decide(project, 10, Status.ACCEPTED)
+    decide(project, 50, Status.REJECTED)
+    project.features.apply(LABEL, keep_run(project, first))
+    assert positions(project) == [0, 10, 20, 50]
+    assert at(project, 10) == kept
+    assert keep_run(project, first).is_empty

@@ -12,10 +12,11 @@ from PySide6.QtCore import Qt
 from processing.core.text import Text
 from processing.map.catalogue import AttributeField, Geometry
 from processing.map.change import Change
-from processing.map.feature import PointReference
+from processing.map.feature import Feature, PointReference, Vertex
 from tests.widgets.builders import KINDS, OpenMap, do_now
 from widgets.mouse_tools.drawing.draw_line import DROPPED, RESTORED, DrawLine
 from widgets.mouse_tools.drawing.draw_point import DrawPoint
+from widgets.mouse_tools.drawing.draw_row import NO_LID, DrawRow
 from widgets.mouse_tools.drawing.draw_shape import DrawShape, ThreePointShape
 from widgets.mouse_tools.drawing.drawing_tool import NO_KIND, NO_POINT, TOO_FEW, DrawingTool
 from widgets.mouse_tools.drawing.legs import LegMode
@@ -357,3 +358,66 @@ def test_a_refused_shape_has_its_first_clicks_again() -> None:
     drawing = source.shared.sketch.drawing
     assert drawing is not None
     assert [vertex.xyz for vertex in drawing.vertices] == [A.xyz, B.xyz]
+
+
+def lids_of_a_run(*numbers: int) -> list[Feature]:
+    """Lids of 0.5 × 0.4 m that lie one behind another eastwards."""
+    corners = ((-0.25, -0.2), (0.25, -0.2), (0.25, 0.2), (-0.25, 0.2))
+    return [
+        Feature(
+            f"lid{number}",
+            "lid",
+            Geometry.AREA,
+            tuple(Vertex((0.5 * number + x, y, 3.0)) for x, y in corners),
+        )
+        for number in numbers
+    ]
+
+
+def over(east: float) -> Hit:
+    return Hit(PickedPosition((east, 0.0, 3.0), PointReference("left", 1)))
+
+
+@pytest.fixture
+def row() -> DrawingSession:
+    made = DrawingSession(lambda source: DrawRow(source, source.shared))
+    made.map.stored = {one.id: one for one in lids_of_a_run(0, 1, 3)}
+    return made
+
+
+def middles(change: Change) -> list[float]:
+    return [float(np.mean([v.xyz[0] for v in one.vertices])) for one in change.added]
+
+
+def test_two_clicks_give_a_row_as_one_step(row: DrawingSession) -> None:
+    row.tool.press(over(10.0))
+    row.tool.move(over(11.4))
+    assert row.shared.sketch.drawing is not None
+    row.tool.press(over(12.0))
+    (change,) = row.changes
+    assert middles(change) == pytest.approx([10.0, 10.5, 11.0, 11.5, 12.0])
+    assert {one.kind for one in change.added} == {"lid"}
+    assert row.shared.sketch.drawing is None
+
+
+def test_one_click_into_a_gap_gives_the_missed_lid(row: DrawingSession) -> None:
+    row.tool.press(over(1.1))
+    (change,) = row.changes
+    assert middles(change) == pytest.approx([1.0])
+    assert not row.tool.is_busy
+
+
+def test_enter_after_the_first_click_gives_one_lid_and_escape_none(row: DrawingSession) -> None:
+    row.tool.press(over(10.0))
+    row.tool.leave()
+    assert row.changes == []
+    row.tool.press(over(10.0))
+    row.tool.complete()
+    assert middles(row.changes[0]) == pytest.approx([10.0])
+
+
+def test_without_a_lid_the_row_says_what_to_do(row: DrawingSession) -> None:
+    row.map.stored = {}
+    row.tool.press(over(10.0))
+    assert row.reported == [NO_LID]
+    assert row.changes == []

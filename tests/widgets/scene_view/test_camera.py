@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -9,6 +11,7 @@ from hypothesis import strategies as st
 from PySide6.QtCore import QPointF
 
 from widgets.scene_view.camera_controller import CameraController
+from widgets.scene_view.rendering import overviews
 from widgets.scene_view.rendering.camera import SceneCamera
 from widgets.scene_view.rendering.projection import SceneProjection
 
@@ -109,3 +112,28 @@ def test_who_stands_lower_than_a_place_may_turn_about_it_as_before() -> None:
     controller.begin(QPointF(400.0, 300.0), roof, turns=True)
     turned = controller.dragged(SceneProjection(CAMERA, 800, 600), QPointF(400.0, 340.0))
     assert turned.pitch_deg != CAMERA.pitch_deg
+
+
+@given(st.floats(-30, 30), st.floats(-30, 80), st.floats(-10, 20))
+def test_no_eye_beside_the_path_is_led_below_the_road(
+    east_m: float, north_m: float, up_m: float
+) -> None:
+    way = np.column_stack([np.zeros(50), np.arange(50.0), np.linspace(2.0, 3.0, 50)])
+    camera = replace(CAMERA, position=(east_m, north_m, up_m))
+    lifted = overviews.above_ground(camera, way)
+    assert lifted.position[:2] == (east_m, north_m)
+    near = np.hypot(*(way[:, :2] - [east_m, north_m]).T)
+    if near.min() <= 20.0:
+        assert lifted.position[2] > way[near.argmin(), 2] - 2.0
+    else:
+        assert lifted == camera
+    if up_m >= 2.0:
+        assert lifted == camera
+
+
+def test_at_first_the_eye_is_above_the_street_and_looks_along_it() -> None:
+    way = np.column_stack([np.zeros(100), np.arange(100.0), np.full(100, 2.0)])
+    camera = overviews.along_path(way)
+    assert camera.position == pytest.approx((0.0, 8.0, 6.0))
+    assert camera.heading_deg == pytest.approx(0.0)
+    assert camera.focal_point == pytest.approx([0.0, 30.0, 0.0])

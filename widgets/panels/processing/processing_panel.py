@@ -25,10 +25,10 @@ from processing.core.text import Language, Text
 from processing.tools.registry import tools_of_drives
 from processing.tools.tool import Tool
 from widgets.panels.processing.parameter_form import ParameterForm
-from widgets.panels.processing.parameter_picture import ParameterPicture
 from widgets.panels.tree_items import children_of
 from widgets.parts.literal_text import literal
 from widgets.parts.search_field import SearchField
+from widgets.pictures.parameter_picture import ParameterPicture
 
 Reason = Callable[[str], Text | None]
 """From a tool's id to why it can't run now, or None."""

@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QMenu, QStyle, QTreeWidget, QTreeWidgetItem
 from typing_extensions import override
 
 from processing.core.text import Language
+from processing.project.drive_description import brief_facts
 from processing.recording.drive import Drive
 from widgets.shared.map_source import MapSource
 from widgets.shared.view_settings import ViewSettings
@@ -41,6 +42,8 @@ class ProjectDrives(QObject):
         The user knows where missing files are.
     trajectory_requested(id: str), images_requested(id: str)
         Files are to be chosen for a drive that the project has already.
+    properties_requested(id: str)
+        All that is known of a drive is to be shown, and mended.
     removal_requested(id: str)
     """
 
@@ -49,6 +52,7 @@ class ProjectDrives(QObject):
     find_requested = Signal()
     trajectory_requested = Signal(str)
     images_requested = Signal(str)
+    properties_requested = Signal(str)
     removal_requested = Signal(str)
 
     def __init__(
@@ -150,6 +154,12 @@ class ProjectDrives(QObject):
             lambda: self.trajectory_requested.emit(id_),
         )
         menu.addAction(self.tr("Add camera images…"), lambda: self.images_requested.emit(id_))
+        menu.addSeparator()
+        properties = menu.addAction(
+            self.tr("Properties…"), lambda: self.properties_requested.emit(id_)
+        )
+        properties.setShortcut("Alt+Return")
+        properties.setShortcutVisibleInContextMenu(True)
         remove = menu.addAction(
             self.tr("Remove from the project"), lambda: self.removal_requested.emit(id_)
         )
@@ -160,16 +170,20 @@ class ProjectDrives(QObject):
 
     @override
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
-        """The Delete key removes the drive that is chosen; elsewhere it is the map's."""
+        """Delete removes the drive that is chosen, Alt+Enter shows its properties."""
         item = self._tree.currentItem()
         id_ = "" if item is None else str(item.data(0, DRIVE) or "")
-        if not id_ or not isinstance(event, QKeyEvent) or event.key() != Qt.Key.Key_Delete:
+        if not id_ or not isinstance(event, QKeyEvent):
+            return super().eventFilter(watched, event)
+        is_enter = event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter)
+        asks = is_enter and event.modifiers() & Qt.KeyboardModifier.AltModifier
+        if not asks and event.key() != Qt.Key.Key_Delete:
             return super().eventFilter(watched, event)
         if event.type() == QEvent.Type.ShortcutOverride:
             event.accept()
             return True
         if event.type() == QEvent.Type.KeyPress:
-            self.removal_requested.emit(id_)
+            (self.properties_requested if asks else self.removal_requested).emit(id_)
             return True
         return super().eventFilter(watched, event)
 
@@ -206,27 +220,6 @@ class ProjectDrives(QObject):
         self._tree.viewport().update()
 
     def _facts(self, drive: Drive) -> tuple[str, ...]:
-        info = drive.info
-        low, high = info.lowest, info.highest
-        size = " × ".join(f"{b - a:,.1f}" for a, b in zip(low, high, strict=True))
-        return (
-            info.name,
-            self.tr("{count} points").format(count=f"{info.count:,}"),
-            self.tr("{size} m").format(size=size),
-            info.crs or self.tr("reference system unknown"),
-            self._rows_words(drive),
-            *(str(drive.source_path(source)) for source in info.sources),
-        )
-
-    def _rows_words(self, drive: Drive) -> str:
-        if drive.revolutions is None:
-            reason = drive.info.rows_reason.in_language(self._language)
-            return self.tr("No revolutions of a scanner: {reason}").format(reason=reason)
-        pulses = f"{drive.revolutions.pulses_per_revolution:.0f}"
-        if not drive.info.has_measured_times:
-            how = drive.info.rows_reason.in_language(self._language)
-            return self.tr("{pulses} pulses per revolution. {how}").format(pulses=pulses, how=how)
-        return self.tr("{rate} revolutions per second, {pulses} pulses per revolution").format(
-            rate=f"{drive.revolutions.revolution_rate_hz:.1f}",
-            pulses=pulses,
-        )
+        shown = ((name.in_language(self._language), value) for name, value in brief_facts(drive))
+        told = (f"{name}: {value.in_language(self._language)}" for name, value in shown)
+        return (drive.info.name, *told)

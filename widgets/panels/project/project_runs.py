@@ -32,11 +32,12 @@ class ProjectRuns(QObject):
 
     Signals
     -------
-    review_requested(run: str)
+    review_requested(run: str), comparison_requested(run: str)
     change_requested(label: Text, change: Change)
     """
 
     review_requested = Signal(str)
+    comparison_requested = Signal(str)
     change_requested = Signal(object, object)
 
     def __init__(
@@ -93,6 +94,12 @@ class ProjectRuns(QObject):
         is_hidden = run in self._settings.hidden_runs
         review = menu.addAction(self.tr("Review this run"), lambda: self.review_requested.emit(run))
         review.setEnabled(found[run].candidates > 0)
+        compare = menu.addAction(
+            self.tr("Compare with another run…"), lambda: self.comparison_requested.emit(run)
+        )
+        tool = next(origin.tool for origin in self._tally.by_run if origin.run == run)
+        alike = [one for one in self._source.runs() if one.tool == tool]
+        compare.setEnabled(len(alike) > 1)
         words = self.tr("Show its features") if is_hidden else self.tr("Hide its features")
         menu.addAction(words, lambda: self._toggle_hidden(run))
         menu.addSeparator()

@@ -40,8 +40,11 @@ class ProjectTree(QWidget):
         The user knows where missing files are.
     trajectory_requested(id: str), images_requested(id: str), removal_requested(id: str)
         Files are to be added to a drive, or it is to leave the project.
+    properties_requested(id: str)
     review_requested(run: str)
         The candidates of a run are to be judged.
+    comparison_requested(run: str)
+        A run is to be held against another one of its tool.
     change_requested(label: Text, change: Change)
     """
 
@@ -50,8 +53,10 @@ class ProjectTree(QWidget):
     find_requested = Signal()
     trajectory_requested = Signal(str)
     images_requested = Signal(str)
+    properties_requested = Signal(str)
     removal_requested = Signal(str)
     review_requested = Signal(str)
+    comparison_requested = Signal(str)
     change_requested = Signal(object, object)
 
     def __init__(
@@ -74,9 +79,11 @@ class ProjectTree(QWidget):
         self._drives.find_requested.connect(self.find_requested)
         self._drives.trajectory_requested.connect(self.trajectory_requested)
         self._drives.images_requested.connect(self.images_requested)
+        self._drives.properties_requested.connect(self.properties_requested)
         self._drives.removal_requested.connect(self.removal_requested)
         self._runs = ProjectRuns(source, shared.view_settings, self._tree, language)
         self._runs.review_requested.connect(self.review_requested)
+        self._runs.comparison_requested.connect(self.comparison_requested)
         self._runs.change_requested.connect(self.change_requested)
         empty = QLabel(self.tr("Drives appear here once a project is open."), self)
         empty.setWordWrap(True)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -34,6 +35,9 @@ from widgets.shared.view_settings import PointStyle
 REST_MS = 200
 _LEAST_MARK_MS, _FRAMES_BETWEEN_MARKS = 20, 3.0
 _POINTS_PER_PORTION = 150_000
+_GREYS = frozenset({PointStyle().attribute, "toned"})
+_LIFTED: Final = np.asarray(255 * (np.arange(256) / 255) ** 0.55, np.uint8)
+"""Greys of intensity, as they are drawn: against the dark behind them asphalt would be black."""
 
 
 class PointCloudLayer(QObject):
@@ -308,11 +312,13 @@ class PointCloudLayer(QObject):
         return self._scene_renderer.shade(is_on=self._is_shading_wanted and has_time)
 
     def _colours_of(self, tile: SceneTile) -> NDArray[np.uint8]:
+        plain = tile.request.attribute in _GREYS
+        colours = _LIFTED[tile.colours] if plain else tile.colours
         marked = self._marked.get(tile.id.drive_id)
         if marked is None or not marked.size:
-            return tile.colours
+            return colours
         positions = np.minimum(np.searchsorted(marked, tile.points), marked.size - 1)
-        colours = tile.colours.copy()
+        colours = colours.copy()
         colours[marked[positions] == tile.points] = (ACCENT.red(), ACCENT.green(), ACCENT.blue())
         return colours
 

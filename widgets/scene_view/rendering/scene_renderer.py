@@ -30,7 +30,7 @@ _NEAREST_M = 0.1
 _DEPTH_RATIO = 20_000.0
 _LAYERS = 5
 _ROOM_M = 1.0  # beyond the points, for what is drawn about them
-_MOST_TIMES_LEAST = 4.0  # fills the gaps of a road down to some four metres
+_MOST_TIMES_LEAST = 6.0  # fills the gaps of a road down to some three metres
 
 
 class SceneRenderer:

@@ -14,6 +14,7 @@ from processing.core.arrays import Floats
 from processing.core.errors import UserError
 from processing.image.attributes.attributes import colours, most_telling_attribute
 from processing.methods.ground.surface_line import SurfaceLine
+from processing.project.volumes.epochs import Epoch
 from processing.recording.drive import Drive
 from processing.section.cut import Cut
 from processing.section.points_in_cut import MOST_POINTS, SectionPoints, section_points
@@ -79,6 +80,8 @@ class SectionPicture:
         Whether the colours are those wished for.
     ground : tuple of SurfaceLine
         In the plane of the cut, as the tool “ground” found it.
+    epochs : tuple of str
+        What the surveys are called to whose numbers lines of the ground refer.
     diagnostics : FoundDiagnostics or None
         None where they aren't shown, or nothing is known as yet.
     waveforms : tuple of SectionWaveform
@@ -93,6 +96,7 @@ class SectionPicture:
     is_thinned: bool
     is_final: bool = True
     ground: tuple[SurfaceLine, ...] = ()
+    epochs: tuple[str, ...] = ()
     diagnostics: FoundDiagnostics | None = None
     waveforms: tuple[SectionWaveform, ...] = ()
 
@@ -155,15 +159,18 @@ class SectionFeed(QObject):
             except UserError:  # the image view says why; here its points are just not there
                 parts.append(SectionPoints(drive.id, np.empty(0, np.int64), np.empty((0, 3))))
         ground: tuple[SurfaceLine, ...] = ()
+        epochs: tuple[str, ...] = ()
         if request.settings.shows_ground:
             ground = self._ground.lines_now(request.drives, request.cut, parts)
+            epochs = tuple(map(_epoch_name, self._ground.epochs(request.drives)))
         is_slow = not request.settings.is_by_distance and request.look.attribute not in _AT_ONCE
         if is_slow:
             plain = picture_of(request, parts, _PLAIN)
-            self._report(replace(plain, is_final=False, ground=ground))
+            self._report(replace(plain, is_final=False, ground=ground, epochs=epochs))
         if is_slow and self._is_outdated():
             return
-        picture = replace(picture_of(request, parts, request.look.attribute), ground=ground)
+        picture = picture_of(request, parts, request.look.attribute)
+        picture = replace(picture, ground=ground, epochs=epochs)
         if request.settings.shows_waveforms:
             waveforms = waveforms_in(request.drives, parts, request.cut)
             picture = replace(picture, waveforms=waveforms)
@@ -237,3 +244,8 @@ def _colours_of(
         return colours(drive, points, shown, look.low_percent, look.high_percent)
     except UserError:  # camera images can't be read; the image view says so
         return colours(drive, points, _PLAIN, look.low_percent, look.high_percent)
+
+
+def _epoch_name(epoch: Epoch) -> str:
+    """The day of a survey, by which one knows it; its name where no time tells the day."""
+    return epoch.name if epoch.measured_on is None else epoch.measured_on.isoformat()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ from processing.methods.ground.edited_ground import update_ground_lines
 from processing.methods.ground.stored_surface import FILE_NAME, StoredSurface, ground_surface_of
 from processing.methods.ground.surface_line import SurfaceLine, remove_doubles, surface_lines
 from processing.project.results.run_findings import finding_of, newest_run
+from processing.project.volumes.epochs import Epoch, epochs_of
 from processing.recording.columns.counted_classes import class_columns
 from processing.recording.drive import Drive
 from processing.scoring.points.asked_classes import GROUND_ASKED
@@ -30,6 +32,13 @@ class FoundGround:
 
     def __init__(self) -> None:
         self._opened: dict[str, tuple[_Stamp, StoredSurface]] = {}
+        self._epochs: tuple[tuple[Drive, ...], tuple[Epoch, ...]] = ((), ())
+
+    def epochs(self, drives: Sequence[Drive]) -> tuple[Epoch, ...]:
+        """The surveys that drives are of, the older ones first."""
+        if self._epochs[0] != tuple(drives):
+            self._epochs = tuple(drives), epochs_of(drives)
+        return self._epochs[1]
 
     def lines(self, drives: Sequence[Drive], cut: Cut) -> tuple[SurfaceLine, ...]:
         """Where the ground of some drives lies in a section; a damaged surface shows nothing."""
@@ -45,13 +54,24 @@ class FoundGround:
     def lines_now(
         self, drives: Sequence[Drive], cut: Cut, parts: Sequence[SectionPoints]
     ) -> tuple[SurfaceLine, ...]:
-        """The same, but for stretches where points were made ground since, or are it no longer.
+        """The same of each epoch, but for what points were made ground since, or are it no longer.
 
         Parameters
         ----------
         parts : sequence of SectionPoints
             The points of the slab, drive by drive.
         """
+        found: list[SurfaceLine] = []
+        points = {drive.id: part for drive, part in zip(drives, parts, strict=True)}
+        for number, epoch in enumerate(self.epochs(drives)):
+            own = [points[drive.id] for drive in epoch.drives]
+            lines = self._lines_of_epoch(epoch.drives, cut, own)
+            found += [replace(line, epoch=number) for line in lines]
+        return tuple(found)
+
+    def _lines_of_epoch(
+        self, drives: Sequence[Drive], cut: Cut, parts: Sequence[SectionPoints]
+    ) -> tuple[SurfaceLine, ...]:
         lines = self.lines(drives, cut)
         if not lines:
             return lines

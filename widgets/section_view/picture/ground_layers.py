@@ -44,6 +44,6 @@ class GroundLayers:
     ) -> None:
         """What the lines are."""
         if self._change.line_in(picture.request.cut) is None:
-            paint_ground_legend(painter, viewport, picture.ground, self._language)
+            paint_ground_legend(painter, viewport, picture, self._language)
         else:
             self._change.paint_legend(painter, viewport, self._language)

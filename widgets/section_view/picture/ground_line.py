@@ -13,12 +13,17 @@ from processing.core.text import Language, Text
 from processing.methods.ground.surface_line import SurfaceLine
 from processing.section.cut import Cut
 from widgets.plane_view.viewport import PlaneViewport
+from widgets.section_view.picture.feed import SectionPicture
 from widgets.section_view.picture.projection import SectionProjection
 
 _MEASURED = Text("Ground, measured", "地面（計測）")
 _FILLED = Text("Ground, filled in", "地面（補間）")
 
-_COLOUR = QColor("#f0e442")
+_OF_EPOCH = Text("Ground {epoch}", "地面 {epoch}")
+
+_COLOURS = tuple(map(QColor, ("#f0e442", "#ff8c5a", "#56b4e9", "#cc79a7")))
+"""Of the surveys, the older ones first: a volume's two grounds have the first two."""
+
 _EDGE = QColor(16, 18, 22, 150)
 _PLATE = QColor(16, 18, 22, 205)
 _WORDS = QColor("#eef2f6")
@@ -45,33 +50,48 @@ def paint_ground_lines(
             pixels = viewport.to_screen(projection.on_plane(section))
             inside = _near_window(pixels[:, 0], viewport.width)
             outline = QPolygonF([QPointF(x, y) for x, y in pixels[inside].tolist()])
-            painter.setPen(_pen(is_edge=is_edge, is_filled=line.is_filled))
+            painter.setPen(_pen(line.epoch, is_edge=is_edge, is_filled=line.is_filled))
             painter.drawPolyline(outline)
 
 
 def paint_ground_legend(
-    painter: QPainter, viewport: PlaneViewport, lines: Sequence[SurfaceLine], language: Language
+    painter: QPainter, viewport: PlaneViewport, picture: SectionPicture, language: Language
 ) -> None:
     """Say at the top right what the lines are; nothing where there are none."""
-    kinds = sorted({line.is_filled for line in lines})
-    if not kinds:
+    rows = [
+        (name.in_language(language), epoch, is_filled)
+        for name, epoch, is_filled in _legend_of(picture)
+    ]
+    if not rows:
         return
     metrics = QFontMetricsF(painter.font())
-    names = [(_FILLED if is_filled else _MEASURED).in_language(language) for is_filled in kinds]
-    wide = max(map(metrics.horizontalAdvance, names)) + _SAMPLE_PX + 3 * _MARGIN_PX
+    wide = max(metrics.horizontalAdvance(name) for name, _, _ in rows)
+    wide += _SAMPLE_PX + 3 * _MARGIN_PX
     high = metrics.height() + 2.0
-    plate = QRectF(viewport.width - wide - _MARGIN_PX, 34.0, wide, len(names) * high + 4.0)
+    plate = QRectF(viewport.width - wide - _MARGIN_PX, 34.0, wide, len(rows) * high + 4.0)
     painter.fillRect(plate, _PLATE)
     painter.setRenderHint(QPainter.RenderHint.Antialiasing, on=True)
-    for number, (name, is_filled) in enumerate(zip(names, kinds, strict=True)):
+    for number, (name, epoch, is_filled) in enumerate(rows):
         top = plate.top() + 2.0 + number * high
         left = plate.left() + _MARGIN_PX
         middle = top + high / 2
-        painter.setPen(_pen(is_edge=False, is_filled=is_filled))
+        painter.setPen(_pen(epoch, is_edge=False, is_filled=is_filled))
         painter.drawLine(QLineF(left, middle, left + _SAMPLE_PX, middle))
         painter.setPen(_WORDS)
         words = QRectF(left + _SAMPLE_PX + _MARGIN_PX, top, wide, high)
         painter.drawText(words, int(Qt.AlignmentFlag.AlignVCenter), name)
+
+
+def _legend_of(picture: SectionPicture) -> list[tuple[Text, int, bool]]:
+    """Names of the lines with the epoch and the kind whose line stands beside them."""
+    lines = picture.ground
+    shown = sorted({line.epoch for line in lines})
+    filled = [(_FILLED, shown[0], True)] if any(line.is_filled for line in lines) else []
+    if len(shown) > 1:
+        names = [_OF_EPOCH.filled(epoch=picture.epochs[epoch]) for epoch in shown]
+        return [(name, epoch, False) for name, epoch in zip(names, shown, strict=True)] + filled
+    measured = [(_MEASURED, shown[0], False)] if not all(one.is_filled for one in lines) else []
+    return measured + filled
 
 
 def _near_window(x: NDArray[np.float64], width: float) -> slice:
@@ -80,8 +100,9 @@ def _near_window(x: NDArray[np.float64], width: float) -> slice:
     return slice(max(first - 1, 0), end + 1)
 
 
-def _pen(*, is_edge: bool, is_filled: bool) -> QPen:
-    pen = QPen(_EDGE if is_edge else _COLOUR, _EDGE_PX if is_edge else _LINE_PX)
+def _pen(epoch: int, *, is_edge: bool, is_filled: bool) -> QPen:
+    colour = _COLOURS[epoch % len(_COLOURS)]
+    pen = QPen(_EDGE if is_edge else colour, _EDGE_PX if is_edge else _LINE_PX)
     pen.setCapStyle(Qt.PenCapStyle.FlatCap)
     pen.setJoinStyle(Qt.PenJoinStyle.RoundJoin)
     if is_filled and not is_edge:

@@ -8,6 +8,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from processing.core.errors import Unsuitable
 from processing.core.monitor import Monitor
 from processing.core.text import Text
 from processing.methods.earthwork.geometry.triangle_surface import TriangleSurface
@@ -28,6 +29,9 @@ Floats = NDArray[np.float64]
 _LINE = "L1"
 _ON_EDGE_M = 1e-3
 """Points so far outside a boundary are on it: files have whole millimetres."""
+
+_SHOWN = 6
+"""Sections that show a site in its report: two sheets."""
 
 _ON_GROUND_M, _STEP_M = 0.3, 0.5
 """A break line lies on a ground when it is no farther from it in the median, asked at steps as wide
@@ -91,6 +95,26 @@ def volume_by(
     found = by(along, grounds, monitor, area)
     drawn = drawn_line(found, along, _LINE)
     return OtherMethod(found.cut_m3, found.fill_m3, found.notes, drawn, volumes_between(found))
+
+
+def shown_sections(
+    change: ChangeGrid, boundary: shapely.Geometry | None, monitor: Monitor
+) -> SectionedLine | None:
+    """A few sections across the whole site, to show it; None where none meets both grounds."""
+    line, wide_m = _middle_of(change, boundary)
+    long_m = float(np.hypot(*(line[1] - line[0])))
+    if not (long_m > 0.0 and wide_m > 0.0):
+        return None
+    margin = (line[1] - line[0]) / (2 * _SHOWN)
+    inner = np.stack([line[0] + margin, line[1] - margin])
+    interval_m, half_m = long_m / _SHOWN, wide_m / 2
+    along = SectionLayout(inner, half_m, interval_m, max(change.grid.size_m / 2, half_m / 1000))
+    grounds = GridSurface(change.grid, change.before), GridSurface(change.grid, change.after)
+    area = None if boundary is None else boundary.buffer(_ON_EDGE_M)
+    try:
+        return drawn_line(end_area_volume(along, grounds, monitor, area), along, _LINE)
+    except Unsuitable:  # the numbers don't need them
+        return None
 
 
 def _by_triangles(
@@ -162,8 +186,14 @@ def _outline(change: ChangeGrid) -> shapely.Geometry:
 
 def _middle_line(change: ChangeGrid, boundary: shapely.Geometry | None) -> Floats:
     """The longer middle line of the smallest rectangle round the area: (2, 2) float64."""
+    return _middle_of(change, boundary)[0]
+
+
+def _middle_of(change: ChangeGrid, boundary: shapely.Geometry | None) -> tuple[Floats, float]:
+    """That line, and how wide the rectangle is across it, m."""
     area = boundary if boundary is not None else _outline(change)
     corners = shapely.get_coordinates(shapely.minimum_rotated_rectangle(area))[:4]
     middles = (corners + np.roll(corners, -1, axis=0)) / 2
     lines = middles[[0, 2]], middles[[1, 3]]
-    return max(lines, key=lambda line: float(np.hypot(*(line[1] - line[0]))))
+    across, along = sorted(lines, key=lambda line: float(np.hypot(*(line[1] - line[0]))))
+    return along, float(np.hypot(*(across[1] - across[0])))

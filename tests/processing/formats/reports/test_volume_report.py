@@ -9,11 +9,13 @@ from pathlib import Path
 import numpy as np
 import openpyxl
 import pytest
+import shapely
 
 from processing.core.errors import Cancelled, InUse, NoSpace
+from processing.core.monitor import SilentMonitor
 from processing.core.parameters import MOST_LETTERS, parameters_of
 from processing.core.text import Text
-from processing.formats.reports.plan_picture import change_plan
+from processing.formats.reports.plan_picture import OUTLINE, change_plan
 from processing.formats.reports.volume_report import write_volume_report
 from processing.formats.reports.volume_rows import VolumeFacts, section_rows, section_sums
 from processing.formats.reports.volume_tables import write_volume_csv, write_volume_xlsx
@@ -21,6 +23,7 @@ from processing.formats.work_facts import SideFacts, WorkFacts
 from processing.methods.earthwork.maps.change_grid import ChangeGrid
 from processing.methods.earthwork.maps.heat_map import change_classes
 from processing.methods.earthwork.sections.drawing_parts import DrawnSection, SectionedLine
+from processing.methods.earthwork.volumes.other_methods import shown_sections
 from processing.methods.earthwork.volumes.volume_result import Registration, VolumeResult, Volumes
 from processing.methods.ground.filters.cells import CellGrid
 from processing.project.work_details import WorkDetails, details_of
@@ -326,3 +329,45 @@ def test_a_cancel_while_sections_are_drawn_leaves_no_file(tmp_path: Path) -> Non
     with pytest.raises(Cancelled):
         write_volume_report(path, volume(), facts(line=line(9)), "ja", monitor=CancelledAfter(5))
     assert not list(tmp_path.iterdir())
+
+
+def wide_site() -> ChangeGrid:
+    """The same site, and as much of nothing to its east."""
+    whole = site()
+    grid = replace(whole.grid, columns=2 * whole.grid.columns)
+    far = {
+        name: np.concatenate([part := getattr(whole, name), part], axis=1)
+        for name in ("before", "after", "is_measured", "inside")
+    }
+    return replace(whole, grid=grid, **far)
+
+
+def test_a_wide_site_lies_on_its_sheet_and_tables_stand(tmp_path: Path) -> None:
+    path = tmp_path / "volume.pdf"
+    write_volume_report(path, volume("end-area", wide_site()), facts(line=line(4)), "ja")
+    shapes = [picture_of(path, page).shape[:2] for page in range(4)]
+    assert [high > wide for high, wide in shapes] == [True, False, True, True]
+
+
+def test_the_edge_of_what_counts_is_drawn_on_the_map_and_named(tmp_path: Path) -> None:
+    path = tmp_path / "volume.pdf"
+    west, south = site().grid.origin[:2]
+    area = shapely.box(west + 10.0, south + 10.0, west + 900.0, south + 50.0)
+    write_volume_report(path, volume(), facts(area=area), "ja")
+    assert plain("枠線: 範囲.geojson") in words_of(path)[1]
+    drawn = picture_of(path, 1).astype(int)
+    assert (np.abs(drawn - OUTLINE).sum(axis=2) < 90).sum() > 200
+    write_volume_report(path, volume(), facts(), "ja")
+    drawn = picture_of(path, 1).astype(int)
+    assert (np.abs(drawn - OUTLINE).sum(axis=2) < 90).sum() == 0
+
+
+def test_sections_that_only_show_the_ground_have_no_table(tmp_path: Path) -> None:
+    shown = shown_sections(site(), None, SilentMonitor())
+    assert shown is not None
+    assert len(shown.sections) == 6
+    path = tmp_path / "volume.pdf"
+    write_volume_report(path, volume(), facts(figures=shown), "ja")
+    pages = words_of(path)
+    assert not any("切土断面積" in page for page in pages)
+    assert "断面(L1)" in pages[2]

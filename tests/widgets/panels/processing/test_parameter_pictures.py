@@ -8,16 +8,19 @@ import pytest
 from PySide6.QtCore import QPoint
 from PySide6.QtGui import QColor, QPalette
 from PySide6.QtTest import QTest
+from PySide6.QtWidgets import QComboBox
 from pytestqt.qtbot import QtBot
 
 from processing.core.parameters import angle, count, length, parameters_of, switch
 from processing.core.text import Text
+from processing.recording.kinds import ImageKind
 from processing.tools.registry import TOOLS
 from processing.tools.tool import CandidateResult, Finder, Needs, Tool
 from resources import UnknownResource, path_of
 from widgets.panels.processing.parameter_form import ParameterForm
-from widgets.panels.processing.parameter_picture import PICTURE_PX, ParameterPicture, picture_source
 from widgets.panels.processing.processing_panel import ProcessingPanel
+from widgets.pictures.image_kind_list import ImageKindList
+from widgets.pictures.parameter_picture import PICTURE_PX, ParameterPicture, picture_source
 
 SCENES = sorted(path.stem for path in path_of("pictures/parameters").glob("*.svg"))
 
@@ -159,3 +162,29 @@ def test_a_tool_is_run_as_its_form_stands_by_one_word(qtbot: QtBot, panel: Proce
     panel.ask_reasons_from(lambda tool_id: Text("No.", "不可。") if tool_id == "plain" else None)
     assert not panel.run_tool("plain")
     assert len(asked) == 2
+
+
+def test_every_kind_of_image_has_a_picture_and_a_sentence() -> None:
+    for kind in ImageKind:
+        assert f'id="{kind.value}"' in picture_source(f"image_kind/{kind.value}")
+        assert kind.explanation.en.endswith(".")
+        assert kind.explanation.ja.endswith("。")
+
+
+def test_the_list_of_kinds_has_room_for_picture_and_words(qtbot: QtBot) -> None:
+    box = QComboBox()
+    qtbot.addWidget(box)
+    for kind in ImageKind:
+        box.addItem(kind.title.en, kind.value)
+    ImageKindList(box, "en")
+    box.show()
+    box.showPopup()
+    view = box.view()
+    qtbot.waitUntil(view.isVisible, timeout=5_000)
+    row = view.visualRect(box.model().index(0, 0))
+    assert row.height() >= 4 * view.fontMetrics().lineSpacing()
+    assert row.width() >= 378
+    painted = view.grab(row).toImage()
+    spots = [(x, y) for x in range(10, 130, 2) for y in range(10, 60, 2)]
+    assert len({painted.pixel(*spot) for spot in spots}) > 3
+    box.hidePopup()

@@ -49,7 +49,7 @@ class ParameterPicture(QWidget):
         """
         if name != self._name:
             self._name = name
-            self._renderer = None if not name else _renderer(name, self.palette())
+            self._renderer = None if not name else picture_renderer(name, self.palette())
             self.update()
 
     @override
@@ -76,7 +76,7 @@ class ParameterPicture(QWidget):
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
         if event.type() is QEvent.Type.PaletteChange and self._name:
-            self._renderer = _renderer(self._name, self.palette())
+            self._renderer = picture_renderer(self._name, self.palette())
             self.update()
 
 
@@ -107,7 +107,8 @@ def picture_source(name: str) -> str:
     return ET.tostring(root, encoding="unicode")
 
 
-def _renderer(name: str, palette: QPalette) -> QSvgRenderer:
+def picture_renderer(name: str, palette: QPalette) -> QSvgRenderer:
+    """What paints a picture in the colours of a palette; raises as :func:`picture_source`."""
     ground = palette.color(QPalette.ColorRole.Window)
     ink = palette.color(QPalette.ColorRole.WindowText)
     meant = ACCENT if ground.lightnessF() < _DARK else QColor(_MEANT)

@@ -8,6 +8,7 @@ from processing.core.text import Language
 from processing.image.attributes.attributes import ATTRIBUTES, available, most_telling_attribute
 from processing.recording.drive import Drive
 from processing.recording.kinds import ImageKind
+from widgets.pictures.image_kind_list import ImageKindList
 from widgets.shared.image_orientation import ImageOrientation
 from widgets.shared.map_changes import MapChanges
 from widgets.shared.map_source import MapSource
@@ -47,6 +48,7 @@ class ImageViewSettings(QWidget):
         self._attribute = QComboBox(self)
         for box in (self._drive, self._kind, self._attribute):
             box.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToContents)
+        ImageKindList(self._kind, language)
         self._orientation = QToolButton(self)
         self._orientation.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
         self._orientation.setToolTip(
@@ -92,6 +94,7 @@ class ImageViewSettings(QWidget):
             [(kind.title.in_language(self._language), kind.value) for kind in kinds],
             settings.image_kind.value,
         )
+        self._kind.setToolTip(settings.image_kind.explanation.in_language(self._language))
         names = available(drive) if drive else ()
         _fill(
             self._attribute,

@@ -1,0 +1,1 @@
+"""Choices that are explained by a picture: parameters, kinds of image."""
