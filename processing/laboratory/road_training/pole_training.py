@@ -149,7 +149,7 @@ def _judge_shafts(scene: RoadScene) -> Iterator[tuple[bool, PoleFacts, bool]]:
         if label is not None and not (label is False and _is_noise(shaft, codes)):
             local = around.local[around.of(number)] - shaft.foot
             beside = surroundings_of(local, shaft, usual_m, fellows[number])
-            carried = carried_if_likely(own_points(around, number, shaft), shaft, usual_m)
+            carried = carried_if_likely(own_points(around, number, shafts), shaft, usual_m)
             sides = seen_sides(scene.drives, shaft, plan.origin)
             yield is_low(shaft), facts_of(shaft, beside, carried, sides, usual_m), label
 

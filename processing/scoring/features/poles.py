@@ -11,7 +11,7 @@ from processing.scoring.features.file_scores import (
     errors_of,
     named_share,
 )
-from processing.scoring.features.mapped_features import MappedFile
+from processing.scoring.features.mapped_features import MappedFeature, MappedFile
 from processing.scoring.features.object_matches import (
     Differences,
     is_in_span,
@@ -30,6 +30,19 @@ POLES: dict[str, dict[str, object]] = {
 }
 """Kinds of features that are poles, with the type that a kind implies."""
 
+TYPES = (
+    "utility_pole",
+    "street_light",
+    "signal_pole",
+    "sign_pole",
+    "mirror_pole",
+    "arm_pole",
+    "bollard",
+    "delineator",
+    "other",
+)
+"""What a pole may be; whatever else a truth knows (banners, posts of bus stops) is another pole."""
+
 WITHIN_M = 0.5
 """Twice the thickness of a utility pole: nearer poles are one thing and its stay."""
 
@@ -37,6 +50,11 @@ LEAST_POINTS = 20
 """Fewer are a few scan lines of anything."""
 
 _NAME = Text("poles", "柱状物")
+
+
+def _known(pole: MappedFeature) -> object:
+    kind = pole.facts["type"]
+    return kind if kind in TYPES else "other"
 
 
 def pole_score(result: MappedFile, truth: MappedFile) -> FileScore:
@@ -51,7 +69,7 @@ def pole_score(result: MappedFile, truth: MappedFile) -> FileScore:
     asked = [is_in_span(one) and shows_enough(truth, one, "points", LEAST_POINTS) for one in true]
     found = match_objects(result.of_kinds(POLES, "point", _NAME), true, asked, WITHIN_M)
     typed = [one for one in found.partners if one.truth.facts.get("type") is not None]
-    right = [one for one in typed if one.result.facts.get("type") == one.truth.facts["type"]]
+    right = [one for one in typed if one.result.facts.get("type") == _known(one.truth)]
     differences = Differences(result, truth, found.partners)
     off = differences.positions()
     return FileScore(

@@ -64,3 +64,10 @@ def test_missing_added_and_unseen_poles_are_counted() -> None:
         assert pole_score(result, truth).counts_of("poles") == BinaryConfusionMatrix(9, 0, 0, 0)
     more = with_more(TRUTH, point(0.0, 9.0, kind="pole"))
     assert pole_score(more, TRUTH).counts_of("poles") == BinaryConfusionMatrix(9, 1, 0, 0)
+
+
+def test_what_the_contract_has_no_name_for_is_another_pole() -> None:
+    banners = with_facts(TRUTH, lambda _: {"type": "banner"})
+    others = with_facts(TRUTH, lambda _: {"type": "other"})
+    assert pole_score(others, banners).share_of("type") == 1
+    assert pole_score(TRUTH, banners).share_of("type") == 0

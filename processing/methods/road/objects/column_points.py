@@ -44,6 +44,15 @@ class ColumnPoints:
     drives: Integers
     points: Integers
 
+    def followed_by(self, other: ColumnPoints) -> ColumnPoints:
+        """Points about these columns, and about others after them."""
+        return ColumnPoints(
+            np.concatenate([self.starts, self.starts[-1] + other.starts[1:]]),
+            np.concatenate([self.local, other.local]),
+            np.concatenate([self.drives, other.drives]),
+            np.concatenate([self.points, other.points]),
+        )
+
     def of(self, column: int) -> slice:
         """The lines of a column."""
         return slice(int(self.starts[column]), int(self.starts[column + 1]))
@@ -64,6 +73,10 @@ def points_about(
         Of the columns, m about the origin of the plan.
     radius_m : float
     """
+    if not len(middles):
+        return ColumnPoints(
+            np.zeros(1, np.int64), np.empty((0, 3)), np.empty(0, np.int64), np.empty(0, np.int64)
+        )
     nearest = nearest_columns(plan, middles, radius_m).reshape(-1)
 
     def gathered(chunk: DriveChunk) -> _GatheredPoints:

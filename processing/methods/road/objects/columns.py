@@ -49,6 +49,10 @@ _BEGINS = np.uint32((1 << 11) - 1)
 """The slabs up to 2.4 m, in which a column stands free: a pedestrian passes under what hangs
 higher."""
 
+_FOOT, _RAISED_SLABS = np.uint32((1 << 7) - 1), 12
+"""The slabs up to 1.6 m, and how many stand free in a row of a column whose lower part a wall
+or a hedge before it hides: 2.4 m, longer than what hangs on fronts of houses."""
+
 
 @dataclass(frozen=True)
 class FoundColumns:
@@ -77,8 +81,8 @@ def find_columns(
     plan: SparsePlan,
     ground: NDArray[np.float32],
     monitor: Monitor,
-) -> FoundColumns:
-    """Columns of all drives together.
+) -> tuple[FoundColumns, FoundColumns]:
+    """Columns of all drives together, and those of which no foot was seen.
 
     Parameters
     ----------
@@ -88,17 +92,27 @@ def find_columns(
     slabs = np.zeros((len(plan), TILE, TILE), np.uint32)
     for chunk in chunks_of(drives, plan.origin, monitor):
         slabs_kernel(chunk.local, chunk.is_noise, plan.table, ground.reshape(-1), slabs.reshape(-1))
-    middles: list[Floats] = []
-    free: list[int] = []
+    standing: list[tuple[Floats, int]] = []
+    raised: list[tuple[Floats, int]] = []
     for tile in range(len(plan)):
         monitor.check()
-        for middle, bits in _columns_of(plan.window(slabs, tile, _HALO + _APART_CELLS, 0)):
-            if ((middle >= 0) & (middle < TILE)).all():
-                middles.append(plan.middles(tile, np.asarray(middle - 0.5)))
-                free.append(bits)
-    places = np.array(middles, np.float64).reshape(-1, 2)
+        window = plan.window(slabs, tile, _HALO + _APART_CELLS, 0)
+        for found, here in zip((standing, raised), _columns_of(window), strict=True):
+            found += [
+                (plan.middles(tile, np.asarray(middle - 0.5)), bits)
+                for middle, bits in here
+                if ((middle >= 0) & (middle < TILE)).all()
+            ]
+    return _on_ground(standing, plan, ground), _on_ground(raised, plan, ground)
+
+
+def _on_ground(
+    found: Sequence[tuple[Floats, int]], plan: SparsePlan, ground: NDArray[np.float32]
+) -> FoundColumns:
+    places = np.array([middle for middle, _ in found], np.float64).reshape(-1, 2)
     heights = [height_of(ground, plan, *place) for place in places.tolist()]
-    return FoundColumns(places, np.array(heights, np.float64), np.array(free, np.uint32))
+    free = np.array([bits for _, bits in found], np.uint32)
+    return FoundColumns(places, np.array(heights, np.float64), free)
 
 
 @kernel
@@ -168,12 +182,29 @@ def _ring_steps() -> list[tuple[int, int]]:
     return sorted(steps, key=lambda step: float(np.arctan2(step[1], step[0])))
 
 
-def _columns_of(slabs: NDArray[np.uint32]) -> list[tuple[Floats, int]]:
-    """Middles of columns in cells of the tile inside the window, and where they stand free."""
+def _columns_of(
+    slabs: NDArray[np.uint32],
+) -> tuple[list[tuple[Floats, int]], list[tuple[Floats, int]]]:
+    """Middles of columns in cells of the tile inside the window, and where they stand free.
+
+    Those that stand free low, and those of which no foot was seen.
+    """
     free = free_slabs(slabs)
-    low = _longest_run(free & _BEGINS)
-    is_column = low >= _FEWEST_SLABS
-    weights = np.where(is_column, low + _longest_run(free), 0).astype(np.float64)
+    low, run = _longest_run(free & _BEGINS), _longest_run(free)
+    is_low = low >= _FEWEST_SLABS
+    standing = _peaks(is_low, np.where(is_low, low + run, 0), free)
+    has_foot = is_low & ((free & _FOOT) > 0)
+    is_raised = ~ndimage.maximum_filter(has_foot, 3) & (run >= _RAISED_SLABS)
+    if not is_raised.any():
+        return standing, []
+    return standing, _peaks(is_raised, np.where(is_raised, run, 0), free)
+
+
+def _peaks(
+    is_column: NDArray[np.bool_], counts: Integers, free: NDArray[np.uint32]
+) -> list[tuple[Floats, int]]:
+    """Of cells that lie near each other the middle of those that have most about them."""
+    weights = counts.astype(np.float64)
     about = ndimage.uniform_filter(weights, 3, mode="constant")
     # Of cells that are alike, the weights themselves tell.
     about += 1e-3 * weights

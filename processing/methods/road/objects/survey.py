@@ -65,7 +65,19 @@ def survey_columns(drives: Sequence[Drive], monitor: Monitor) -> tuple[SurveyGro
     OutOfRange
         The drives lie too far apart.
     """
-    return _kept_of(drives).columns(drives, monitor)
+    below, columns, _ = _kept_of(drives).columns(drives, monitor)
+    return below, columns
+
+
+def raised_columns(drives: Sequence[Drive], monitor: Monitor) -> FoundColumns:
+    """What stands upright of which nothing below 1.6 m above the ground was seen.
+
+    Raises
+    ------
+    OutOfRange
+        The drives lie too far apart.
+    """
+    return _kept_of(drives).columns(drives, monitor)[2]
 
 
 class _KeptSurvey:
@@ -75,7 +87,7 @@ class _KeptSurvey:
         self._lock = threading.Lock()
         self._noise: tuple[int, ...] = ()
         self._ground: SurveyGround | None = None
-        self._columns: FoundColumns | None = None
+        self._columns: tuple[FoundColumns, FoundColumns] | None = None
 
     def ground(self, drives: Sequence[Drive], monitor: Monitor) -> SurveyGround:
         with self._lock:
@@ -83,13 +95,13 @@ class _KeptSurvey:
 
     def columns(
         self, drives: Sequence[Drive], monitor: Monitor
-    ) -> tuple[SurveyGround, FoundColumns]:
+    ) -> tuple[SurveyGround, FoundColumns, FoundColumns]:
         with self._lock:
             below = self._ground_now(drives, PartMonitor(monitor, 0.0, 0.5))
             if self._columns is None:
                 part = PartMonitor(monitor, 0.5, 1.0)
                 self._columns = find_columns(drives, below.plan, below.heights, part)
-            return below, self._columns
+            return below, *self._columns
 
     def _ground_now(self, drives: Sequence[Drive], monitor: Monitor) -> SurveyGround:
         noise = tuple(_known_noise(drive) for drive in drives)

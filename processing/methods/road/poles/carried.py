@@ -8,19 +8,29 @@ signal or a sign by how tall and how thick it is.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.core.arrays import Floats
+from processing.core.arrays import Floats, Integers
+from processing.methods.road.poles.patch_kernels import (
+    ASIDE,
+    BULGING,
+    EAST,
+    PATCH_WIDTH,
+    SMOOTH,
+    STATE,
+    UP,
+    patches_kernel,
+)
 from processing.methods.road.poles.shafts import Shaft
 
 _BESIDE_M = 0.04
 """Nearer points are the shaft's own, its bands and bolts."""
 
-_HIGH_M = 3.6
+ARMS_FROM_M = 3.6
 """Arms, heads and wires are above: what hangs lower must leave room for people and has plates."""
 
 _NEAR_M, _FAR_M = 1.2, 5.0
@@ -46,6 +56,9 @@ _TURNS, _STRIP_M, _BIN_M = 48, 0.5, 0.25
 
 _ARM_BELOW_M, _ABOVE_ARM_M = 1.6, 1.3
 """Arms leave a shaft near its top, the lower of two a plate's height below, and may rise beyond."""
+
+_END_BELOW_M, _END_ABOVE_M = 0.8, 0.5
+"""About an arm's height, what hangs at its end: lamps and signals, beside a neighbour's crown."""
 
 _HANG_M = 0.3
 """Cells in which an arm hangs together: scan lines cross it every 0.3 m or nearer."""
@@ -81,24 +94,29 @@ _PLATE_FEWEST, _LEAST_PLATE_M = 12, 0.25
 _CURVED = 0.3
 """Share of its patches, those across its rim or its back included."""
 
-_PATCH_M = 0.35
-"""Radius of patches whose bulge is told: the smallest mirror has 0.3 m."""
-
 _PIECE_M, _PATCHES = 0.4, 6
-"""Height of a piece of a shaft, and patches that are looked at in each: the smallest plates are as
-high, and a crown above a sign has more points than the sign."""
+"""Height of a piece of a shaft, and patches that are looked at in each by each head: the smallest
+plates are as high, and a crown above a sign has more points than the sign."""
 
-_PATCH_WIDE_M, _SMOOTH_M = 0.06, 0.01
-"""Standard deviation of a patch's points along its shorter side, and off its surface: lines, edges
-and two plates in one patch tell nothing."""
+_HELD_M, _HELD_FROM_M = 0.08, 0.3
+"""How far a plate that a shaft holds stands before its surface, with its clamps; and how far from
+it patches tell that."""
 
-_LEAST_RADIUS_M, _MOST_RADIUS_M = 0.8, 6.0
-"""Radii of curvature of road mirrors: 1.5 to 3.6 m (道路反射鏡設置指針), those of
-yards less, and the error of it."""
+_LOW_PLATE_M = 1.3
+"""Middles of patches below are of no road sign: lower edges of signs hang at 1.8 m, on narrow roads
+somewhat lower (道路標識設置基準 2-2); timetables, cloths of banners and boards hang lower."""
 
 _ONE_MIRROR_DEG = 15.0
 """Between patches of one mirror in plan: 0.25 m from the middle of one of 2.2 m radius it is 7
 degrees; two mirrors on one post look into two streets."""
+
+_BREAST_M = 1.2
+"""Height above the foot at which diameters are told."""
+
+_CANE_M, _SIGN_POST_M = 0.035, 0.095
+"""Diameters of the thickest canes of banners; and beyond that of the posts of most signs
+(89.1 mm): what thicker posts of 101.6 mm and more carry are signs if they shine, else boards of
+shops."""
 
 _SHORT_M = 1.35
 """Bollards and delineators are lower: 0.65 to 0.85 m (車止め), up to 1.2 m (視線誘導標設置基準)."""
@@ -118,6 +136,18 @@ _CONCRETE_M = 0.27
 what tapers besides is of concrete, whatever hides its upper part."""
 
 
+class ShaftNeighbourhood(NamedTuple):
+    """Points about a shaft, m about its foot.
+
+    ``local``: (n, 3) those that are nearer to no other shaft; ``heads``: (n,) which head measured
+    each; ``beyond``: (m, 3) those above people that are nearer to another, as ends of arms may be.
+    """
+
+    local: Floats
+    heads: Integers
+    beyond: Floats
+
+
 @dataclass(frozen=True)
 class Carried:
     """What a shaft carries; lengths in m.
@@ -133,7 +163,7 @@ class Carried:
     long_m, tall_m, thick_m : float
         Of what hangs there: along the arm, upwards, across.
     plate_points : int
-        Below `_HIGH_M`, beside the shaft.
+        Below `ARMS_FROM_M`, beside the shaft.
     plate_m : float
         The wider of the plate's extents.
     curved : float
@@ -141,6 +171,8 @@ class Carried:
     smooth : float
         Share of the patches beside it that are smooth surfaces, plates and no twigs, where it is
         the largest along the shaft.
+    plate_low_m : float
+        Height of the lowest patch of a surface that it holds; infinite without one.
     mirror_deg : float
         Where its mirror looks, clockwise from north, 0 to 360; of several that to which most of
         their patches belong. NaN where no patch bulges.
@@ -156,34 +188,31 @@ class Carried:
     plate_m: float = 0.0
     curved: float = 0.0
     smooth: float = 0.0
+    plate_low_m: float = math.inf
     mirror_deg: float = math.nan
 
 
-def carried_of(points: Floats, shaft: Shaft) -> Carried:
-    """Measure what a shaft carries.
-
-    Parameters
-    ----------
-    points : (n, 3) float64
-        m about its foot; those that are nearer to no other shaft.
-    """
-    up = points[:, 2]
-    plan = points[:, :2] - up[:, None] * shaft.lean
-    away = (
-        np.hypot(plan[:, 0], plan[:, 1])
-        - shaft.radius_m
-        + shaft.taper * np.clip(up, 0, shaft.top_m)
-    )
-    local = np.column_stack([plan, up])
-    is_high = (up > _HIGH_M) & (away > _BESIDE_M)
+def carried_of(about: ShaftNeighbourhood, shaft: Shaft) -> Carried:
+    """Measure what a shaft carries."""
+    local, away = _upright(about.local, shaft)
+    up = local[:, 2]
+    is_high = (up > ARMS_FROM_M) & (away > _BESIDE_M)
     high = local[is_high]
     hung = high[:, 2] < shaft.top_m + _ABOVE_TOP_M
     wires = _wires(high[hung], away[is_high][hung])
-    arm = _arm(high, shaft)
-    is_low = (up > _PLATE_LOW_M) & (up < max(_HIGH_M, min(shaft.top_m, 5.0)) + 0.8)
+    arm = _arm(high, _upright(about.beyond, shaft)[0], shaft)
+    is_low = (up > _PLATE_LOW_M) & (up < max(ARMS_FROM_M, min(shaft.top_m, 5.0)) + 0.8)
     is_low &= (away > _BESIDE_M) & (away < _PLATE_REACH_M)
-    plate = _plate(local[is_low])
-    return Carried(wires, *arm, *plate)
+    points, wide, curved, smooth, low, facing = _plate(local[is_low], about.heads[is_low], shaft)
+    return Carried(wires, *arm, points, wide, curved, smooth, low, facing)
+
+
+def _upright(points: Floats, shaft: Shaft) -> tuple[Floats, Floats]:
+    """Points about the axis as if it stood upright, and how far they are from the surface."""
+    up = points[:, 2]
+    plan = points[:, :2] - up[:, None] * shaft.lean
+    radii = shaft.radius_m - shaft.taper * np.clip(up, 0, shaft.top_m)
+    return np.column_stack([plan, up]), np.hypot(plan[:, 0], plan[:, 1]) - radii
 
 
 def _wires(points: Floats, away: Floats) -> int:
@@ -213,7 +242,7 @@ def _wires(points: Floats, away: Floats) -> int:
     return int(min(np.count_nonzero(sides), np.count_nonzero(~sides)))
 
 
-def _arm(points: Floats, shaft: Shaft) -> tuple[float, float, float, float, float]:
+def _arm(points: Floats, beyond: Floats, shaft: Shaft) -> tuple[float, float, float, float, float]:
     """Reach, height, length, height and thickness of the farthest thing on an arm."""
     none = (0.0, 0.0, 0.0, 0.0, 0.0)
     from_top = points[:, 2] - shaft.top_m
@@ -221,10 +250,8 @@ def _arm(points: Floats, shaft: Shaft) -> tuple[float, float, float, float, floa
     points = points[_hang_on(points, shaft)]
     if len(points) < _WIRE_FEWEST:
         return none
-    turns = np.arange(_TURNS) * (2 * np.pi / _TURNS)
-    along = points[:, :2] @ np.array([np.cos(turns), np.sin(turns)])
-    along -= shaft.radius_at(shaft.top_m)
-    across = points[:, :2] @ np.array([-np.sin(turns), np.cos(turns)])
+    turns = np.asarray(np.arange(_TURNS) * (2 * np.pi / _TURNS), np.float64)
+    along, across = _strip(points, turns, shaft)
     bins = np.floor(along / _BIN_M).astype(np.int64)
     count = int(_FAR_M / _BIN_M)
     inside = (np.abs(across) < _STRIP_M) & (bins >= 0) & (bins < count)
@@ -240,16 +267,56 @@ def _arm(points: Floats, shaft: Shaft) -> tuple[float, float, float, float, floa
     # Of directions that reach as far, the one along whose middle the points lie.
     off = [float(np.abs(across[inside[:, one], one]).mean()) for one in ties]
     best = int(ties[int(np.argmin(off))])
-    long_m = float(reach[best] * _BIN_M)
-    end = inside[:, best] & (along[:, best] <= long_m) & (along[:, best] > max(0.3, long_m - 1.4))
-    if np.count_nonzero(end) < _WIRE_FEWEST:
-        return none
-    heights, sides = points[end, 2], across[end, best]
+    strip = np.column_stack([along[:, best], across[:, best], points[:, 2]])[inside[:, best]]
+    return (
+        _end_of(_led_on(strip, int(reach[best]), _strip_of(beyond, float(turns[best]), shaft)))
+        or none
+    )
+
+
+def _strip(points: Floats, turns: Floats, shaft: Shaft) -> tuple[Floats, Floats]:
+    """(n, t) each: how far points lie along directions beyond the shaft, and across."""
+    along = points[:, :2] @ np.array([np.cos(turns), np.sin(turns)])
+    across = points[:, :2] @ np.array([-np.sin(turns), np.cos(turns)])
+    return along - shaft.radius_at(shaft.top_m), across
+
+
+def _strip_of(beyond: Floats, turn: float, shaft: Shaft) -> Floats:
+    """(m, 3) along, across and up of those of the points that lie along a direction."""
+    along, across = _strip(beyond, np.array([turn]), shaft)
+    strip = np.column_stack([along, across, beyond[:, 2]])
+    return strip[(np.abs(strip[:, 1]) < _STRIP_M) & (strip[:, 0] > 0)]
+
+
+def _led_on(strip: Floats, reach: int, beyond: Floats) -> tuple[Floats, int]:
+    """An arm's strip with what leads on from it at its height beyond a neighbour's border.
+
+    Arms over the road end beside trees and other poles; what these don't hold is the arm's.
+    """
+    level = float(np.median(strip[strip[:, 0] > (reach - 2) * _BIN_M, 2])) if len(strip) else 0.0
+    up = beyond[:, 2] - level
+    led = np.concatenate([strip, beyond[(up > -_END_BELOW_M) & (up < _END_ABOVE_M)]])
+    bins = np.floor(led[:, 0] / _BIN_M).astype(np.int64)
+    count = int(_FAR_M / _BIN_M)
+    filled = np.zeros(count, np.bool_)
+    filled[bins[bins < count]] = True
+    farther = _reach(filled)
+    return (led, farther) if reach < farther < count else (strip, reach)
+
+
+def _end_of(arm: tuple[Floats, int]) -> tuple[float, float, float, float, float] | None:
+    """Reach of an arm, and height, length, height and thickness of what hangs at its end."""
+    strip, reach = arm
+    long_m = float(reach * _BIN_M)
+    end = strip[(strip[:, 0] <= long_m) & (strip[:, 0] > max(0.3, long_m - 1.4))]
+    if len(end) < _WIRE_FEWEST:
+        return None
+    along, sides, heights = end.T
     return (
         long_m,
         float(np.median(heights)),
-        float(np.ptp(along[end, best])),
-        _tallest(along[end, best], heights),
+        float(np.ptp(along)),
+        _tallest(along, heights),
         float(np.quantile(sides, 0.95) - np.quantile(sides, 0.05)),
     )
 
@@ -293,43 +360,49 @@ def _tallest(along: Floats, heights: Floats) -> float:
     return float(np.median(np.sort(spans)[-3:])) if spans else 0.0
 
 
-def _plate(points: Floats) -> tuple[int, float, float, float, float]:
-    """Points, width, shares of curved and of smooth patches of what hangs on a shaft; its face."""
+def _plate(
+    points: Floats, heads: Integers, shaft: Shaft
+) -> tuple[int, float, float, float, float, float]:
+    """Points, width, shares of curved and of smooth patches of what hangs on a shaft.
+
+    Also the height of the lowest surface that it holds, and where it bulges to.
+    """
     if len(points) < _PLATE_FEWEST:
-        return len(points), 0.0, 0.0, 0.0, math.nan
+        return len(points), 0.0, 0.0, 0.0, math.inf, math.nan
     high = points[:, 2]
     width = max(
         float(np.quantile(high, 0.95) - np.quantile(high, 0.05)),
         float(np.ptp(np.quantile(points[:, :2] @ _main_axis(points[:, :2]), [0.05, 0.95]))),
     )
-    from scipy.spatial import cKDTree
-
-    tree = cKDTree(points)
-    pieces = (high / _PIECE_M).astype(np.int64)
+    pieces = (high / _PIECE_M).astype(np.int64) * (heads.max() + 1) + heads
     order = np.argsort(pieces, kind="stable")
-    told: list[Floats] = []
-    smooth = 0.0
-    for members in np.split(order, np.flatnonzero(np.diff(pieces[order])) + 1):
-        if len(members) < _PLATE_FEWEST:
-            continue
-        shapes = [
-            _bulge_of(points[near] - points[number])
-            for number in members[np.linspace(0, len(members) - 1, _PATCHES).astype(np.int64)]
-            if len(near := tree.query_ball_point(points[number], _PATCH_M)) >= _PLATE_FEWEST
-        ]
-        of_piece = [one for one in shapes if one is not None]
-        told += of_piece
-        smooth = max(smooth, len(of_piece) / _PATCHES)
-    looks = [one for one in told if one.any()]
-    curved = len(looks) / len(told) if told else 0.0
-    return len(points), width, curved, smooth, _facing_deg(looks)
+    groups = [
+        members
+        for members in np.split(order, np.flatnonzero(np.diff(pieces[order])) + 1)
+        if len(members) >= _PLATE_FEWEST
+    ]
+    if not groups:
+        return len(points), width, 0.0, 0.0, math.inf, math.nan
+    middles = np.concatenate(
+        [one[np.linspace(0, len(one) - 1, _PATCHES).astype(np.int64)] for one in groups]
+    )
+    told = np.empty((middles.size, PATCH_WIDTH))
+    patches_kernel(points, heads, middles, np.zeros(2), told)
+    is_smooth, is_curved = told[:, STATE] >= SMOOTH, told[:, STATE] == BULGING
+    curved = float(is_curved.sum() / max(is_smooth.sum(), 1))
+    smooth = float(is_smooth.reshape(-1, _PATCHES).mean(axis=1).max())
+    radii = shaft.radius_m - shaft.taper * high[middles]
+    is_held = is_smooth & (told[:, ASIDE] < radii + _HELD_M)
+    is_held &= np.hypot(*points[middles, :2].T) < radii + _HELD_FROM_M
+    low = float(high[middles[is_held]].min(initial=math.inf))
+    return len(points), width, curved, smooth, low, _facing_deg(told[is_curved, EAST : UP + 1])
 
 
-def _facing_deg(looks: Sequence[Floats]) -> float:
+def _facing_deg(looks: Floats) -> float:
     """Bearing in which most of some unit vectors look: the mean of the largest group."""
-    if not looks:
+    if not len(looks):
         return math.nan
-    plan = np.array(looks)[:, :2]
+    plan = looks[:, :2].copy()
     plan /= np.maximum(np.hypot(plan[:, 0], plan[:, 1]), 1e-9)[:, None]
     alike = plan @ plan.T > math.cos(math.radians(_ONE_MIRROR_DEG))
     east, north = plan[alike[int(alike.sum(axis=1).argmax())]].sum(axis=0).tolist()
@@ -341,38 +414,14 @@ def _main_axis(plan: Floats) -> Floats:
     return np.asarray(axes[:, 1])
 
 
-def _bulge_of(patch: Floats) -> Floats | None:
-    """Where a patch looks that is a piece of a sphere as mirrors are: (3,) a unit vector.
-
-    0 if it doesn't bulge so, None of what is no smooth surface, or bulges more, as trunks and
-    people do. A mirror's dish bulges as its glass does, so that it looks the same way from behind.
-    """
-    middle = patch - patch.mean(axis=0)
-    extents, axes = np.linalg.eigh(middle.T @ middle / len(patch))
-    if extents[1] < _PATCH_WIDE_M**2:
-        return None
-    local = middle @ axes
-    u, v, n = local[:, 2], local[:, 1], local[:, 0]
-    design = np.column_stack([np.ones(len(n)), u, v, u**2 + v**2])
-    cofactors = np.linalg.inv(design.T @ design + 1e-9 * np.eye(4))
-    found = cofactors @ design.T @ n
-    scatter = float(np.sqrt(((n - design @ found) ** 2).sum() / max(len(n) - 4, 1)))
-    if scatter > _SMOOTH_M:
-        return None
-    bulge = abs(float(found[3]))
-    is_sure = bulge > 4 * scatter * float(np.sqrt(cofactors[3, 3]))
-    if is_sure and 2 * bulge >= 1 / _LEAST_RADIUS_M:
-        return None
-    if not is_sure or not 1 / _MOST_RADIUS_M < 2 * bulge < 1 / _LEAST_RADIUS_M:
-        return np.zeros(3)
-    # At the patch's own middle: its normal where it is a piece of a sphere.
-    normal = axes @ np.array([1.0, -found[2], -found[1]])
-    return np.asarray(-np.sign(found[3]) * normal / np.linalg.norm(normal))
-
-
 def is_short(shaft: Shaft) -> bool:
     """Whether a shaft is as low as bollards and delineators are."""
     return shaft.top_m < _SHORT_M
+
+
+def asks_for_brightness(shaft: Shaft) -> bool:
+    """Whether the type of a pole follows from how bright what it carries is."""
+    return is_short(shaft) or 2 * shaft.radius_at(_BREAST_M) > _SIGN_POST_M
 
 
 def type_of(shaft: Shaft, carried: Carried, *, is_reflecting: bool) -> str:
@@ -381,24 +430,27 @@ def type_of(shaft: Shaft, carried: Carried, *, is_reflecting: bool) -> str:
     Parameters
     ----------
     is_reflecting : bool
-        Whether it has a reflector, which is asked of low ones only.
+        Whether it has a reflector or a face that shines, where that is asked.
     """
-    diameter, high = 2 * shaft.radius_at(min(1.2, shaft.top_m / 2)), shaft.top_m
+    diameter, high = 2 * shaft.radius_at(min(_BREAST_M, shaft.top_m / 2)), shaft.top_m
     if is_short(shaft):
         thickest = _REFLECTOR_POST_M if is_reflecting else _THIN_POST_M
         return "delineator" if diameter < thickest else "bollard"
     has_plate = carried.plate_points >= _PLATE_FEWEST and carried.plate_m > _LEAST_PLATE_M
     plate = "mirror_pole" if carried.curved > _CURVED else "sign_pole"
-    is_straight = high < _HIGH_M or shaft.taper < _CONCRETE_TAPER / 2
+    is_board = diameter > _SIGN_POST_M and not is_reflecting
+    if diameter < _CANE_M or carried.plate_low_m < _LOW_PLATE_M or is_board:
+        plate = "other" if plate == "sign_pole" or diameter < _CANE_M else plate
+    is_straight = high < ARMS_FROM_M or shaft.taper < _CONCRETE_TAPER / 2
     if high < _TALL_M and diameter < _TALL_DIAMETER_M and has_plate and is_straight:
         return plate
     if high > _WIRED_M and carried.wires >= _WIRED_CELLS:
         return "utility_pole"
-    if diameter > _CONCRETE_M and high > _HIGH_M and shaft.taper > _CONCRETE_TAPER:
+    if diameter > _CONCRETE_M and high > ARMS_FROM_M and shaft.taper > _CONCRETE_TAPER:
         return "utility_pole"
     if diameter > _UTILITY_M and high > _UTILITY_HIGH_M and shaft.taper > _CONCRETE_TAPER:
         return "utility_pole"
-    if high > _HIGH_M and carried.arm_m >= _LEAST_ARM_M:
+    if high > ARMS_FROM_M and carried.arm_m >= _LEAST_ARM_M:
         return _of_arm(carried)
     if high > _TALL_M:
         return "street_light" if diameter < _UTILITY_M else "utility_pole"

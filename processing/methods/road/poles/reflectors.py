@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from processing.core.arrays import Floats, Integers
 from processing.methods.road.objects.column_points import ColumnPoints
+from processing.methods.road.poles.carried import is_short
 from processing.methods.road.poles.shafts import Shaft
 from processing.methods.road.signs.brightness import CLASSES, brightness_of
 from processing.methods.road.signs.piece_kernels import range_classes
@@ -30,6 +31,9 @@ from which they tell what is bright; on open land, where fewer rise, the ground 
 _NEAR_M, _ABOVE_M = 0.08, 0.1
 """From a shaft's surface and above its top to a reflector's points: discs stand off by up to 3 cm
 and are 7 to 10 cm wide (視線誘導標設置基準)."""
+
+_FACE_M, _FEWEST_OF_FACE = 1.0, 10
+"""The same from a post to points of a sign's face, and bright points that are one."""
 
 _FEWEST = 2
 """Bright points that are a reflector: one may be a mixed return."""
@@ -61,20 +65,21 @@ class ReflectorSearch:
         self._bounds = [self._bounds_of(number, above) for number in range(len(drives))]
 
     def is_reflecting(self, number: int, shaft: Shaft) -> bool:
-        """Whether a reflector is on the upper half of a shaft, by its number."""
+        """Whether a reflector is on the upper half of a shaft, by its number, or a face on it."""
         part = self._around.of(number)
         local = self._around.local[part] - shaft.foot
         up = local[:, 2]
         beside = local[:, :2] - up[:, None] * shaft.lean
         away = np.hypot(beside[:, 0], beside[:, 1]) - shaft.radius_m + shaft.taper * up
-        is_on = (away < _NEAR_M) & (up > shaft.top_m / 2) & (up < shaft.top_m + _ABOVE_M)
+        near, above = (_NEAR_M, _ABOVE_M) if is_short(shaft) else (_FACE_M, _FACE_M)
+        is_on = (away < near) & (up > shaft.top_m / 2) & (up < shaft.top_m + above)
         lines = part.start + np.flatnonzero(is_on)
         bright = 0
         for drive, bounds in enumerate(self._bounds):
             mine = lines[self._around.drives[lines] == drive]
             intensity = self._intensity(drive, mine)
             bright += int(np.count_nonzero(intensity >= bounds[self._classes(drive, mine)]))
-        return bright >= _FEWEST
+        return bright >= (_FEWEST if is_short(shaft) else _FEWEST_OF_FACE)
 
     def _bounds_of(self, drive: int, above: Floats) -> Floats:
         """The least intensity of a bright point of a drive, for each class of ranges."""

@@ -69,12 +69,19 @@ _LIMITS = ShaftLimits(
 """Radii from canes of banners on, leans to 14 degrees; first looked for between grass and most
 crowns; hidden by plates and twigs for 1.5 m."""
 
+_RAISED_LIMITS = _LIMITS._replace(low_m=1.8, high_m=6.6)
+"""Of those whose lower part something before them hides: where their columns are looked for."""
+
 LEAST_LONG_M = 0.4
 """The shortest delineators, 0.5 m, with a decimetre hidden."""
 
 _CUT_M = ABOUT_M - BESIDE_M
 """Of a shaft whose surface lies farther from its column, what stands beside it was cut off, or half
 of itself: hedges and walls beside a post draw its column to them."""
+
+_HIDDEN_M = 1.5
+"""Up to which height at least the lower part of a raised column's shaft is hidden: what shows lower
+and stands nowhere free there has a trunk's stakes or leaves about it."""
 
 _SAME_M = 0.1
 """Axes nearer than this are of one shaft that two columns showed."""
@@ -140,8 +147,41 @@ def find_shafts(
     gathered = points_about(drives, plan, columns.middles, ABOUT_M, PartMonitor(monitor, 0.0, 0.8))
     found: list[Shaft] = []
     for members in passes_of(drives):
-        found += _of_pass(columns, _only(gathered, members), monitor)
+        found += _of_pass(columns, _only(gathered, members), _LIMITS, monitor)
     return _one_of_each(found)
+
+
+def find_hidden_shafts(
+    drives: Sequence[Drive],
+    plan: SparsePlan,
+    raised: FoundColumns,
+    standing: Sequence[Shaft],
+    monitor: Monitor,
+) -> list[Shaft]:
+    """Shafts of which something hides the lower part, but for those that are known.
+
+    Parameters
+    ----------
+    raised : FoundColumns
+        Where something stands upright of which nothing lower was seen.
+    standing : sequence of Shaft
+        The known ones.
+    """
+    from scipy.spatial import cKDTree
+
+    if not len(raised):
+        return []
+    raised = _distinct(raised)
+    gathered = points_about(drives, plan, raised.middles, ABOUT_M, monitor)
+    found: list[Shaft] = []
+    for members in passes_of(drives):
+        found += _of_pass(raised, _only(gathered, members), _RAISED_LIMITS, monitor)
+    found = [one for one in _one_of_each(found) if one.low_m >= _HIDDEN_M]
+    if not found or not standing:
+        return found
+    known = cKDTree(np.array([one.foot[:2] for one in standing]))
+    away = np.asarray(known.query(np.array([one.foot[:2] for one in found]))[0])
+    return [found[number] for number in np.flatnonzero(away > _ONE_M).tolist()]
 
 
 def with_whole_sides(
@@ -162,6 +202,8 @@ def with_whole_sides(
 
 
 def _is_cut(shaft: Shaft) -> bool:
+    if shaft.low_m >= _HIDDEN_M:
+        return False
     return bool(np.hypot(*shaft.told[EAST : NORTH + 1]) + shaft.radius_m > _CUT_M)
 
 
@@ -228,7 +270,9 @@ def _only(gathered: ColumnPoints, members: Sequence[int]) -> ColumnPoints:
     )
 
 
-def _of_pass(columns: FoundColumns, gathered: ColumnPoints, monitor: Monitor) -> list[Shaft]:
+def _of_pass(
+    columns: FoundColumns, gathered: ColumnPoints, limits: ShaftLimits, monitor: Monitor
+) -> list[Shaft]:
     places = np.column_stack([columns.middles, columns.ground])
     told = np.zeros((len(columns), _OF_COLUMN, SHAFT_WIDTH))
 
@@ -237,7 +281,7 @@ def _of_pass(columns: FoundColumns, gathered: ColumnPoints, monitor: Monitor) ->
         starts = gathered.starts[some[0] : some[1] + 1]
         owner = np.repeat(np.arange(*some), np.diff(starts))
         about = gathered.local[starts[0] : starts[-1]] - places[owner]
-        shafts_kernel(about, starts - starts[0], _LIMITS, told[some[0] : some[1]])
+        shafts_kernel(about, starts - starts[0], limits, told[some[0] : some[1]])
 
     for _ in in_order(measure, chunk_ranges(len(columns), _COLUMNS_AT_ONCE)):
         monitor.check()

@@ -14,8 +14,15 @@ import numpy as np
 from processing.core.arrays import Floats, Integers
 from processing.core.monitor import Monitor, PartMonitor
 from processing.methods.road.objects.column_points import ColumnPoints, points_about
-from processing.methods.road.objects.survey import survey_columns
-from processing.methods.road.poles.carried import Carried, carried_of, is_short, type_of
+from processing.methods.road.objects.survey import raised_columns, survey_columns
+from processing.methods.road.poles.carried import (
+    ARMS_FROM_M,
+    Carried,
+    ShaftNeighbourhood,
+    asks_for_brightness,
+    carried_of,
+    type_of,
+)
 from processing.methods.road.poles.mirror_images import mirror_images
 from processing.methods.road.poles.pole_confidence import (
     chance_of,
@@ -27,7 +34,12 @@ from processing.methods.road.poles.reflectors import ReflectorSearch
 from processing.methods.road.poles.roofs import fellows_of
 from processing.methods.road.poles.shaft_kernels import LEVEL_M, POINTS
 from processing.methods.road.poles.shaft_sides import seen_sides
-from processing.methods.road.poles.shafts import Shaft, find_shafts, with_whole_sides
+from processing.methods.road.poles.shafts import (
+    Shaft,
+    find_hidden_shafts,
+    find_shafts,
+    with_whole_sides,
+)
 from processing.methods.road.poles.surroundings import Surroundings, surroundings_of
 from processing.recording.drive import Drive
 
@@ -111,13 +123,20 @@ def street_poles(drives: Sequence[Drive], monitor: Monitor) -> tuple[StreetPole,
     """
     below, columns = survey_columns(drives, PartMonitor(monitor, 0.0, 0.4))
     plan = below.plan
+    raised = raised_columns(drives, monitor)
     shafts = find_shafts(drives, plan, columns, PartMonitor(monitor, 0.4, 0.7))
-    if not shafts:
+    hidden = find_hidden_shafts(drives, plan, raised, shafts, PartMonitor(monitor, 0.7, 0.75))
+    if not shafts and not hidden:
         return ()
-    feet = np.array([one.foot[:2] for one in shafts])
-    around = points_about(drives, plan, feet, REACH_M, PartMonitor(monitor, 0.7, 0.9))
+    usual_m = usual_noise_m(shafts or hidden)
+    part = PartMonitor(monitor, 0.75, 0.9)
+    # What stands out of a crown or behind a wall takes no points from what stands on the ground.
+    around, about_hidden = (
+        points_about(drives, plan, _feet(some), REACH_M, part) for some in (shafts, hidden)
+    )
+    shafts, around = shafts + hidden, around.followed_by(about_hidden)
     shafts = with_whole_sides(shafts, around, monitor)
-    usual_m, fellows = usual_noise_m(shafts), fellows_of(shafts)
+    fellows = fellows_of(shafts)
     sure: list[tuple[float, int, Carried]] = []
     for number, shaft in enumerate(shafts):
         monitor.check()
@@ -127,7 +146,7 @@ def street_poles(drives: Sequence[Drive], monitor: Monitor) -> tuple[StreetPole,
         beside = surroundings_of(local, shaft, usual_m, fellows[number])
         if most_chance_of(shaft, beside, usual_m) < _LEAST_CHANCE:
             continue
-        carried = carried_if_likely(own_points(around, number, shaft), shaft, usual_m)
+        carried = carried_if_likely(own_points(around, number, shafts), shaft, usual_m)
         sides = seen_sides(drives, shaft, plan.origin)
         facts = facts_of(shaft, beside, carried, sides, usual_m)
         chance = chance_of(facts, is_low=is_low(shaft))
@@ -141,37 +160,52 @@ def street_poles(drives: Sequence[Drive], monitor: Monitor) -> tuple[StreetPole,
     for chance, number, carried in sorted(sure, key=lambda one: (-one[0], one[1])):
         shaft = shafts[number]
         if all(np.hypot(*(shaft.foot - one.shaft.foot)[:2]) >= _APART_M for one in poles):
-            is_reflecting = is_short(shaft) and reflectors.is_reflecting(number, shaft)
+            is_reflecting = asks_for_brightness(shaft) and reflectors.is_reflecting(number, shaft)
             kind = type_of(shaft, carried, is_reflecting=is_reflecting)
             poles.append(_pole(shaft, (carried, kind), chance, plan.origin))
     monitor.report(1.0)
     return tuple(poles)
 
 
-def own_points(around: ColumnPoints, number: int, shaft: Shaft) -> Floats:
-    """Points about a shaft of the heads that measured it: (n, 3) m about its foot.
+def _feet(shafts: Sequence[Shaft]) -> Floats:
+    return np.array([one.foot[:2] for one in shafts]).reshape(-1, 2)
+
+
+def own_points(around: ColumnPoints, number: int, shafts: Sequence[Shaft]) -> ShaftNeighbourhood:
+    """Points about a shaft, by its number, of the heads that measured it.
 
     Passes lie centimetres apart, which would make two plates of one and no smooth surface.
     """
-    part = around.of(number)
-    is_own = np.isin(around.drives[part], np.unique(shaft.drives))
-    local: Floats = around.local[part][is_own] - shaft.foot
-    return local
+    shaft = shafts[number]
+    part, heads = around.of(number), np.unique(shaft.drives)
+    is_own = np.isin(around.drives[part], heads)
+    beyond = [np.empty((0, 3))]
+    if shaft.top_m > ARMS_FROM_M:
+        for other, neighbour in enumerate(shafts):
+            if 0 < np.hypot(*(neighbour.foot - shaft.foot)[:2]) < 2 * REACH_M:
+                theirs = around.of(other)
+                local = around.local[theirs] - shaft.foot
+                is_near = (local[:, 2] > ARMS_FROM_M) & np.isin(around.drives[theirs], heads)
+                is_near &= np.hypot(local[:, 0], local[:, 1]) < REACH_M
+                beyond.append(local[is_near])
+    return ShaftNeighbourhood(
+        around.local[part][is_own] - shaft.foot,
+        around.drives[part][is_own],
+        np.concatenate(beyond),
+    )
 
 
-def carried_if_likely(local: Floats, shaft: Shaft, usual_m: float) -> Carried:
+def carried_if_likely(about: ShaftNeighbourhood, shaft: Shaft, usual_m: float) -> Carried:
     """What a shaft carries; nothing, of low ones and of those too rough for a pole.
 
     Parameters
     ----------
-    local : (n, 3) float64
-        Points about it, m about its foot.
     usual_m : float
         Noise of the recording's smooth shafts.
     """
     if is_low(shaft) or shaft.noise_m > _ROUGH * usual_m:
         return Carried()
-    return carried_of(local, shaft)
+    return carried_of(about, shaft)
 
 
 def usual_noise_m(shafts: Sequence[Shaft]) -> float:

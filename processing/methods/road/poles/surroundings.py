@@ -18,11 +18,12 @@ from processing.methods.road.poles.roofs import roof_share
 from processing.methods.road.poles.shaft_kernels import FREE
 from processing.methods.road.poles.shafts import Shaft
 
-_RAIL_FROM_M, _RAIL_TO_M = 0.06, 0.6
-"""How far from a shaft's surface rails, meshes and walls are looked for."""
+_RAIL_FROM_M, _RAIL_TO_M, _RAIL_FAR_M = 0.06, 0.6, 0.9
+"""How far from a shaft's surface rails, meshes and walls are looked for, and those on one side."""
 
-_PLATE_M = 0.4
-"""What goes on beside a shaft beyond is longer than half a sign's plate: a rail, a wall."""
+_PLATE_M, _CLOTH_M = 0.4, 0.65
+"""What goes on beside a shaft beyond is longer than half a sign's plate, or, of one as high as
+canes are, than the cloth of a banner (60 cm by 180 cm): a rail, a wall."""
 
 _SLAB_M, _SLABS = 0.1, 160
 
@@ -36,7 +37,7 @@ a sign's plate fewer."""
 _BELOW_TOP_M, _ABOVE_TOP_M = 0.3, 1.2
 
 _LEAST_CROWN_M = 1.8
-"""Lower shafts carry none."""
+"""Lower shafts carry neither crowns nor banners."""
 
 _ROUGH, _LEAST_FREE = 2.5, 0.25
 """Noise over the usual one, and share of free heights, beyond which nobody asks for a crown."""
@@ -114,6 +115,7 @@ def surroundings_kernel(points: Floats, axis: Floats, told: Floats) -> None:
     plan = np.zeros((side, side), np.bool_)
     over = np.zeros(10, np.bool_)
     low, top = axis[4], axis[5]
+    plate = _CLOTH_M if top > _LEAST_CROWN_M else _PLATE_M
     for point in range(len(points)):
         up = points[point, 2]
         east, north = points[point, 0] - axis[0] * up, points[point, 1] - axis[1] * up
@@ -122,11 +124,11 @@ def surroundings_kernel(points: Floats, axis: Floats, told: Floats) -> None:
             over[min(int((up - top - _OVER_FROM_M) * over.size), over.size - 1)] = True
         if off < _RAIL_FROM_M:
             continue
-        if off < _RAIL_TO_M and 0.0 <= up < _SLABS * _SLAB_M:
+        if off < _RAIL_FAR_M and 0.0 <= up < _SLABS * _SLAB_M:
             sector = int((math.atan2(north, east) / math.pi + 1) / 2 * _SECTORS)
             sector = min(sector, _SECTORS - 1)
-            beside[int(up / _SLAB_M), sector] = True
-            beyond[int(up / _SLAB_M), sector] |= off > _PLATE_M
+            beside[int(up / _SLAB_M), sector] |= off < _RAIL_TO_M
+            beyond[int(up / _SLAB_M), sector] |= off > plate
         i = math.floor(east / _CELL_M) + side // 2
         j = math.floor(north / _CELL_M) + side // 2
         if 0 <= i < side and 0 <= j < side:

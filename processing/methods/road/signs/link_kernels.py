@@ -199,3 +199,74 @@ def warm_up() -> None:
     values, rows = np.zeros((2, PIECE)), np.zeros(2, np.int64)
     link_kernel(values, rows, np.zeros(2, np.bool_), 0.3, np.zeros(2, np.int64))
     plane_kernel(values, np.arange(2), np.zeros(2, np.bool_))
+
+
+PLANE_MIDDLE, PLANE_RIGHT, PLANE_UP, PLANE_NORMAL, PLANE_NOISE, PLANE_LOW, PLANE_HIGH = (
+    0, 3, 6, 9, 12, 13, 15,
+)  # fmt: skip
+"""Where each begins among what is told of a plane: its middle, its axes as the scanner saw it, how
+far its pieces lie off it, and their box, right and up of the middle."""
+
+PLANE_WIDTH = 17
+
+
+@kernel
+def flat_kernel(values: Floats, members: Integers, told: Floats) -> bool:
+    """The plane of pieces by least squares; whether it is upright.
+
+    Parameters
+    ----------
+    values : (n, PIECE) float64
+        Of pieces.
+    members : (k,) int64
+        Those that are asked.
+    told : (PLANE_WIDTH,) float64
+        Written.
+    """
+    middle, total = np.zeros(3), 0.0
+    for member in members:
+        total += 2 * values[member, COUNT]
+        for axis in range(3):
+            both = values[member, FROM + axis] + values[member, TO + axis]
+            middle[axis] += values[member, COUNT] * both
+    middle /= total
+    spread, seen = np.zeros((3, 3)), np.zeros(3)
+    for member in members:
+        seen += values[member, VIEW : VIEW + 3] * values[member, COUNT]
+        for side in (FROM, TO):
+            off = values[member, side : side + 3] - middle
+            for i in range(3):
+                for j in range(3):
+                    spread[i, j] += values[member, COUNT] / total * off[i] * off[j]
+    normal = np.ascontiguousarray(np.linalg.eigh(spread)[1][:, 0])
+    if abs(normal[2]) > STEEPEST:
+        return False
+    if (seen * normal).sum() > 0:
+        normal = -normal
+    right = np.array([-normal[1], normal[0], 0.0]) / math.hypot(normal[0], normal[1])
+    up = np.array([-normal[2] * right[1], normal[2] * right[0], 0.0])
+    up[2] = normal[0] * right[1] - normal[1] * right[0]
+    told[PLANE_MIDDLE:PLANE_RIGHT], told[PLANE_RIGHT:PLANE_UP] = middle, right
+    told[PLANE_UP:PLANE_NORMAL], told[PLANE_NORMAL:PLANE_NOISE] = up, normal
+    _box(values, members, told)
+    return True
+
+
+@kernel
+def _box(values: Floats, members: Integers, told: Floats) -> None:
+    """Tell how far pieces lie off a plane, and their box in it."""
+    middle = told[PLANE_MIDDLE:PLANE_RIGHT]
+    right, up = told[PLANE_RIGHT:PLANE_UP], told[PLANE_UP:PLANE_NORMAL]
+    normal = told[PLANE_NORMAL:PLANE_NOISE]
+    told[PLANE_LOW:PLANE_HIGH], told[PLANE_HIGH:PLANE_WIDTH] = np.inf, -np.inf
+    squares, total = 0.0, 0.0
+    for member in members:
+        for side in (FROM, TO):
+            off = values[member, side : side + 3] - middle
+            squares += values[member, COUNT] * (off * normal).sum() ** 2
+            total += values[member, COUNT]
+            flat = (off * right).sum(), (off * up).sum()
+            for axis in range(2):
+                told[PLANE_LOW + axis] = min(told[PLANE_LOW + axis], flat[axis])
+                told[PLANE_HIGH + axis] = max(told[PLANE_HIGH + axis], flat[axis])
+    told[PLANE_NOISE] = math.sqrt(squares / total)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +11,15 @@ from processing.core.arrays import Floats, Integers
 from processing.core.monitor import Monitor
 from processing.methods.road.signs.link_kernels import (
     FLAT_M,
-    STEEPEST,
+    PLANE_HIGH,
+    PLANE_LOW,
+    PLANE_MIDDLE,
+    PLANE_NOISE,
+    PLANE_NORMAL,
+    PLANE_RIGHT,
+    PLANE_UP,
+    PLANE_WIDTH,
+    flat_kernel,
     link_kernel,
     plane_kernel,
 )
@@ -174,29 +181,19 @@ def _is_plate_sized(group: PlateGroup) -> bool:
 
 def group_of(values: Floats, members: Integers) -> PlateGroup | None:
     """The plane of pieces by least squares; None where it isn't upright."""
-    ends = np.concatenate([values[members, FROM : FROM + 3], values[members, TO : TO + 3]])
-    weights = np.concatenate([values[members, COUNT]] * 2)
-    weights /= weights.sum()
-    middle = weights @ ends
-    about = ends - middle
-    normal = np.linalg.eigh((about * weights[:, None]).T @ about)[1][:, 0]
-    if abs(normal[2]) > STEEPEST:
+    told = np.empty(PLANE_WIDTH)
+    if not flat_kernel(values, members, told):
         return None
-    if (values[members, VIEW : VIEW + 3] @ normal * values[members, COUNT]).sum() > 0:
-        normal = -normal
-    right, up = _axes_of(normal)
-    noise = float(np.sqrt(weights @ (about @ normal) ** 2))
-    flat = about @ np.column_stack([right, up])
-    return PlateGroup(members, middle, right, up, normal, noise, flat.min(axis=0), flat.max(axis=0))
-
-
-def _axes_of(normal: Floats) -> tuple[Floats, Floats]:
-    """(3,) each: level to the right and upwards in the plane that a normal stands on."""
-    east, north, rise = normal.tolist()
-    right = np.array([-north, east, 0.0])
-    right /= math.sqrt(right @ right)
-    x, y, _ = right.tolist()
-    return right, np.array([-rise * y, rise * x, east * y - north * x])
+    return PlateGroup(
+        members,
+        middle=told[PLANE_MIDDLE:PLANE_RIGHT],
+        right=told[PLANE_RIGHT:PLANE_UP],
+        up=told[PLANE_UP:PLANE_NORMAL],
+        normal=told[PLANE_NORMAL:PLANE_NOISE],
+        noise_m=float(told[PLANE_NOISE]),
+        low=told[PLANE_LOW:PLANE_HIGH],
+        high=told[PLANE_HIGH:],
+    )
 
 
 def _joined(pieces: ScanPieces, groups: list[PlateGroup]) -> list[PlateGroup]:

@@ -108,4 +108,4 @@ def test_a_post_far_from_its_column_keeps_its_diameter(street: Street) -> None:
 def test_a_plate_is_told_below_a_crown(street: Street) -> None:
     number = street.at(SIGN)
     shaft = street.shafts[number]
-    assert carried_of(own_points(street.around, number, shaft), shaft).smooth > 0.6
+    assert carried_of(own_points(street.around, number, street.shafts), shaft).smooth > 0.6

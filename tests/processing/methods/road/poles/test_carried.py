@@ -1,0 +1,131 @@
+"""What shafts carry, told from points by construction: mirrors, plates, boards, cloths, arms."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from processing.core.arrays import Floats
+from processing.methods.road.poles.carried import (
+    ShaftNeighbourhood,
+    asks_for_brightness,
+    carried_of,
+    type_of,
+)
+from processing.methods.road.poles.patch_kernels import (
+    BULGING,
+    PATCH_WIDTH,
+    ROUGH,
+    SMOOTH,
+    STATE,
+    patches_kernel,
+)
+from processing.methods.road.poles.shaft_kernels import SHAFT_WIDTH
+from processing.methods.road.poles.shafts import Shaft
+
+NOISE_M = 0.002
+NOTHING = np.empty((0, 3))
+
+
+def _shaft(diameter_m: float, top_m: float) -> Shaft:
+    return Shaft(
+        foot=np.zeros(3),
+        lean=np.zeros(2),
+        radius_m=diameter_m / 2,
+        taper=0.0,
+        deviation_m=0.001,
+        noise_m=NOISE_M,
+        low_m=0.0,
+        top_m=top_m,
+        told=np.zeros(SHAFT_WIDTH),
+        drives=np.zeros(0, np.int64),
+        points=np.zeros(0, np.int64),
+        local=NOTHING,
+    )
+
+
+def _plate(wide_m: float, heights: tuple[float, float], before_m: float, sphere_m: float) -> Floats:
+    """Points every 3 cm of a board that looks south; bulging as a sphere of a radius does."""
+    east, up = np.meshgrid(np.arange(-wide_m / 2, wide_m / 2, 0.03), np.arange(*heights, 0.03))
+    middle = sum(heights) / 2
+    bulge = (east**2 + (up - middle) ** 2) / (2 * sphere_m)
+    points = np.column_stack([east.ravel(), (bulge - before_m).ravel(), up.ravel()])
+    return np.asarray(points + np.random.default_rng(3).normal(0, NOISE_M, points.shape))
+
+
+def _about(*heads: Floats, beyond: Floats = NOTHING) -> ShaftNeighbourhood:
+    of = np.repeat(np.arange(len(heads)), [len(one) for one in heads])
+    return ShaftNeighbourhood(np.concatenate(heads), of, beyond)
+
+
+def _type_of(shaft: Shaft, about: ShaftNeighbourhood, *, shines: bool = False) -> str:
+    return type_of(shaft, carried_of(about, shaft), is_reflecting=shines)
+
+
+def test_a_mirror_is_told_though_another_head_sees_the_back_of_its_dish() -> None:
+    glass = _plate(0.6, (2.1, 2.7), 0.08, 2.2)
+    back = _plate(0.6, (2.1, 2.7), 0.03, 1e6)
+    shaft = _shaft(0.0763, 2.8)
+    carried = carried_of(_about(glass, back), shaft)
+    assert type_of(shaft, carried, is_reflecting=False) == "mirror_pole"
+    assert carried.mirror_deg == pytest.approx(180.0, abs=10.0)
+
+
+def test_a_plate_before_its_back_is_flat() -> None:
+    sides = _plate(0.6, (2.1, 2.7), 0.05, 1e6), _plate(0.6, (2.1, 2.7), 0.09, 1e6)
+    assert _type_of(_shaft(0.0763, 2.8), _about(*sides)) == "sign_pole"
+
+
+def test_a_timetable_below_a_disc_makes_no_post_of_a_sign() -> None:
+    disc, table = _plate(0.5, (2.0, 2.5), 0.05, 1e6), _plate(0.4, (1.1, 1.8), 0.05, 1e6)
+    shaft = _shaft(0.0605, 2.5)
+    assert _type_of(shaft, _about(disc)) == "sign_pole"
+    assert _type_of(shaft, _about(np.concatenate([disc, table]))) == "other"
+
+
+def test_a_wall_behind_a_post_is_no_low_plate() -> None:
+    sign, wall = _plate(0.6, (2.0, 2.6), 0.05, 1e6), _plate(1.9, (1.0, 1.6), -0.25, 1e6)
+    assert _type_of(_shaft(0.0605, 2.6), _about(np.concatenate([sign, wall]))) == "sign_pole"
+
+
+def test_a_cane_carries_no_sign() -> None:
+    assert _type_of(_shaft(0.022, 2.5), _about(_plate(0.6, (2.0, 2.45), 0.04, 1e6))) == "other"
+
+
+def test_what_a_thick_post_carries_is_a_sign_if_it_shines() -> None:
+    shaft, board = _shaft(0.14, 3.6), _about(_plate(1.0, (2.6, 3.5), 0.1, 1e6))
+    assert asks_for_brightness(shaft)
+    assert _type_of(shaft, board) == "other"
+    assert _type_of(shaft, board, shines=True) == "sign_pole"
+    assert not asks_for_brightness(_shaft(0.0763, 2.8))
+
+
+def test_an_arm_leads_on_where_its_end_is_nearer_to_a_neighbour() -> None:
+    """A signal's arm above the road, beside a tree or another pole."""
+    reach = np.arange(0.12, 3.4, 0.01)
+    arm = np.column_stack([reach, np.zeros(reach.size), np.full(reach.size, 5.4)])
+    lamp = np.stack(np.meshgrid(np.arange(2.6, 3.4, 0.05), [0.0, 0.15], np.arange(5.2, 5.65, 0.05)))
+    signal = np.concatenate([arm, lamp.reshape(3, -1).T])
+    is_near = signal[:, 0] < 1.4
+    shaft = _shaft(0.2, 5.7)
+    shaft.foot[:] = 0.0
+    own, beyond = signal[is_near], signal[~is_near]
+    assert carried_of(_about(own), shaft).arm_m < 2.0
+    whole = carried_of(_about(own, beyond=beyond), shaft)
+    assert whole.arm_m == pytest.approx(3.3, abs=0.3)
+    assert type_of(shaft, whole, is_reflecting=False) == "signal_pole"
+
+
+def test_patches_of_leaves_are_rough_and_those_of_balls_too_small_for_mirrors() -> None:
+    random = np.random.default_rng(7)
+    leaves = random.uniform(-0.3, 0.3, (300, 3))
+    flat = _plate(0.6, (0.0, 0.6), 0.0, 1e6)
+    mirror, ball = _plate(0.6, (0.0, 0.6), 0.0, 2.2), _plate(0.6, (0.0, 0.6), 0.0, 0.45)
+    states = []
+    for points in (leaves, flat, mirror, ball):
+        middle = np.linalg.norm(points - points.mean(axis=0), axis=1).argmin()
+        told = np.empty((1, PATCH_WIDTH))
+        heads = np.zeros(len(points), np.int64)
+        patches_kernel(points, heads, np.array([middle]), np.zeros(2), told)
+        states.append(told[0, STATE])
+    assert states == [ROUGH, SMOOTH, BULGING, ROUGH]
