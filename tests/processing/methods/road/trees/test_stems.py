@@ -143,3 +143,38 @@ def test_of_several_stems_that_bend_each_counts() -> None:
     trunk = trunk_in(bent, bark(0.09, 0.2, 4.0), bark(0.08, 0.2, 4.0, middle=(0.0, 0.2)))
     assert len(trunk.stems) == 3
     assert trunk.diameter_m == pytest.approx(0.7 * 0.24, abs=0.012)
+
+
+def wall(start: tuple[float, float], end: tuple[float, float], high_m: float) -> Floats:
+    """A line of points every 5 cm of height along a wall, with 3 mm of noise."""
+    random = np.random.default_rng(9)
+    share = np.tile(np.linspace(0.0, 1.0, 40), round(high_m / 0.05))
+    up = np.repeat(np.arange(0.1, 0.1 + high_m, 0.05)[: share.size // 40], 40)
+    along = np.outer(1 - share, start) + np.outer(share, end)
+    noise = random.normal(0.0, 0.003, along.shape)
+    return np.column_stack([along + noise, up[: len(along)]])
+
+
+def test_the_corner_of_a_wall_is_no_stem() -> None:
+    turn = np.linspace(-0.8, 0.8, 12)
+    rounded = np.column_stack([0.05 * np.cos(turn), 0.05 * np.sin(turn)])
+    up = np.repeat(np.arange(0.1, 2.6, 0.05), len(rounded))
+    edge = np.column_stack([np.tile(rounded, (50, 1)), up])
+    corner = np.vstack(
+        [edge, wall((0.035, 0.036), (-0.6, 0.6), 2.5), wall((0.035, -0.036), (-0.6, -0.6), 2.5)]
+    )
+    assert not stems_of(corner, MOST_M)
+
+
+def test_a_circle_among_twigs_is_no_stem_and_the_slender_one_below_is() -> None:
+    random = np.random.default_rng(11)
+    twigs = np.column_stack(
+        [random.uniform(-0.5, 0.5, (2_500, 2)), random.uniform(1.5, 2.7, 2_500)]
+    )
+    found = stems_of(np.vstack([bark(0.07, 0.2, 1.6), twigs]), MOST_M)
+    assert [2 * one.radius_m for one in found] == pytest.approx([0.07], abs=0.008)
+
+
+def test_a_trunk_with_a_cane_beside_it_stands_free() -> None:
+    both = np.vstack([bark(0.08, 0.2, 2.6), bark(0.03, 0.2, 2.4, middle=(0.0, 0.1))])
+    assert any(abs(2 * one.radius_m - 0.08) < 0.008 for one in stems_of(both, MOST_M))
