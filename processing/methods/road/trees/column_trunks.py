@@ -193,8 +193,8 @@ def _drives_joined(
         points = shifted.points
         near = np.asarray(tree.query(place, k=_NEIGHBOURS)[1])
         if points is not None and is_apart[near[near < len(told)]].mean() > _MOST:
-            trunks = _trunks_in(points, most_diameter_m)
-            joined.append(one._replace(about=points, trunk=_nearest(trunks, one.trunk)))
+            anew = _trunks_in(points, most_diameter_m)
+            joined.append(one._replace(about=points, trunk=_nearest(anew, one.trunk)))
         else:
             joined.append(one)
     return joined
