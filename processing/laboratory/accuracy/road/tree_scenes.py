@@ -10,6 +10,7 @@ from tempfile import TemporaryDirectory
 import laspy
 import numpy as np
 
+from processing.core.arrays import Floats
 from processing.core.monitor import SilentMonitor
 from processing.formats.vectors.mapped_shapes import read_mapped
 from processing.laboratory.accuracy.road.road_scenes import (
@@ -21,6 +22,7 @@ from processing.laboratory.accuracy.road.tree_baselines import TrunkPoints
 from processing.laboratory.simulate.requests import StreetRequest
 from processing.laboratory.simulate.streets import simulate_street
 from processing.methods.road.objects.column_points import points_about
+from processing.methods.road.objects.foot import foot_height
 from processing.methods.road.objects.sparse_plan import plan_of
 from processing.project.importing.importing import ImportRequest, import_drives
 from processing.recording.drive import Drive
@@ -40,10 +42,13 @@ _CRS = "EPSG:6677"
 _LEAST_CONFIDENCE = 0.02
 _LENGTH_M = 60.0
 _TRUNK_M = 0.9
-_FLOOR = 0.001
+_FLOOR, _USUAL_RADIUS_M = 0.001, 0.13
+_MOST_POINTS = 10_000
+_HEIGHTS = "hag"
+"""Heights above the ground in files of lidR."""
 
 FRESH_AVENUES, FRESH_STREETS = range(740, 746), range(760, 764)
-"""Seeds that nobody looked at while the method was made."""
+"""Seeds that nobody looked at while the method was made; the avenues were looked at since."""
 
 
 @dataclass(frozen=True)
@@ -184,12 +189,22 @@ def score_scene(scene: TreeScene) -> ScoredTrees:
 
 def trunk_points(scene: TreeScene) -> list[TrunkPoints]:
     """What was measured about the foot of each true tree."""
-    drives = scene.drives
+    return points_about_feet(scene.drives, positions_of(scene.truth.features))
+
+
+def points_about_feet(drives: Sequence[Drive], feet: Floats) -> list[TrunkPoints]:
+    """What was measured about some feet.
+
+    Parameters
+    ----------
+    feet : (n, 3) float64
+        m, project CRS.
+    """
     plan = plan_of([(drive.info.lowest, drive.info.highest) for drive in drives])
     for drive in drives:
         plan.add(drive.coordinates.chunk_about(0, drive.count, plan.origin))
-    feet = positions_of(scene.truth.features) - plan.origin
-    gathered = points_about(drives, plan, feet[:, :2].copy(), _TRUNK_M, SilentMonitor())
+    local_feet = feet - plan.origin
+    gathered = points_about(drives, plan, local_feet[:, :2].copy(), _TRUNK_M, SilentMonitor())
     pulses = np.full(len(gathered.local), -1, np.int64)
     per_turn: list[int] = []
     for number, drive in enumerate(drives):
@@ -202,17 +217,52 @@ def trunk_points(scene: TreeScene) -> list[TrunkPoints]:
         TrunkPoints(
             gathered.local[part] - foot, gathered.drives[part], pulses[part], tuple(per_turn)
         )
-        for foot, part in ((foot, gathered.of(number)) for number, foot in enumerate(feet))
+        for foot, part in ((foot, gathered.of(number)) for number, foot in enumerate(local_feet))
     ]
 
 
+def standing_trees(path: Path) -> dict[str, TrunkPoints]:
+    """The trunks of a cloud that holds nothing but trees, from west to east, by name.
+
+    Of a plot those that the tool finds; of one tree all that lies about its trunk.
+    """
+    with TemporaryDirectory(prefix="zuka-") as position:
+        request = ImportRequest((path,), (), crs=_CRS)
+        drives = [
+            Drive(one) for one in import_drives(request, Path(position) / "d", SilentMonitor())
+        ]
+        found = find_trees(tuple(drives), TreeParameters(), SilentMonitor()).candidates
+        feet = np.array([one.xyz[0] for one in found]).reshape(-1, 3)
+        if len(feet) > 1:
+            feet = feet[np.argsort(feet[:, 0])]
+            trunks = [_thinned(one) for one in points_about_feet(drives, feet)]
+            return {f"{path.stem} {number + 1}": one for number, one in enumerate(trunks)}
+    return {path.stem: _thinned(standing_tree(path))}
+
+
+def _thinned(points: TrunkPoints) -> TrunkPoints:
+    """Every so many-th point of what a tripod scanned: wires of all of them would take minutes."""
+    kept = slice(None, None, max(1, len(points.local) // _MOST_POINTS))
+    return TrunkPoints(
+        points.local[kept], points.drives[kept], points.pulses[kept], points.per_turn
+    )
+
+
 def standing_tree(path: Path) -> TrunkPoints:
-    """The trunk of a tree that was scanned by itself, from a LAS file."""
-    xyz = np.asarray(laspy.read(path).xyz)
-    up = xyz[:, 2] - np.quantile(xyz[:, 2], _FLOOR)
+    """The trunk of a tree that was scanned by itself, from a LAS file.
+
+    Heights above the ground count where the file has them.
+    """
+    cloud = laspy.read(path)
+    xyz = np.asarray(cloud.xyz)
+    has_heights = _HEIGHTS in cloud.point_format.dimension_names
+    up = np.asarray(cloud[_HEIGHTS]) if has_heights else xyz[:, 2] - xyz[:, 2].min()
     breast = xyz[(up > 1.0) & (up < 1.4), :2]
     middle = np.median(breast, axis=0)
     near = np.hypot(*(xyz[:, :2] - middle).T) < _TRUNK_M
     local = np.column_stack([xyz[near, :2] - middle, up[near]])
+    if not has_heights:
+        coarse = float(np.quantile(local[:, 2], _FLOOR))
+        local[:, 2] -= foot_height(local, np.zeros(2), coarse, _USUAL_RADIUS_M)
     unknown = np.full(len(local), -1, np.int64)
     return TrunkPoints(local, np.zeros(len(local), np.int64), unknown, (0,))

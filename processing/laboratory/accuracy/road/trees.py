@@ -24,7 +24,7 @@ from processing.laboratory.accuracy.road.tree_scenes import (
     fresh_scenes,
     given_tree_scenes,
     score_scene,
-    standing_tree,
+    standing_trees,
     trunk_points,
 )
 from processing.laboratory.accuracy.road.tree_tables import (
@@ -42,11 +42,12 @@ from processing.scoring.points.reliability import reliability_of_pairs
 
 _COMMAND = "`python -m processing.laboratory.accuracy.road.trees --markdown docs/accuracy.md`"
 _ABOUT = f"""{_COMMAND} (with `--samples FOLDER…`, deliveries of another simulator, and `--real \
-FILE…`): own streets of 60 m of seeds that nobody looked at, avenues with large touching crowns \
-over posts and lamps, and usual streets, all with the tool's own parameters. A tree counts as the \
-thesis has it, within 2 m, but one to one, if 20 points on its trunk show it. Diameters are those \
-of trunks of which 60° and more were seen, stakes included; “within” is the share whose error is \
-no greater than `dbh_within_m`, which should be 95 %.
+FILE…`): own streets of 60 m, avenues with large touching crowns over posts and \
+lamps, which were looked at since, and usual streets, which were not, all with the \
+tool's own parameters. A tree counts as the thesis has it, within 2 m, but one to \
+one, if 20 points on its trunk show it. Diameters are those of trunks of which 60° \
+and more were seen, stakes included; “within” is the share whose error is no greater \
+than `dbh_within_m`, which should be 95 %.
 """
 _ABOUT_KINDS = """The same trees; of deliveries by what is special about them, where they say so.
 """
@@ -114,7 +115,7 @@ def sections_of(
         "### Trees that were not found, and what was taken for trees": failures_of(streets),
     }
     if real:
-        told = {path.stem: standing_tree(path) for path in real}
+        told = {name: one for path in real for name, one in standing_trees(path).items()}
         ways = {name: {way: f(one) for way, f in WAYS.items()} for name, one in told.items()}
         sections["### Trees scanned by themselves"] = f"{_ABOUT_REAL}\n{real_table(ways)}\n"
     return sections

@@ -39,26 +39,43 @@ a hedge, which hides some of it, holds more."""
 _LEAST_RISE_M = 0.5
 """What lies less below the ground isn't looked for: gutters and tree pits have such steps."""
 
+_PLAN_CELL_M, _STANDING, _WIDER = 0.15, 8, 1.5
+"""Cells of the plan that are counted; layers above the ground that hold what stands on it; and how
+many times as many cells ground fills: a trunk fills as many in each layer, a ring of rails too."""
 
-def ground_seen(heights: Floats, coarse_m: float) -> float:
+
+def ground_seen(points: Floats, coarse_m: float) -> float:
     """The ground of the coarse map, or what lies above it where that is a few mirrored points.
 
     Parameters
     ----------
-    heights : (n,) float64
-        Of points about a column, m about any origin.
+    points : (n, 3) float64
+        About a column, m about any origin.
     coarse_m : float
         The ground of the coarse map, about the same.
+
+    Notes
+    -----
+    What lies above is ground if it takes up more room in plan than what stands on it: where rails
+    and walls hide the ground, the lowest that was seen is the trunk itself.
     """
     layers = round((_HIGHEST_M + _LEAST_RISE_M) / _LAYER_M)
     lowest = coarse_m - _LEAST_RISE_M
-    layer = np.floor((heights - lowest) / _LAYER_M)
-    counts = np.bincount(layer[(layer >= 0) & (layer < layers)].astype(np.int64))
+    layer = np.floor((points[:, 2] - lowest) / _LAYER_M).astype(np.int64)
+    is_asked = (layer >= 0) & (layer < layers)
+    counts = np.bincount(layer[is_asked], minlength=layers)
     filled = np.flatnonzero(counts > _MIRRORED * counts.max(initial=0))
     if not filled.size:
         return coarse_m
     seen = lowest + (float(filled[0]) + 0.5) * _LAYER_M
-    return seen if seen > coarse_m + _LEAST_RISE_M else coarse_m
+    if seen <= coarse_m + _LEAST_RISE_M:
+        return coarse_m
+    cells = np.floor(points[is_asked, :2] / _PLAN_CELL_M).astype(np.int64)
+    places = np.unique(np.column_stack([layer[is_asked], cells]), axis=0)
+    room = np.bincount(places[:, 0], minlength=layers)
+    above = room[filled[0] + 2 : filled[0] + 2 + _STANDING]
+    is_ground = above.size > 0 and room[filled[0]] > _WIDER * above.max()
+    return seen if is_ground else coarse_m
 
 
 def foot_height(points: Floats, axis: Floats, coarse_m: float, radius_m: float = 0.0) -> float:

@@ -22,19 +22,16 @@ from processing.methods.road.objects.columns import FoundColumns
 from processing.methods.road.objects.foot import foot_height, ground_seen
 from processing.methods.road.trees.drive_shifts import JoinedPoints, without_shifts
 from processing.methods.road.trees.rises import followed
-from processing.methods.road.trees.stems import HIGHEST_M, stems_of
-from processing.methods.road.trees.trunks import Trunk, trunk_of
+from processing.methods.road.trees.stems import BREAST_M, stems_of
+from processing.methods.road.trees.trunks import CLUMP_M, Trunk, leave_together, trunks_of
 
 _NEIGHBOURS, _MOST = list(range(1, 21)), 0.5
 """Nearest columns that are asked whether drives lie apart, and how many have to say so: positions
 drift over minutes, so columns of a street agree."""
 
-_CLUMP_M = 0.7
-"""Axes of stems of one tree are so near to each other at the foot: they rise from one root, and the
-tree takes no more of a planting strip of 1.5 m (道路構造令 第11条の4: 植樹帯)."""
-
-_PARTS = 0.1
-"""Run over rise by which they move apart: 6 degrees, which two posts beside each other don't."""
+_SAME_M = 0.1
+"""Axes nearer than this are of one stem that two columns show: what each misses of it moves it by a
+centimetre or two."""
 
 
 class ColumnTrunk(NamedTuple):
@@ -74,41 +71,55 @@ def column_trunks(
     3. Where most columns say that drives lie apart, their points are laid onto each other.
     """
 
-    def of_column(number: int) -> ColumnTrunk | None:
+    def of_column(number: int) -> list[ColumnTrunk]:
         monitor.check()
         part = gathered.of(number)
         lines = np.arange(part.start, part.stop)
         ground = float(columns.ground[number])
-        return _trunk_about(gathered, lines, (columns.middles[number], ground), most_diameter_m)
+        return _trunks_about(gathered, lines, (columns.middles[number], ground), most_diameter_m)
 
     found: list[ColumnTrunk] = []
-    for number, one in enumerate(in_order(of_column, range(len(columns)))):
-        if one is not None:
-            found.append(one)
+    for number, some in enumerate(in_order(of_column, range(len(columns)))):
+        found += some
         monitor.report((number + 1) / len(columns))
-    whole = _clumps_joined(found, gathered, most_diameter_m, monitor)
+    whole = _clumps_joined(_without_twins(found), gathered, most_diameter_m, monitor)
     has_several = np.unique(gathered.drives).size > 1
     return _drives_joined(whole, gathered, most_diameter_m, monitor) if has_several else whole
 
 
-def _trunk_about(
+def _trunks_about(
     gathered: ColumnPoints, lines: Integers, place: tuple[Floats, float], most_diameter_m: float
-) -> ColumnTrunk | None:
-    """The trunk of points about a middle and a ground; None where none of the stems is one."""
+) -> list[ColumnTrunk]:
+    """The trunks of points about a middle and a ground."""
     middle, ground = place
     local = gathered.local[lines]
-    coarse = ground_seen(local[:, 2], ground)
+    coarse = ground_seen(local, ground)
     height = foot_height(local, middle, coarse)
     about = local - (*middle, height)
-    trunk = _trunk_in(about, most_diameter_m)
-    if trunk is None:
-        return None
-    return ColumnTrunk(lines, middle, coarse, height, about, trunk)
+    return [
+        ColumnTrunk(lines, middle, coarse, height, about, trunk)
+        for trunk in _trunks_in(about, most_diameter_m)
+    ]
 
 
-def _trunk_in(about: Floats, most_diameter_m: float) -> Trunk | None:
-    """The trunk among points about a foot."""
-    return trunk_of(followed(about, stems_of(about, most_diameter_m)))
+def _trunks_in(about: Floats, most_diameter_m: float) -> tuple[Trunk, ...]:
+    """The trunks among points about a foot."""
+    return trunks_of(followed(about, stems_of(about, most_diameter_m)))
+
+
+def _without_twins(trunks: Sequence[ColumnTrunk]) -> list[ColumnTrunk]:
+    """Each trunk once, as the column tells it that shows the most stems and points of it."""
+    axes = np.array([one.middle + one.trunk.stems[0].middle_at(BREAST_M) for one in trunks])
+    kept: list[int] = []
+    order = sorted(
+        range(len(trunks)),
+        key=lambda n: (-len(trunks[n].trunk.stems), -trunks[n].trunk.lines.size),
+    )
+    for number in order:
+        away = np.hypot(*(axes[kept] - axes[number]).T) if kept else np.empty(0)
+        if (away >= _SAME_M).all():
+            kept.append(number)
+    return [trunks[number] for number in sorted(kept)]
 
 
 def _clumps_joined(
@@ -121,7 +132,7 @@ def _clumps_joined(
     if len(trunks) < 2:
         return list(trunks)
     feet = np.array([one.middle + one.trunk.base for one in trunks])
-    pairs = cKDTree(feet).query_pairs(2 * _CLUMP_M, output_type="ndarray")
+    pairs = cKDTree(feet).query_pairs(2 * CLUMP_M, output_type="ndarray")
     pairs = pairs[[_is_one_tree(trunks[a], trunks[b]) for a, b in pairs.tolist()]]
     ties = coo_matrix((np.ones(len(pairs)), pairs.T), (len(trunks),) * 2)
     clumps = connected_components(ties, directed=False)[1]
@@ -136,14 +147,8 @@ def _clumps_joined(
 
 def _is_one_tree(one: ColumnTrunk, other: ColumnTrunk) -> bool:
     """Whether some of their stems leave the ground together and move apart."""
-    for a in one.trunk.stems:
-        for b in other.trunk.stems:
-            beside = one.middle + a.base - other.middle - b.base
-            low = float(np.hypot(*beside))
-            high = float(np.hypot(*(beside + HIGHEST_M * (a.lean - b.lean))))
-            if low < _CLUMP_M and high - low > _PARTS * HIGHEST_M:
-                return True
-    return False
+    beside = other.middle - one.middle
+    return any(leave_together(a, b, beside) for a in one.trunk.stems for b in other.trunk.stems)
 
 
 def _whole(
@@ -153,8 +158,9 @@ def _whole(
     lines = np.concatenate([one.lines for one in members])
     middle = np.mean([one.middle + one.trunk.base for one in members], axis=0)
     ground = min(one.coarse_m for one in members)
-    whole = _trunk_about(gathered, lines, (middle, ground), most_diameter_m)
+    trunks = _trunks_about(gathered, lines, (middle, ground), most_diameter_m)
     most = max(len(one.trunk.stems) for one in members)
+    whole = max(trunks, key=lambda one: len(one.trunk.stems), default=None)
     return whole if whole is not None and len(whole.trunk.stems) > most else None
 
 
@@ -187,8 +193,19 @@ def _drives_joined(
         points = shifted.points
         near = np.asarray(tree.query(place, k=_NEIGHBOURS)[1])
         if points is not None and is_apart[near[near < len(told)]].mean() > _MOST:
-            trunk = _trunk_in(points, most_diameter_m)
-            joined.append(one._replace(about=points, trunk=trunk or one.trunk))
+            anew = _trunks_in(points, most_diameter_m)
+            joined.append(one._replace(about=points, trunk=_nearest(anew, one.trunk)))
         else:
             joined.append(one)
     return joined
+
+
+def _nearest(trunks: Sequence[Trunk], before: Trunk) -> Trunk:
+    """The trunk that stands where one stood; that one itself where none does."""
+    place = before.stems[0].middle_at(BREAST_M)
+
+    def away(trunk: Trunk) -> float:
+        return float(np.hypot(*(trunk.stems[0].middle_at(BREAST_M) - place)))
+
+    near = min(trunks, key=away, default=before)
+    return near if away(near) < max(_SAME_M, before.stems[0].radius_m) else before

@@ -50,6 +50,14 @@ _SECTORS = 24
 CAPTURED_M = 0.06
 """Off a stem's surface: passes lie so far apart where satellites are hidden for a minute."""
 
+_FREE_SLAB_M, _FREE_FROM_M, _FREE_TO_M, _FREE_SHARE = 0.2, 0.03, 0.15, 0.15
+"""Slabs in which a stem is looked at; between which distances from its surface nothing lies where
+it stands free, beyond bark and noise and nearer than most of what stands beside; and points there
+over those on it: along a wall there are as many."""
+
+_ONE_SIDE = 3
+"""Sectors that hold a stake or another stem a hand's breadth away."""
+
 _APART_M = 0.03
 """Standard deviation of how far drives lie apart, by which shifts are held where few points of a
 drive tell them; passes in towns differ by 2 to 5 cm."""
@@ -174,6 +182,51 @@ def arc_kernel(local: Floats, body: Floats, near: NDArray[np.bool_]) -> float:
             sector = int((math.atan2(north, east) / math.pi + 1) / 2 * _SECTORS)
             seen[min(sector, _SECTORS - 1)] = True
     return float(seen.sum() / _SECTORS)
+
+
+@kernel
+def free_slabs_kernel(
+    points: Floats, breast_m: float, body: Floats, heights: tuple[float, float]
+) -> int:
+    """In how many slabs of a body hardly any points lie beside those that lie on it.
+
+    What lies on one side, in an eighth of the circle, doesn't count: it is a stake or a stem.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        m about the foot.
+    breast_m : float
+        The height about which the body is told.
+    heights : (float, float)
+        From where to where it is asked, m above the foot.
+    """
+    slabs = max(1, int((heights[1] - heights[0]) / _FREE_SLAB_M))
+    on, beside = np.zeros(slabs, np.int64), np.zeros((slabs, _SECTORS), np.int64)
+    row, local = np.empty(NUMBERS), np.empty((1, 3))
+    for point in range(len(points)):
+        slab = math.floor((points[point, 2] - heights[0]) / _FREE_SLAB_M)
+        if not 0 <= slab < slabs:
+            continue
+        local[0] = points[point]
+        local[0, 2] -= breast_m
+        off = off_of(local, 0, body, row)
+        if abs(off) <= TOLERANCE_M:
+            on[slab] += 1
+        elif _FREE_FROM_M < off < _FREE_TO_M:
+            side = int((math.atan2(-row[1], -row[0]) / math.pi + 1) / 2 * _SECTORS)
+            beside[slab, min(side, _SECTORS - 1)] += 1
+    free = 0
+    for slab in range(slabs):
+        most = 0
+        for side in range(_SECTORS):
+            one_side = 0
+            for near in range(_ONE_SIDE):
+                one_side += beside[slab, (side + near) % _SECTORS]
+            most = max(most, one_side)
+        if on[slab] > 0 and beside[slab].sum() - most <= _FREE_SHARE * on[slab]:
+            free += 1
+    return free
 
 
 @kernel

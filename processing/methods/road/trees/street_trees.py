@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from processing.core.arrays import Floats, Integers
@@ -160,8 +161,8 @@ def _crowns(
 ) -> list[tuple[Crown, float]]:
     """What each trunk carries, and the chance that it is a tree's.
 
-    What is surely no tree takes no part of its neighbours' crowns: they are shared out again
-    without it.
+    What is surely no tree, or a stake or shoot beside a likelier one, takes no part of its
+    neighbours' crowns: they are shared out again without it.
     """
     feet = np.array([one.foot[:2] for one in trunks])
     owners = nearest_columns(plan, feet, CROWN_M)
@@ -170,12 +171,20 @@ def _crowns(
     is_asked = np.ones(len(trunks), np.bool_)
     crowns = shares.crowns(is_asked, monitor)
     chances = [chance_of(facts_of(*one)) for one in zip(trunks, crowns, strict=True)]
-    is_asked &= np.array(chances) >= _LEAST_CHANCE
+    is_asked &= (np.array(chances) >= _LEAST_CHANCE) & _are_surest(feet, np.array(chances))
     again = shares.crowns(is_asked, monitor)
     return [
         (again[k], chance_of(facts_of(one, again[k]))) if is_asked[k] else (crowns[k], chances[k])
         for k, one in enumerate(trunks)
     ]
+
+
+def _are_surest(feet: Floats, chances: Floats) -> NDArray[np.bool_]:
+    """Which things are likelier than everything so near that it would be of the same tree."""
+    pairs = cKDTree(feet).query_pairs(_APART_M, output_type="ndarray")
+    is_surest = np.ones(len(feet), np.bool_)
+    is_surest[np.where(chances[pairs[:, 0]] < chances[pairs[:, 1]], *pairs.T)] = False
+    return is_surest
 
 
 def _stems_of(trunks: Sequence[UprightTrunk]) -> StandingStems:

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from processing.core.arrays import Floats, Integers
-from processing.methods.road.trees.stems import BREAST_M, EVENLY_M, FittedStem
+from processing.methods.road.trees.stems import BREAST_M, EVENLY_M, HIGHEST_M, FittedStem
 
 _SAME_M = 0.06
 """Axes nearer than this at one height are of one stem that was found in two pieces."""
@@ -59,6 +59,22 @@ stems of one tree lean away from each other or stand side by side."""
 _LOOSE = 1.8
 """Times as far as of its neighbour points lie off a stem that isn't there: they fill what is
 allowed evenly, or nearly. Bark of one tree is alike on all its stems."""
+
+_SPARSE, _DENSER = 0.2, 1.5
+"""Points on a surface over those on a neighbour's: one scanner sees both, and what hides one hides
+it by slabs and sides, which count; circles among stray points have fewer. And how many times as
+many a stem holds that goes on below what begins in its crown."""
+
+_ROOT_M = 0.25
+"""Between the surfaces of upright stems that leave the ground as one; stakes are driven in beyond
+the root ball, 0.3 m and more from the bark."""
+
+CLUMP_M = 0.7
+"""Axes of stems of one tree are so near to each other at the foot: they rise from one root, and the
+tree takes no more of a planting strip of 1.5 m (道路構造令 第11条の4: 植樹帯)."""
+
+_PARTS = 0.1
+"""Run over rise by which they move apart: 6 degrees, which two posts beside each other don't."""
 
 
 @dataclass(frozen=True)
@@ -128,18 +144,20 @@ class Trunk:
         return np.concatenate([stem.lines for stem in self.stems])
 
 
-def trunk_of(stems: Sequence[FittedStem]) -> Trunk | None:
-    """The trunk among the stems of a column; None where none is one.
+def trunks_of(stems: Sequence[FittedStem]) -> tuple[Trunk, ...]:
+    """The trunks among the stems of a column, the thickest first; mostly one, or none.
 
     Notes
     -----
     1. Pieces on one axis are one stem: the better seen counts.
     2. A stem inside a wider one that ends lower has a guard about it.
     3. Where a trunk forks above 1.2 m it is the trunk that counts, not what begins there.
-    4. What points lie about more loosely than about another stem is none, and what leans towards a
-       thicker one is a stay.
-    5. Of the others those are stems of the tree that reach as high as the highest, are seen about
-       1.2 m above the foot and are not much thinner than the thickest.
+    4. What points lie about more loosely or more sparsely than about another stem is none, and what
+       leans towards a thicker one is a stay.
+    5. Stems that neither touch at the foot nor part upwards stand beside each other: a tree and
+       its stakes, a tree and a pole.
+    6. Of those that leave the ground together the stems of the tree reach as high as the highest,
+       are seen about 1.2 m above the foot and are not much thinner than the thickest.
     """
     whole = _without_walls(_without_pieces(stems))
     whole = [stem for stem in whole if not _is_of_fork(stem, whole)]
@@ -148,18 +166,37 @@ def trunk_of(stems: Sequence[FittedStem]) -> Trunk | None:
         for stem in whole
         if stem.low_m <= BREAST_M + _HIDDEN_M and stem.high_m >= BREAST_M - _SHORT_M
     ]
-    high = [stem for stem in high if not _is_loose(stem, high)]
-    if not high:
-        return None
-    tops = max(stem.high_m for stem in high)
-    tall = [stem for stem in high if stem.high_m >= tops - _ENDS_M]
-    tall = [stem for stem in tall if not _is_guard(stem, tall)]
-    tall = [stem for stem in tall if not _is_stay(stem, tall)]
-    thick = max(stem.radius_m for stem in tall)
-    trunks = [stem for stem in tall if stem.radius_m >= _STEM_SHARE * thick]
-    trunks.sort(key=lambda stem: -stem.radius_m)
-    others = tuple(stem for stem in whole if not any(stem is one for one in trunks))
-    return Trunk(tuple(trunks), others)
+    high = [
+        stem
+        for stem in high
+        if not (_is_loose(stem, high) or _is_sparse(stem, high) or _is_of_crown(stem, high))
+    ]
+    trees = [one for clump in _clumps(high) if (one := _stems_of_tree(clump, high))]
+    trees = _without_stakes(trees)
+    taken = {id(stem) for tree in trees for stem in tree}
+    others = tuple(stem for stem in whole if id(stem) not in taken)
+    trees.sort(key=lambda tree: -tree[0].radius_m)
+    return tuple(Trunk(tuple(tree), others) for tree in trees)
+
+
+def trunk_of(stems: Sequence[FittedStem]) -> Trunk | None:
+    """The trunk among stems that stands nearest to the middle about which they are told."""
+    trunks = trunks_of(stems)
+    return min(trunks, key=lambda one: float(np.hypot(*one.base)), default=None)
+
+
+def leave_together(one: FittedStem, other: FittedStem, beside: Floats) -> bool:
+    """Whether two stems leave the ground together and part upwards, as those of one tree do.
+
+    Parameters
+    ----------
+    beside : (2,) float64
+        From the foot that the one is about to that of the other, m.
+    """
+    low = one.base - other.base - beside
+    high = low + HIGHEST_M * (one.lean - other.lean)
+    away = float(np.hypot(*low))
+    return away < CLUMP_M and float(np.hypot(*high)) - away > _PARTS * HIGHEST_M
 
 
 def is_round(trunk: Trunk) -> bool:
@@ -184,6 +221,68 @@ def _is_loose(stem: FittedStem, others: Sequence[FittedStem]) -> bool:
     """Whether points lie about it as where no surface is, and on a neighbour as on one."""
     tight = [one.noise_m for one in others if one.arc >= _ROUND]
     return stem.noise_m > EVENLY_M and stem.noise_m > _LOOSE * min(tight, default=np.inf)
+
+
+def _is_sparse(stem: FittedStem, others: Sequence[FittedStem]) -> bool:
+    """Whether a neighbour shows many times as many points on the same surface."""
+    return any(_density(stem) < _SPARSE * _density(one) for one in others if one.arc >= _ROUND)
+
+
+def _density(stem: FittedStem) -> float:
+    """Points on a stem over what was seen of its surface."""
+    seen = stem.radius_m * stem.arc * (stem.high_m - stem.low_m)
+    return stem.lines.size / max(seen, 1e-6)
+
+
+def _is_of_crown(stem: FittedStem, others: Sequence[FittedStem]) -> bool:
+    """Whether it begins in the leaves about a stem that is seen better and further down."""
+    if stem.low_m <= BREAST_M + _FORK_M:
+        return False
+    return any(
+        one.low_m <= BREAST_M
+        and one.high_m >= stem.low_m
+        and one.noise_m < stem.noise_m
+        and _density(one) > _DENSER * _density(stem)
+        for one in others
+    )
+
+
+def _clumps(stems: Sequence[FittedStem]) -> list[list[FittedStem]]:
+    """Stems by what they leave the ground with."""
+    clumps: list[list[FittedStem]] = []
+    for stem in stems:
+        mine = [clump for clump in clumps if any(_are_of_root(stem, one) for one in clump)]
+        clumps = [clump for clump in clumps if not any(clump is one for one in mine)]
+        clumps.append([stem, *(one for clump in mine for one in clump)])
+    return clumps
+
+
+def _are_of_root(one: FittedStem, other: FittedStem) -> bool:
+    """Whether two stems touch at the foot or part upwards."""
+    beside = float(np.hypot(*(one.base - other.base)))
+    touch = beside - one.radius_m - other.radius_m < _ROOT_M
+    return touch or leave_together(one, other, np.zeros(2))
+
+
+def _stems_of_tree(
+    clump: Sequence[FittedStem], everything: Sequence[FittedStem]
+) -> list[FittedStem]:
+    """Those of a clump that are stems of a tree, the thickest first; none of guards and stays."""
+    tops = max(stem.high_m for stem in clump)
+    tall = [stem for stem in clump if stem.high_m >= tops - _ENDS_M]
+    tall = [stem for stem in tall if not _is_guard(stem, tall)]
+    tall = [stem for stem in tall if not _is_stay(stem, everything)]
+    thick = max((stem.radius_m for stem in tall), default=0.0)
+    trunks = [stem for stem in tall if stem.radius_m >= _STEM_SHARE * thick]
+    return sorted(trunks, key=lambda stem: -stem.radius_m)
+
+
+def _without_stakes(trees: Sequence[list[FittedStem]]) -> list[list[FittedStem]]:
+    """Without what is no thicker than a stake beside a thicker stem or a higher one."""
+    thick = [tree for tree in trees if 2 * tree[0].radius_m > _STAKE_M]
+    if thick or not trees:
+        return thick
+    return [max(trees, key=lambda tree: max(stem.high_m for stem in tree))]
 
 
 def _is_stay(stem: FittedStem, others: Sequence[FittedStem]) -> bool:

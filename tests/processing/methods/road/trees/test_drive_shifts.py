@@ -55,13 +55,24 @@ def test_one_drive_tells_nothing() -> None:
     assert not told.is_told
 
 
+def about(heights: Floats, within_m: float) -> Floats:
+    """Points of some heights, evenly about a column."""
+    random = np.random.default_rng(4)
+    plan = random.uniform(-within_m, within_m, (len(heights), 2))
+    return np.column_stack([plan, heights])
+
+
 def test_a_few_mirrored_points_below_the_road_are_no_ground() -> None:
     random = np.random.default_rng(3)
     ground, trunk = random.normal(1.2, 0.01, 900), random.uniform(1.2, 3.8, 400)
-    mirrored = random.uniform(-0.1, 0.4, 20)
-    assert ground_seen(np.concatenate([ground, trunk, mirrored]), 0.0) == pytest.approx(
-        1.2, abs=0.1
-    )
+    mirrored = about(random.uniform(-0.1, 0.4, 20), 0.9)
+    street = np.vstack([about(ground, 0.9), about(trunk, 0.15)])
+    assert ground_seen(np.vstack([street, mirrored]), 0.0) == pytest.approx(1.2, abs=0.1)
     hedge = random.uniform(0.1, 0.9, 2_000)
     behind = np.concatenate([random.normal(0.0, 0.01, 200), hedge, trunk])
-    assert ground_seen(behind, 0.0) == 0.0
+    assert ground_seen(about(behind, 0.9), 0.0) == 0.0
+
+
+def test_a_trunk_whose_foot_a_wall_hides_does_not_end_where_it_is_seen_first() -> None:
+    trunk = about(np.random.default_rng(3).uniform(1.1, 3.8, 400), 0.2)
+    assert ground_seen(trunk, 0.0) == 0.0

@@ -10,7 +10,7 @@ import pytest
 from processing.core.arrays import Floats
 from processing.methods.road.trees.rises import followed, rise_of
 from processing.methods.road.trees.stems import stems_of
-from processing.methods.road.trees.trunks import Trunk, trunk_of
+from processing.methods.road.trees.trunks import Trunk, trunk_of, trunks_of
 
 MOST_M = 1.2
 
@@ -76,11 +76,34 @@ def test_a_trunk_ends_where_it_forks_and_is_denser_there_than_a_post_that_ends()
 
 def test_a_stem_that_twigs_hide_from_a_height_on_is_no_stake() -> None:
     hidden = np.vstack([bark(0.09, 0.2, 1.7), bark(0.09, 2.3, 4.0)])
-    other = bark(0.1, 0.2, 4.0, middle=(0.0, 0.4))
+    other = bark(0.1, 0.2, 4.0, middle=(0.0, 0.17))
     stake = bark(0.06, 0.2, 1.4, middle=(0.0, -0.3))
     trunk = trunk_in(hidden, other, stake)
     assert len(trunk.stems) == 2
     assert trunk.diameter_m == pytest.approx(0.7 * 0.19, abs=0.012)
+
+
+def test_a_pole_beside_a_tree_is_none_of_its_stems() -> None:
+    points = np.vstack([bark(0.3, 0.2, 3.0), bark(0.32, 0.2, 6.0, middle=(-0.2, 0.6))])
+    trunks = trunks_of(followed(points, stems_of(points, MOST_M)))
+    assert [len(one.stems) for one in trunks] == [1, 1]
+    assert [one.diameter_m for one in trunks] == pytest.approx([0.32, 0.3], abs=0.01)
+
+
+def test_a_stake_as_high_as_it_is_seen_is_no_stem_of_a_young_tree() -> None:
+    stake = bark(0.055, 0.2, 1.8, middle=(0.0, 0.4))
+    trunk = trunk_in(bark(0.07, 0.2, 2.0), stake)
+    assert trunk.diameter_m == pytest.approx(0.07, abs=0.008)
+    assert [2 * one.radius_m for one in trunk.companions] == pytest.approx([0.055], abs=0.008)
+
+
+def test_a_circle_among_leaves_does_not_replace_the_slender_stem_below_it() -> None:
+    random = np.random.default_rng(6)
+    stem = bark(0.06, 0.2, 2.1)
+    turn, up = random.uniform(-1.2, 1.2, 60), random.uniform(1.6, 2.7, 60)
+    radius = 0.12 + random.normal(0.0, 0.006, 60)
+    twigs = np.column_stack([radius * np.cos(turn), radius * np.sin(turn) + 0.1, up])
+    assert trunk_in(stem, twigs).diameter_m == pytest.approx(0.06, abs=0.008)
 
 
 def test_of_a_trunk_that_forks_below_the_tape_each_stem_counts() -> None:
@@ -115,8 +138,43 @@ def test_a_piece_of_a_wall_beside_a_trunk_is_none() -> None:
 
 
 def test_of_several_stems_that_bend_each_counts() -> None:
-    bent = bark(0.07, 0.2, 2.7, middle=(0.3, 0.0))
+    bent = bark(0.07, 0.2, 2.7, middle=(0.2, 0.0))
     bent[:, 0] += 0.03 * (bent[:, 2] - 1.2) ** 2
-    trunk = trunk_in(bent, bark(0.09, 0.2, 4.0), bark(0.08, 0.2, 4.0, middle=(0.0, 0.4)))
+    trunk = trunk_in(bent, bark(0.09, 0.2, 4.0), bark(0.08, 0.2, 4.0, middle=(0.0, 0.2)))
     assert len(trunk.stems) == 3
     assert trunk.diameter_m == pytest.approx(0.7 * 0.24, abs=0.012)
+
+
+def wall(start: tuple[float, float], end: tuple[float, float], high_m: float) -> Floats:
+    """A line of points every 5 cm of height along a wall, with 3 mm of noise."""
+    random = np.random.default_rng(9)
+    share = np.tile(np.linspace(0.0, 1.0, 40), round(high_m / 0.05))
+    up = np.repeat(np.arange(0.1, 0.1 + high_m, 0.05)[: share.size // 40], 40)
+    along = np.outer(1 - share, start) + np.outer(share, end)
+    noise = random.normal(0.0, 0.003, along.shape)
+    return np.column_stack([along + noise, up[: len(along)]])
+
+
+def test_the_corner_of_a_wall_is_no_stem() -> None:
+    turn = np.linspace(-0.8, 0.8, 12)
+    rounded = np.column_stack([0.05 * np.cos(turn), 0.05 * np.sin(turn)])
+    up = np.repeat(np.arange(0.1, 2.6, 0.05), len(rounded))
+    edge = np.column_stack([np.tile(rounded, (50, 1)), up])
+    corner = np.vstack(
+        [edge, wall((0.035, 0.036), (-0.6, 0.6), 2.5), wall((0.035, -0.036), (-0.6, -0.6), 2.5)]
+    )
+    assert not stems_of(corner, MOST_M)
+
+
+def test_a_circle_among_twigs_is_no_stem_and_the_slender_one_below_is() -> None:
+    random = np.random.default_rng(11)
+    twigs = np.column_stack(
+        [random.uniform(-0.5, 0.5, (2_500, 2)), random.uniform(1.5, 2.7, 2_500)]
+    )
+    found = stems_of(np.vstack([bark(0.07, 0.2, 1.6), twigs]), MOST_M)
+    assert [2 * one.radius_m for one in found] == pytest.approx([0.07], abs=0.008)
+
+
+def test_a_trunk_with_a_cane_beside_it_stands_free() -> None:
+    both = np.vstack([bark(0.08, 0.2, 2.6), bark(0.03, 0.2, 2.4, middle=(0.0, 0.1))])
+    assert any(abs(2 * one.radius_m - 0.08) < 0.008 for one in stems_of(both, MOST_M))
