@@ -161,12 +161,15 @@ def _from_os_error(error: OSError, path: Path) -> UserError:
             Text("Check the name and the folder.", "ファイル名とフォルダを確認してください。"),
         )
     if isinstance(error, IsADirectoryError):
-        return MissingInput(
+        return BadFile(
             Text(
                 "This is a folder, and a file is asked for.", "フォルダではなくファイルが必要です。"
             ),
             where,
-            Text("Name a file in it.", "その中のファイルを指定してください。"),
+            Text(
+                "Name a file, or move the folder away.",
+                "ファイルを指定するか、フォルダを移動してください。",
+            ),
         )
     reason = error.strerror or str(error)
     return BadFile(

@@ -46,9 +46,14 @@ def write_safely(path: Path, *, never: Iterable[Path] = ()) -> Iterator[Path]:
         remove_broken_writing(path.parent)
         with _writing_folder(path.parent) as folder:
             temporary = folder / path.name
-            yield temporary
-            _flush(temporary)
-            temporary.replace(path)
+            try:
+                yield temporary
+                _flush(temporary)
+                temporary.replace(path)
+            except OSError as error:
+                if error.filename == str(temporary):  # a name that nobody ever sees
+                    error.filename = str(path)
+                raise
 
 
 @contextmanager

@@ -183,7 +183,9 @@ def test_a_list_that_can_not_be_saved_is_told(
 ) -> None:
     (tmp_path / "keys.csv").mkdir()
     form.save_requested.emit(tmp_path / "keys.csv")
-    assert "refuses" in parts.message_bar.text
+    text = parts.message_bar.text
+    assert "This is a folder" in text
+    assert str(tmp_path / "keys.csv") in text
 
 
 def test_a_panel_that_was_closed_stays_closed_at_the_next_start(

@@ -77,7 +77,7 @@ def test_a_click_on_a_drive_chooses_it(qtbot: QtBot, open_map: OpenMap) -> None:
     tree = tree_in(panel)
     wanted = open_map.drives()[1]
     item = next(one for one in rows_of(tree) if one.text(0) == wanted.info.name)
-    assert f"{wanted.count:,} points" in item.toolTip(0)
+    assert f"Points: {wanted.count:,}" in item.toolTip(0)
     with qtbot.waitSignal(panel.drive_chosen) as chosen:
         click_on(qtbot, tree, item)
     assert chosen.args == [wanted.id]
