@@ -22,6 +22,7 @@ print("begun", flush=True)
 def _begin(folder: Path, ending: str) -> subprocess.Popen[str]:
     process = subprocess.Popen(
         [sys.executable, "-c", _RUN.format(ending=ending), str(folder)],
+        stdin=subprocess.PIPE,
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
