@@ -35,6 +35,7 @@ class MessageBar(QFrame):
         words.addWidget(self._what)
         words.addWidget(self._rest)
         self._close = QToolButton(self)
+        self._close.setObjectName("closeMessage")
         self._close.setText("✕")
         self._close.setToolTip(self.tr("Close this message"))
         self._close.setAutoRaise(True)
@@ -101,5 +102,6 @@ class MessageBar(QFrame):
 
     def _paint(self, background: str) -> None:
         self.setStyleSheet(
-            f"#messageBar {{ background: {background}; }} #messageBar QLabel {{ color: #ffffff; }}"
+            f"#messageBar {{ background: {background}; }} "
+            "#messageBar QLabel, #closeMessage { color: #ffffff; }"
         )
