@@ -1,4 +1,4 @@
-"""CrashNews: tells at the start that the window ended by itself the last time."""
+"""Crash news: told at the start that the window ended by itself the last time."""
 
 from __future__ import annotations
 

@@ -43,7 +43,7 @@ def write_safely(path: Path, *, never: Iterable[Path] = ()) -> Iterator[Path]:
     refuse_inputs(path, never)
     with report_as_user_error(path):
         _make_folder(path.parent)
-        remove_broken_writing(path.parent)
+        _remove_broken_writing(path.parent)
         with _writing_folder(path.parent) as folder:
             temporary = folder / path.name
             try:
@@ -73,7 +73,7 @@ def _writing_folder(parent: Path) -> Iterator[Path]:
         _remove(folder, lock)
 
 
-def remove_broken_writing(parent: Path) -> None:
+def _remove_broken_writing(parent: Path) -> None:
     """Remove what killed processes left of files that they were writing in a folder.
 
     Only folders of the name that the program gives them, with its lock in them and nobody

@@ -15,7 +15,7 @@ import shapely
 
 from processing.core.arrays import Floats
 from processing.map.catalogue import Catalogue, FeatureKind, Geometry
-from processing.map.feature import Feature, Status
+from processing.map.feature import Feature
 from processing.map.routes.numbering import REACH_M
 from processing.map.routes.road_alignment import RoadAlignment, RouteShape
 from processing.map.routes.road_widths import (
@@ -25,10 +25,12 @@ from processing.map.routes.road_widths import (
     RoadWidths,
     StationedRoute,
     WidthLines,
+    accepted_with_kinds,
     places_along,
     plan_shape,
+    stationed_routes,
 )
-from processing.map.routes.route import PITCH_M, routes_of
+from processing.map.routes.route import PITCH_M
 
 GUTTER_CODES = frozenset({"2231", "2232", "2233", "2234", "2237"})
 GUARD_CODES = frozenset({"6132"})
@@ -121,15 +123,10 @@ def road_sections(
     tuple of RoadSection
         Empty where the map has no centre line.
     """
-    lines = [StationedRoute.of(route, pitch_m) for route in routes_of(features, catalogue)]
-    lines = [line for line in lines if len(line.stations) > 1]
+    lines = stationed_routes(features, catalogue, pitch_m)
     if not lines:
         return ()
-    accepted = [
-        (catalogue[one.kind], one)
-        for one in features
-        if one.status is Status.ACCEPTED and one.kind in catalogue
-    ]
+    accepted = accepted_with_kinds(features, catalogue)
     across = WidthLines(accepted)
     found: list[RoadSection] = []
     filled = _contents(lines, accepted)

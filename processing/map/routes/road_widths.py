@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import shapely
 
 from processing.core.arrays import Floats, Integers
-from processing.map.catalogue import FeatureKind, Geometry
-from processing.map.feature import Feature
+from processing.map.catalogue import Catalogue, FeatureKind, Geometry
+from processing.map.feature import Feature, Status
 from processing.map.routes.numbering import REACH_M
-from processing.map.routes.route import Route
+from processing.map.routes.route import Route, routes_of
 
 ROAD_EDGE_CODES = frozenset({"2101"})
 CARRIAGEWAY_CODES = frozenset({"2213"})
@@ -116,6 +116,25 @@ class StationedRoute:
         direction, away = self._directions(along), places - self._feet(along)
         turns: Floats = direction[:, 0] * away[:, 1] - direction[:, 1] * away[:, 0]
         return turns
+
+
+def stationed_routes(
+    features: Sequence[Feature], catalogue: Catalogue, pitch_m: float
+) -> list[StationedRoute]:
+    """The routes of a map that are long enough for a section, in their order."""
+    lines = [StationedRoute.of(route, pitch_m) for route in routes_of(features, catalogue)]
+    return [line for line in lines if len(line.stations) > 1]
+
+
+def accepted_with_kinds(
+    features: Sequence[Feature], catalogue: Catalogue
+) -> list[tuple[FeatureKind, Feature]]:
+    """The accepted features whose kind the catalogue knows, each with it."""
+    return [
+        (catalogue[one.kind], one)
+        for one in features
+        if one.status is Status.ACCEPTED and one.kind in catalogue
+    ]
 
 
 class WidthLines:

@@ -15,11 +15,16 @@ import numpy as np
 import shapely
 
 from processing.map.catalogue import Catalogue, FeatureKind
-from processing.map.feature import Feature, Status
+from processing.map.feature import Feature
 from processing.map.routes.numbering import REACH_M
 from processing.map.routes.road_sections import RoadSection, road_sections
-from processing.map.routes.road_widths import StationedRoute, WidthLines, plan_shape
-from processing.map.routes.route import routes_of
+from processing.map.routes.road_widths import (
+    StationedRoute,
+    WidthLines,
+    accepted_with_kinds,
+    plan_shape,
+    stationed_routes,
+)
 
 CHANGE_M = 0.5
 """A width that differs by it or more stands in the ledger (道路法施行規則 第4条の2)."""
@@ -141,15 +146,10 @@ def route_summaries(features: Sequence[Feature], catalogue: Catalogue) -> tuple[
 
     Each thing belongs to the nearest route.
     """
-    lines = [StationedRoute.of(route, _STEP_M) for route in routes_of(features, catalogue)]
-    lines = [line for line in lines if len(line.stations) > 1]
+    lines = stationed_routes(features, catalogue, _STEP_M)
     if not lines:
         return ()
-    accepted = [
-        (catalogue[one.kind], one)
-        for one in features
-        if one.status is Status.ACCEPTED and one.kind in catalogue
-    ]
+    accepted = accepted_with_kinds(features, catalogue)
     across = WidthLines(accepted)
     sections = _by_line(road_sections(features, catalogue), lines)
     things = _things(accepted, lines)

@@ -16,11 +16,10 @@ from processing.map.feature import (
     AttributeValue,
     Feature,
     Provenance,
-    Status,
     Vertex,
     new_feature_id,
 )
-from processing.map.routes.road_widths import StationedRoute, WidthLines
+from processing.map.routes.road_widths import StationedRoute, WidthLines, accepted_with_kinds
 from processing.map.routes.route import routes_of, station_words
 from processing.map.routes.route_summary import stretches_of
 
@@ -53,11 +52,7 @@ def width_lines(features: Sequence[Feature], catalogue: Catalogue, pitch_m: floa
     """
     if WIDTH_KIND not in catalogue:
         return Change()
-    accepted = [
-        (catalogue[one.kind], one)
-        for one in features
-        if one.status is Status.ACCEPTED and one.kind in catalogue
-    ]
+    accepted = accepted_with_kinds(features, catalogue)
     across = WidthLines(accepted)
     before = tuple(
         one for one in features if one.kind == WIDTH_KIND and _MADE in one.provenance.parameters
