@@ -40,15 +40,19 @@ class ClassColumns(NamedTuple):
             codes = np.where(given > 0, given, codes)
         return np.asarray(codes)
 
-    def noise_between(self, start: int, stop: int) -> NDArray[np.bool_]:
-        """Which of the points ``start … stop − 1`` are noise: (n,)."""
-        codes = np.zeros(stop - start, np.uint8)
+    def codes_between(self, start: int, stop: int) -> Codes:
+        """The classes that count of the points ``start … stop − 1``: (n,); 0: nothing was said."""
+        codes: Codes = np.zeros(stop - start, np.uint8)
         if self.delivered.size:
             codes = self.delivered[start:stop]
         if self.labels.size:
             given = self.labels[start:stop]
             codes = np.where(given > 0, given, codes)
-        return _are_noise(codes)
+        return codes
+
+    def noise_between(self, start: int, stop: int) -> NDArray[np.bool_]:
+        """Which of the points ``start … stop − 1`` are noise: (n,)."""
+        return _are_noise(self.codes_between(start, stop))
 
     def are_noise(self, points: PointIndices) -> NDArray[np.bool_]:
         """Which points are noise, of the points' shape."""

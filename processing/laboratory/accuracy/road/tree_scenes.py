@@ -13,12 +13,12 @@ import numpy as np
 from processing.core.arrays import Floats
 from processing.core.monitor import SilentMonitor
 from processing.formats.vectors.mapped_shapes import read_mapped
+from processing.laboratory.accuracy.road.baselines.tree_baselines import TrunkPoints
 from processing.laboratory.accuracy.road.road_scenes import (
     avenue_options_of,
     map_candidate,
     worn_options_of,
 )
-from processing.laboratory.accuracy.road.tree_baselines import TrunkPoints
 from processing.laboratory.simulate.requests import StreetRequest
 from processing.laboratory.simulate.streets import simulate_street
 from processing.methods.road.objects.column_points import points_about
@@ -62,12 +62,15 @@ class TreeScene:
         By which scanner it was recorded.
     drives : tuple of Drive
     truth : MappedFile
+    labels : Path
+        The folder of the true classes of its points.
     """
 
     name: str
     group: str
     drives: tuple[Drive, ...]
     truth: MappedFile
+    labels: Path
 
 
 @dataclass(frozen=True)
@@ -118,7 +121,7 @@ def fresh_scenes() -> Iterator[TreeScene]:
             simulate_street(one, folder, SilentMonitor())
             drives = import_files(folder, "trajectory*.csv", Path(position) / "drives")
             truth = read_mapped(folder / "truth" / "trees.geojson")
-            yield TreeScene(name_of(one), one.sensor, drives, truth)
+            yield TreeScene(name_of(one), one.sensor, drives, truth, folder / "truth")
 
 
 def name_of(request: StreetRequest) -> str:
@@ -140,7 +143,8 @@ def given_tree_scenes(folders: Sequence[Path]) -> Iterator[TreeScene]:
                 into = Path(position) / f"{number}"
                 stem = one.stem if one is not None else ""
                 drives += import_files(folder, f"{stem or 'trajectory*'}.csv", into, stem)
-            yield TreeScene(folder.name, "delivery", tuple(drives), read_mapped(truth))
+            found = read_mapped(truth)
+            yield TreeScene(folder.name, "delivery", tuple(drives), found, folder / "truth")
 
 
 def import_files(folder: Path, trajectories: str, into: Path, stem: str = "") -> tuple[Drive, ...]:

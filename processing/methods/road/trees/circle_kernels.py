@@ -17,11 +17,11 @@ from processing.core.kernels import kernel
 MOST_CIRCLES = 5
 """In a slab: a trunk and four stakes, or five stems."""
 
-EAST, NORTH, RADIUS, INLIERS, ARC = range(5)
+EAST, NORTH, RADIUS, INLIERS, ARC, WORTH = range(6)
 """What is told of a circle: middle, m about the column; radius, m; points on it; the share of its
-circumference that they cover."""
+circumference that they cover; how much speaks for it."""
 
-CIRCLE_WIDTH = 5
+CIRCLE_WIDTH = 6
 
 _DRAWS = 250
 """Of three points each: with a third of the points on the circle one of these is good in all but
@@ -40,6 +40,8 @@ _FACTOR, _MODULUS = 1_664_525, 1 << 32
 _SECTORS = 24
 """Of 15 degrees, in which an arc is covered or not."""
 
+_HOLE = 2
+"""Sectors without a point within an arc: few points lie on a slender stem."""
 
 _LINE_FROM = 4
 """Circles from which a line through their middles tells the lean."""
@@ -178,19 +180,41 @@ def _rate(left: Floats, limits: CircleLimits, circle: Floats, least: float) -> f
         inside += off < -limits.noise_m
     if on < limits.fewest or inside > limits.most_inside * on or 1.5 * on - inside <= least:
         return 0.0
-    covered = 0
+    sectors = np.zeros(_SECTORS, np.int64)
     for point in range(left.shape[1]):
         east, north = left[0, point] - middle_east, left[1, point] - middle_north
         if abs(math.sqrt(east * east + north * north) - radius) <= limits.noise_m:
             sector = int((math.atan2(north, east) / math.pi + 1) / 2 * _SECTORS)
-            covered |= 1 << min(sector, _SECTORS - 1)
-    sectors = 0
-    while covered:
-        sectors += covered & 1
-        covered >>= 1
-    circle[INLIERS], circle[ARC] = on, sectors / _SECTORS
-    score = on * (0.5 + circle[ARC]) - inside
-    return float(score) if circle[ARC] >= limits.least_arc and score > least else 0.0
+            sectors[min(sector, _SECTORS - 1)] += 1
+    circle[INLIERS], circle[ARC] = on, np.count_nonzero(sectors) / _SECTORS
+    circle[WORTH] = _worth_of_arcs(sectors) - inside
+    return (
+        float(circle[WORTH]) if circle[ARC] >= limits.least_arc and circle[WORTH] > least else 0.0
+    )
+
+
+@kernel
+def _worth_of_arcs(sectors: Integers) -> float:
+    """What the longest arc of a circle is worth: its points by how much of the circle it covers.
+
+    A trunk hides its far side, so its points follow each other; a wide circle through several stems
+    has those of each in an arc of its own.
+    """
+    best = 0.0
+    for begin in range(_SECTORS):
+        if sectors[begin] == 0 or sectors[begin - 1] > 0:
+            continue
+        points, covered, hole = 0, 0, 0
+        for one in range(_SECTORS):
+            here = sectors[(begin + one) % _SECTORS]
+            hole = 0 if here > 0 else hole + 1
+            if hole > _HOLE:
+                break
+            points += here
+            covered += here > 0
+        best = max(best, points * (0.5 + covered / _SECTORS))
+    # All round there is no beginning.
+    return best if best > 0 else 1.5 * sectors.sum()
 
 
 @kernel

@@ -50,7 +50,7 @@ _SECTORS = 24
 CAPTURED_M = 0.06
 """Off a stem's surface: passes lie so far apart where satellites are hidden for a minute."""
 
-_FREE_SLAB_M, _FREE_FROM_M, _FREE_TO_M, _FREE_SHARE = 0.2, 0.03, 0.15, 0.15
+FREE_SLAB_M, _FREE_FROM_M, _FREE_TO_M, _FREE_SHARE = 0.2, 0.03, 0.15, 0.15
 """Slabs in which a stem is looked at; between which distances from its surface nothing lies where
 it stands free, beyond bark and noise and nearer than most of what stands beside; and points there
 over those on it: along a wall there are as many."""
@@ -201,11 +201,11 @@ def free_slabs_kernel(
     heights : (float, float)
         From where to where it is asked, m above the foot.
     """
-    slabs = max(1, int((heights[1] - heights[0]) / _FREE_SLAB_M))
+    slabs = max(1, int((heights[1] - heights[0]) / FREE_SLAB_M))
     on, beside = np.zeros(slabs, np.int64), np.zeros((slabs, _SECTORS), np.int64)
     row, local = np.empty(NUMBERS), np.empty((1, 3))
     for point in range(len(points)):
-        slab = math.floor((points[point, 2] - heights[0]) / _FREE_SLAB_M)
+        slab = math.floor((points[point, 2] - heights[0]) / FREE_SLAB_M)
         if not 0 <= slab < slabs:
             continue
         local[0] = points[point]

@@ -19,6 +19,7 @@ from processing.core.kernels import kernel
 from processing.core.monitor import Monitor
 from processing.methods.road.objects.drive_chunks import chunks_of
 from processing.methods.road.objects.sparse_plan import TILE, SparsePlan, cell_of
+from processing.recording.columns.counted_classes import class_columns
 from processing.recording.drive import Drive
 
 _Number = TypeVar("_Number", np.float32, np.int64)
@@ -29,6 +30,12 @@ wires keep farther away."""
 
 LOW_M = 0.6
 """Above the foot: what is lower is grass, shoots and the ground of a bank."""
+
+_BUILT = 6, 11, 14, 15, 64, 65, 67
+"""Classes that no crown is of: building, road, wire, tower, vehicle, sign, curb. Boughs are
+pole-like, and leaves may be grass or hedge."""
+
+_IS_BUILT = np.isin(np.arange(256), _BUILT)
 
 _FEWEST = 6
 """Points of a cell from which its shape is told."""
@@ -48,6 +55,10 @@ _UPRIGHT = 0.985
 
 _FILLED, _LEVEL, _BOUGH = range(3)
 """Shapes of cells."""
+
+_STRAY = 0.05
+"""Of the points of the fullest cell about: fewer are noise beside a plate that shines or twigs
+before a wall, which say nothing about its shape."""
 
 _SUMS = 10
 """Of a cell: number, sums and sums of products of its points about its middle."""
@@ -155,7 +166,7 @@ def crown_cells(
     Notes
     -----
     1. Each point above the foot of the trunk nearest to it that lies on none of its stems is
-       counted in its cell of 0.4 m.
+       counted in its cell of 0.4 m; where points have classes, no house, wire, vehicle or sign.
     2. A cell is flat if its points and those of the cells about it lie in a plane or on a line that
        rises less or more than branches do. One scan line through a crown is a plane too, hence the
        cells about it.
@@ -165,12 +176,15 @@ def crown_cells(
     boxes: NDArray[np.float32] = np.zeros((_FIRST_SLOTS // 2, 6), np.float32)
     places = np.zeros((_FIRST_SLOTS // 2, 4), np.int64)
     used = 0
+    classes = [class_columns(drive.columns) for drive in drives]
     for chunk in chunks_of(drives, plan.origin, monitor):
+        codes = classes[chunk.drive].codes_between(chunk.start, chunk.start + len(chunk.local))
+        is_other = chunk.is_noise | _IS_BUILT[codes]
         begin = 0
         while begin < len(chunk.local):
             begin, used = fill_kernel(
                 chunk.local,
-                chunk.is_noise,
+                is_other,
                 (begin, used),
                 (plan.table, owners.reshape(-1)),
                 stems,
@@ -237,7 +251,7 @@ def rehash_kernel(slots: Integers, wider: Integers) -> None:
 @kernel
 def fill_kernel(
     local: Floats,
-    is_noise: NDArray[np.bool_],
+    is_other: NDArray[np.bool_],
     at: tuple[int, int],
     plan: tuple[NDArray[np.int32], NDArray[np.int32]],
     stems: StandingStems,
@@ -259,7 +273,7 @@ def fill_kernel(
     table, owners = plan
     slots, places, sums, boxes = cells
     for point in range(begin, len(local)):
-        if is_noise[point]:
+        if is_other[point]:
             continue
         east, north, up = local[point, 0], local[point, 1], local[point, 2]
         below = cell_of(east, north, table, TILE)
@@ -329,20 +343,18 @@ def shapes_kernel(
     wide = np.zeros(_SUMS)
     # Of each of nine upright rows, the first cell that is not below: keys rise, so these do.
     firsts = np.zeros((3, 3), np.int64)
+    near, moves = np.zeros(27, np.int64), np.zeros((27, 3))
     for at in range(len(keys)):
         cell = order[at]
+        count = _cells_about(keys, at, firsts, near, moves)
+        richest = np.float32(0.0)
+        for one in near[:count]:
+            richest = max(richest, sums[order[one], 0])
         wide[:] = 0.0
-        for di in range(-1, 2):
-            for dj in range(-1, 2):
-                key = keys[at] + (di << 2 * _BITS) + (dj << _BITS)
-                near = firsts[di + 1, dj + 1]
-                while near < len(keys) and keys[near] < key - 1:
-                    near += 1
-                firsts[di + 1, dj + 1] = near
-                while near < len(keys) and keys[near] <= key + 1:
-                    up = (keys[near] - key) * CELL_M
-                    _add_moved(wide, sums[order[near]], di * CELL_M, dj * CELL_M, up)
-                    near += 1
+        for one in range(count):
+            row = sums[order[near[one]]]
+            if row[0] >= _STRAY * richest:
+                _add_moved(wide, row, moves[one, 0], moves[one, 1], moves[one, 2])
         if wide[0] < _FEWEST:
             continue
         is_told[cell] = True
@@ -353,6 +365,25 @@ def shapes_kernel(
             shape = _shape(wide)
         is_flat[cell] = shape == _LEVEL
         is_bough[cell] = shape == _BOUGH
+
+
+@kernel
+def _cells_about(keys: Integers, at: int, firsts: Integers, near: Integers, moves: Floats) -> int:
+    """A cell and those that touch it, and where their middles lie from its own; how many."""
+    count = 0
+    for di in range(-1, 2):
+        for dj in range(-1, 2):
+            key = keys[at] + (di << 2 * _BITS) + (dj << _BITS)
+            one = firsts[di + 1, dj + 1]
+            while one < len(keys) and keys[one] < key - 1:
+                one += 1
+            firsts[di + 1, dj + 1] = one
+            while one < len(keys) and keys[one] <= key + 1:
+                near[count] = one
+                moves[count] = di * CELL_M, dj * CELL_M, (keys[one] - key) * CELL_M
+                count += 1
+                one += 1
+    return count
 
 
 @kernel

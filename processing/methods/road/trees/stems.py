@@ -21,10 +21,10 @@ from processing.methods.road.trees.circle_kernels import (
     ARC,
     CIRCLE_WIDTH,
     EAST,
-    INLIERS,
     MOST_CIRCLES,
     NORTH,
     RADIUS,
+    WORTH,
     ChainLimits,
     CircleLimits,
     chain_kernel,
@@ -40,6 +40,7 @@ from processing.methods.road.trees.cone_kernels import (
     scatter_kernel,
     settle_kernel,
 )
+from processing.methods.road.trees.wall_kernels import rows_kernel
 
 BREAST_M = 1.2
 """Height of the diameter above the foot: 胸高 in Japan (Takahashi 2022, 5.1)."""
@@ -51,9 +52,13 @@ STEP_M, THICK_M = 0.1, 0.2
 """From slab to slab, and how thick one is: scan lines of a moving scanner lie up to 0.2 m apart on
 a trunk, so one of them crosses most slabs. A lean of 10 degrees moves a circle by 3.5 cm in it."""
 
+_SPARSE_THICK_M = 0.4
+"""How thick slabs are where no stem was found: of a slender trunk far from the scanner, two points
+a scan line, a slab of 0.2 m holds three or four, and a circle needs five."""
+
 _MOST_OF_SLAB = 160
-"""Points of a slab in which circles are looked for: a stake with a twentieth of them has eight.
-The bodies are fitted to all."""
+"""Points of a slab in which rows and circles are looked for: a stake with a twentieth of them has
+eight. The bodies are fitted to all."""
 
 _SHIFT_M, _SWELL_M = 0.03, 0.02
 """How far middle and radius may be off what the circles below tell: three times the noise."""
@@ -150,6 +155,7 @@ class FittedStem:
     low_m: float
     high_m: float
     arc: float
+    free_slabs: int
     lines: Integers
 
     def about(self, higher_m: float) -> FittedStem:
@@ -189,14 +195,18 @@ def stems_of(
     most_circles : int
         Of a slab.
     """
-    slabs = slab_circles(points, most_diameter_m)
-    slabs.circles[:, most_circles:] = 0.0
-    found = [
-        stem
-        for chain in _chains(slabs.circles, slabs.heights)
-        if (stem := _fitted(points, chain, most_diameter_m)) is not None
-    ]
-    return tuple(sorted(_standing_free(points, found), key=lambda stem: -stem.lines.size))
+    for thick_m in (THICK_M, _SPARSE_THICK_M):
+        slabs = slab_circles(points, most_diameter_m, thick_m)
+        slabs.circles[:, most_circles:] = 0.0
+        found = [
+            stem
+            for chain in _chains(slabs.circles, slabs.heights)
+            if (stem := _fitted(points, chain, most_diameter_m)) is not None
+        ]
+        free = _standing_free(points, found)
+        if any(stem.low_m < BREAST_M < stem.high_m for stem in free):
+            break
+    return tuple(sorted(free, key=lambda stem: -stem.lines.size))
 
 
 def _standing_free(points: Floats, stems: Sequence[FittedStem]) -> list[FittedStem]:
@@ -204,22 +214,22 @@ def _standing_free(points: Floats, stems: Sequence[FittedStem]) -> list[FittedSt
 
     What stands beside one that is free counts without it: stems of one tree stand close.
     """
-    is_free = [_is_free(points, stem) for stem in stems]
-    if all(is_free) or not any(is_free):
-        return [stem for stem, free in zip(stems, is_free, strict=True) if free]
+    told = [_told_free(points, stem) for stem in stems]
     left = np.ones(len(points), np.bool_)
-    for stem, free in zip(stems, is_free, strict=True):
-        if free:
+    for stem in told:
+        if stem.free_slabs >= _FEWEST_FREE:
             left[stem.lines] = False
-    others = points[left]
-    return [
-        stem for stem, free in zip(stems, is_free, strict=True) if free or _is_free(others, stem)
-    ]
+    if not left.all():
+        others = points[left]
+        told = [
+            stem if stem.free_slabs >= _FEWEST_FREE else _told_free(others, stem) for stem in told
+        ]
+    return [stem for stem in told if stem.free_slabs >= _FEWEST_FREE]
 
 
-def _is_free(points: Floats, stem: FittedStem) -> bool:
+def _told_free(points: Floats, stem: FittedStem) -> FittedStem:
     slabs = free_slabs_kernel(points, BREAST_M, stem.body, (stem.low_m, stem.high_m))
-    return slabs >= _FEWEST_FREE
+    return replace(stem, free_slabs=int(slabs))
 
 
 class SlabCircles(NamedTuple):
@@ -237,25 +247,25 @@ class SlabCircles(NamedTuple):
     circles: Floats
 
 
-def slab_circles(points: Floats, most_diameter_m: float) -> SlabCircles:
+def slab_circles(points: Floats, most_diameter_m: float, thick_m: float = THICK_M) -> SlabCircles:
     """The circles of level slabs through a column.
 
     Parameters
     ----------
     points : (n, 3) float64
         m about the column's foot.
+    thick_m : float
+        Of a slab.
     """
     count = round((HIGHEST_M - LOWEST_M) / STEP_M) + 1
     heights = np.linspace(LOWEST_M, HIGHEST_M, count)
     circles = np.zeros((heights.size, MOST_CIRCLES, CIRCLE_WIDTH))
     order = np.argsort(points[:, 2], kind="stable")
     rising = points[order, 2]
-    first = np.searchsorted(rising, heights - THICK_M / 2)
-    end = np.searchsorted(rising, heights + THICK_M / 2)
+    first = np.searchsorted(rising, heights - thick_m / 2)
+    end = np.searchsorted(rising, heights + thick_m / 2)
     if (end > first).any():
-        # Of thousands of points of a slab a few hundred show the same circles.
-        steps = np.maximum(1, -(-(end - first) // _MOST_OF_SLAB))
-        parts = [order[a:b:step] for a, b, step in zip(first, end, steps, strict=True)]
+        parts = [_without_rows(points, order[a:b]) for a, b in zip(first, end, strict=True)]
         members = np.concatenate(parts)
         starts = np.cumsum([0, *(part.size for part in parts)])
         limits = CircleLimits(_THINNEST_M, most_diameter_m / 2, TOLERANCE_M, 5, 0.12, 0.15)
@@ -263,10 +273,20 @@ def slab_circles(points: Floats, most_diameter_m: float) -> SlabCircles:
     return SlabCircles(heights, circles)
 
 
+def _without_rows(points: Floats, slab: Integers) -> Integers:
+    """Points of a slab that lie in no straight row; of thousands a few hundred."""
+    plan = np.ascontiguousarray(points[slab, :2])
+    is_row = np.zeros(slab.size, np.bool_)
+    rows_kernel(plan, TOLERANCE_M, max(1, -(-slab.size // _MOST_OF_SLAB)), is_row)
+    left = slab[~is_row]
+    some: Integers = left[:: max(1, -(-left.size // _MOST_OF_SLAB))]
+    return some
+
+
 def _chains(circles: Floats, heights: Floats) -> list[Floats]:
     """Circles that follow each other upwards: (k, 5) height, middle, radius, arc."""
     free = circles[..., RADIUS] > 0
-    worth = np.where(free, circles[..., INLIERS] * (0.5 + circles[..., ARC]), 0.0)
+    worth = np.where(free, circles[..., WORTH], 0.0)
     limits = ChainLimits(_SHIFT_M, _STEEP * STEP_M, _SWELL_M, _SWELL, _SKIPPED, _REMEMBERED)
     chains: list[Floats] = []
     while worth.max(initial=0.0) > 0:
@@ -309,6 +329,7 @@ def _fitted(points: Floats, chain: Floats, most_diameter_m: float) -> FittedStem
         low_m=float(low),
         high_m=float(high),
         arc=float(arc_kernel(local, cone.body, cone.near)),
+        free_slabs=0,
         lines=about[cone.near],
     )
 

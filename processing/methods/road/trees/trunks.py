@@ -13,6 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from processing.core.arrays import Floats, Integers
+from processing.methods.road.trees.cone_kernels import FREE_SLAB_M
 from processing.methods.road.trees.stems import BREAST_M, EVENLY_M, HIGHEST_M, FittedStem
 
 _SAME_M = 0.06
@@ -59,6 +60,9 @@ stems of one tree lean away from each other or stand side by side."""
 _LOOSE = 1.8
 """Times as far as of its neighbour points lie off a stem that isn't there: they fill what is
 allowed evenly, or nearly. Bark of one tree is alike on all its stems."""
+
+_MOSTLY = 0.6
+"""Of its length: leaves stand about what isn't there."""
 
 _SPARSE, _DENSER = 0.2, 1.5
 """Points on a surface over those on a neighbour's: one scanner sees both, and what hides one hides
@@ -156,8 +160,9 @@ def trunks_of(stems: Sequence[FittedStem]) -> tuple[Trunk, ...]:
        leans towards a thicker one is a stay.
     5. Stems that neither touch at the foot nor part upwards stand beside each other: a tree and
        its stakes, a tree and a pole.
-    6. Of those that leave the ground together the stems of the tree reach as high as the highest,
-       are seen about 1.2 m above the foot and are not much thinner than the thickest.
+    6. Of those that leave the ground together the stems of the tree reach as high as the highest or
+       part from it upwards, are seen about 1.2 m above the foot and are not much thinner than the
+       thickest.
     """
     whole = _without_walls(_without_pieces(stems))
     whole = [stem for stem in whole if not _is_of_fork(stem, whole)]
@@ -218,7 +223,12 @@ def _is_of_fork(stem: FittedStem, others: Sequence[FittedStem]) -> bool:
 
 
 def _is_loose(stem: FittedStem, others: Sequence[FittedStem]) -> bool:
-    """Whether points lie about it as where no surface is, and on a neighbour as on one."""
+    """Whether points lie about it as where no surface is, and on a neighbour as on one.
+
+    One that stands free along most of its length bends.
+    """
+    if stem.free_slabs * FREE_SLAB_M > _MOSTLY * (stem.high_m - stem.low_m):
+        return False
     tight = [one.noise_m for one in others if one.arc >= _ROUND]
     return stem.noise_m > EVENLY_M and stem.noise_m > _LOOSE * min(tight, default=np.inf)
 
@@ -270,19 +280,36 @@ def _stems_of_tree(
     """Those of a clump that are stems of a tree, the thickest first; none of guards and stays."""
     tops = max(stem.high_m for stem in clump)
     tall = [stem for stem in clump if stem.high_m >= tops - _ENDS_M]
+    tall += [
+        stem
+        for stem in clump
+        if BREAST_M + _HIDDEN_M <= stem.high_m < tops - _ENDS_M
+        and any(leave_together(stem, one, np.zeros(2)) for one in tall)
+    ]
     tall = [stem for stem in tall if not _is_guard(stem, tall)]
-    tall = [stem for stem in tall if not _is_stay(stem, everything)]
+    tall = _without_walls([stem for stem in tall if not _is_stay(stem, everything)])
     thick = max((stem.radius_m for stem in tall), default=0.0)
     trunks = [stem for stem in tall if stem.radius_m >= _STEM_SHARE * thick]
     return sorted(trunks, key=lambda stem: -stem.radius_m)
 
 
 def _without_stakes(trees: Sequence[list[FittedStem]]) -> list[list[FittedStem]]:
-    """Without what is no thicker than a stake beside a thicker stem or a higher one."""
-    thick = [tree for tree in trees if 2 * tree[0].radius_m > _STAKE_M]
+    """Without what may be no thicker than a stake beside a thicker stem or a higher one.
+
+    What ends below the tape is one too where another goes on, however thick it seems.
+    """
+    tops = [max(stem.high_m for stem in tree) for tree in trees]
+    lowest = BREAST_M if max(tops, default=0.0) > BREAST_M + _ENDS_M else 0.0
+    trees = [tree for tree, top in zip(trees, tops, strict=True) if top >= lowest]
+    thick = [tree for tree in trees if _is_thicker_than_stakes(tree)]
     if thick or not trees:
         return thick
     return [max(trees, key=lambda tree: max(stem.high_m for stem in tree))]
+
+
+def _is_thicker_than_stakes(tree: Sequence[FittedStem]) -> bool:
+    thickest = Trunk((tree[0],), ())
+    return thickest.diameter_m - thickest.diameter_within_m > _STAKE_M
 
 
 def _is_stay(stem: FittedStem, others: Sequence[FittedStem]) -> bool:

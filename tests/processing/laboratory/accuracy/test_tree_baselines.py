@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from processing.laboratory.accuracy.road.tree_baselines import (
+from processing.laboratory.accuracy.road.baselines.tree_baselines import (
     WAYS,
     TrunkPoints,
     image_wires,

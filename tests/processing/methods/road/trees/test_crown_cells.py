@@ -11,6 +11,7 @@ from processing.core.arrays import Floats
 from processing.methods.road.objects.columns import _columns_of
 from processing.methods.road.objects.sparse_plan import TILE
 from processing.methods.road.trees.crown_cells import (
+    _IS_BUILT,
     CrownCells,
     StandingStems,
     _keys_of,
@@ -65,6 +66,13 @@ def test_the_shape_of_cells_is_told(points: Floats, flat: float, bough: float) -
     assert shapes_of(points) == pytest.approx((flat, bough), abs=0.1)
 
 
+def test_a_plate_is_flat_among_the_stray_points_that_its_shine_makes() -> None:
+    random = np.random.default_rng(6)
+    plate = random.uniform((4.9, 5.0, 2.5), (5.5, 5.0, 3.1), (3_000, 3))
+    stray = random.normal((5.2, 5.0, 2.8), (0.3, 0.3, 0.3), (60, 3))
+    assert shapes_of(np.vstack([plate, stray]))[0] > 0.8
+
+
 def cells_at(places: list[tuple[int, int, int]]) -> CrownCells:
     count = len(places)
     none, flags = np.zeros((count, 3), np.float32), np.zeros(count, np.bool_)
@@ -101,3 +109,8 @@ def test_a_thick_trunk_is_a_column_though_its_middle_is_empty() -> None:
     assert raised == []
     for middle, _ in found:
         assert middle == pytest.approx(np.array([31.5, 41.5]) - 7, abs=1.0)
+
+
+def test_what_is_known_to_be_a_house_or_a_sign_is_in_no_crown() -> None:
+    assert _IS_BUILT[[6, 14, 64, 65]].all()
+    assert not _IS_BUILT[[0, 1, 3, 4, 5, 66]].any()

@@ -178,3 +178,35 @@ def test_a_circle_among_twigs_is_no_stem_and_the_slender_one_below_is() -> None:
 def test_a_trunk_with_a_cane_beside_it_stands_free() -> None:
     both = np.vstack([bark(0.08, 0.2, 2.6), bark(0.03, 0.2, 2.4, middle=(0.0, 0.1))])
     assert any(abs(2 * one.radius_m - 0.08) < 0.008 for one in stems_of(both, MOST_M))
+
+
+def test_a_slender_trunk_before_a_wall_is_found() -> None:
+    across, up = np.meshgrid(np.arange(-0.85, 0.85, 0.02), np.arange(0.0, 3.0, 0.05))
+    noise = np.random.default_rng(9).normal(0.0, 0.003, across.size)
+    wall = np.column_stack([across.ravel(), 0.35 + noise, up.ravel()])
+    trunk = trunk_in(bark(0.09, 0.2, 2.6), wall)
+    assert len(trunk.stems) == 1
+    assert trunk.diameter_m == pytest.approx(0.09, abs=0.01)
+
+
+def test_a_circle_through_several_stems_is_none() -> None:
+    turns = np.radians([90, 180, 270])
+    places = [(0.3 * math.cos(turn), 0.3 * math.sin(turn)) for turn in turns]
+    stems = stems_of(np.vstack([bark(0.05, 0.2, 2.6, middle=one) for one in places]), MOST_M)
+    assert [one.radius_m for one in stems] == pytest.approx([0.025] * 3, abs=0.005)
+
+
+def test_a_thick_stake_that_ends_below_is_not_the_trunk() -> None:
+    young = bark(0.07, 0.2, 2.6)
+    stake = bark(0.1, 0.2, 1.1, middle=(0.25, 0.3))
+    trunk = trunk_in(young, stake)
+    assert trunk.diameter_m == pytest.approx(0.07, abs=0.01)
+
+
+def test_a_slender_trunk_of_which_few_points_were_measured_is_found() -> None:
+    random = np.random.default_rng(8)
+    up = np.repeat(np.arange(0.2, 2.8, 0.11), 2)
+    turn = random.uniform(-1.4, 1.4, up.size)
+    radius = 0.04 + random.normal(0.0, 0.003, up.size)
+    trunk = trunk_in(np.column_stack([radius * np.cos(turn), radius * np.sin(turn), up]))
+    assert trunk.diameter_m == pytest.approx(0.08, abs=0.02)

@@ -33,13 +33,13 @@ _LOW_M, _HIGH_M, _STEP_M = 0.3, 2.5, 0.005
 """Planes that cut wires; the step is the thesis', the heights are this program's choice."""
 
 _PROJECTED_M = (1.0, 1.4)
-_WIRE_M = 0.3
+WIRE_M = 0.3
 """Longest wire: points farther apart are of two things (the thesis' own limit of grouping)."""
 
-_SKIPPED = 2
+SKIPPED = 2
 """From a pixel to the next along a row: one empty pixel may lie between."""
 
-_WINDOW = 30
+WINDOW = 30
 """Columns to either side in the rows before and behind."""
 
 _LINE_M = 0.01
@@ -110,23 +110,44 @@ def projected_diameter(points: TrunkPoints) -> float:
 
 def wire_diameter(points: TrunkPoints, wires: Integers) -> float:
     """Wires cut every 5 mm, a circle through each cut, and a line through the diameters."""
+    levels, circles = cut_circles(points.local[wires])
+    return diameter_at_breast(levels, 2 * circles[:, RADIUS])
+
+
+def cut_circles(ends: Floats) -> tuple[Floats, Floats]:
+    """Heights at which wires were cut, of those that gave a circle, and these circles.
+
+    Parameters
+    ----------
+    ends : (m, 2, 3) float64
+        Of each wire, m above the foot.
+
+    Returns
+    -------
+    (k,) float64
+    (k, CIRCLE_WIDTH) float64
+    """
     levels = np.arange(_LOW_M, _HIGH_M, _STEP_M)
-    ends = points.local[wires]
     low, high = ends[..., 2].min(axis=1), ends[..., 2].max(axis=1)
+    order = np.argsort(low, kind="stable")
+    ends, low, high = ends[order], low[order], high[order]
+    longest = float((high - low).max(initial=0.0))
     parts: list[Floats] = []
     for level in levels.tolist():
-        cut = ends[(low <= level) & (high > level)]
+        part = slice(*np.searchsorted(low, [level - longest, level], side="right").tolist())
+        crosses = high[part] > level
+        cut = ends[part][crosses]
         share = (level - cut[:, 0, 2]) / (cut[:, 1, 2] - cut[:, 0, 2])
         parts.append(cut[:, 0, :2] + share[:, None] * (cut[:, 1, :2] - cut[:, 0, :2]))
     starts = np.cumsum([0, *(len(part) for part in parts)])
     circles = np.zeros((levels.size, MOST_CIRCLES, CIRCLE_WIDTH))
     circles_kernel(np.concatenate(parts), starts, _CUT, circles)
     known = circles[:, 0, RADIUS] > 0
-    return _line_at_breast(levels[known], 2 * circles[known, 0, RADIUS])
+    return levels[known], circles[known, 0]
 
 
-def _line_at_breast(levels: Floats, diameters: Floats) -> float:
-    """The robust line through diameters by height, at 1.2 m."""
+def diameter_at_breast(levels: Floats, diameters: Floats) -> float:
+    """The robust line through diameters by height, at 1.2 m; NaN where too few are on one."""
     best: Integers = np.empty(0, np.int64)
     random = np.random.default_rng(1)
     for _ in range(200 if levels.size >= 2 else 0):
@@ -151,7 +172,7 @@ def kd_wires(points: TrunkPoints, neighbours: int) -> Integers:
     away, near = np.asarray(found[0]), np.asarray(found[1])
     first = np.repeat(np.arange(count), neighbours)
     wires = np.column_stack([first, near.ravel()])
-    short: Integers = wires[away.ravel() < _WIRE_M]
+    short: Integers = wires[away.ravel() < WIRE_M]
     return short
 
 
@@ -162,18 +183,18 @@ def image_wires(points: TrunkPoints) -> Integers:
         own = np.flatnonzero((points.drives == drive) & (points.pulses >= 0))
         own = own[np.argsort(points.pulses[own], kind="stable")]
         pulses, local = points.pulses[own], points.local[own]
-        beside = np.flatnonzero((np.diff(pulses) > 0) & (np.diff(pulses) <= _SKIPPED))
+        beside = np.flatnonzero((np.diff(pulses) > 0) & (np.diff(pulses) <= SKIPPED))
         wires += [(int(own[one]), int(own[one + 1])) for one in beside]
         for step in (-per_turn, per_turn):
-            first = np.searchsorted(pulses, pulses + step - _WINDOW)
-            end = np.searchsorted(pulses, pulses + step + _WINDOW, side="right")
+            first = np.searchsorted(pulses, pulses + step - WINDOW)
+            end = np.searchsorted(pulses, pulses + step + WINDOW, side="right")
             for one in np.flatnonzero(end > first).tolist():
                 others = np.arange(first[one], end[one])
                 away = np.linalg.norm(local[others] - local[one], axis=1)
                 wires.append((int(own[one]), int(own[others[away.argmin()]])))
     pairs = np.array(wires, np.int64).reshape(-1, 2)
     long = np.linalg.norm(np.diff(points.local[pairs], axis=1)[:, 0], axis=1)
-    short: Integers = pairs[long < _WIRE_M]
+    short: Integers = pairs[long < WIRE_M]
     return short
 
 

@@ -1,0 +1,1 @@
+"""Others' ways, beside which this program's are measured."""
