@@ -171,8 +171,9 @@ class CrownShares:
         self._sizes = [np.bincount(parts[parts >= 0]) for parts in self._parts]
         self._low = self._low_cells()
         touched = [self._touched(number) for number in range(len(trunks))]
-        # Which of both links, and which part.
-        self._part_of = np.array(touched, np.int64).reshape(-1, 2)
+        # By each link the part that a trunk comes near to; which link counts, and its part.
+        self._touches = np.array(touched, np.int64).reshape(-1, 2)
+        self._part_of = np.array([self._chosen(*one) for one in touched], np.int64).reshape(-1, 2)
 
     def crowns(self, is_asked: NDArray[np.bool_], monitor: Monitor) -> list[Crown]:
         """What each trunk carries if only those that are asked for share."""
@@ -197,20 +198,23 @@ class CrownShares:
         return found
 
     def _touched(self, number: int) -> tuple[int, int]:
-        """By which link, and the largest part near the axis above the stem; −1: none."""
+        """By each link the largest part near the axis above the stem; −1: none."""
         about = self._about(number, _AXIS_M)
         up = self._middles[about, 2] - self._feet[number]
         trunk = self._trunks[number]
         seeds = about[(up > _LOW_M) & (up < max(trunk.top_m, trunk.rise.high_m) + _ABOVE_M)]
-        best = (0, -1)
+        best = [-1, -1]
         for link, sizes in enumerate(self._sizes):
             parts = np.unique(self._parts[link, seeds])
             parts = parts[parts >= 0]
             if parts.size:
-                best = (link, int(parts[sizes[parts].argmax()]))
-                if sizes[best[1]] >= _WHOLE:
-                    break
-        return best
+                best[link] = int(parts[sizes[parts].argmax()])
+        return best[0], best[1]
+
+    def _chosen(self, leafy: int, bare: int) -> tuple[int, int]:
+        """Which of both links, and which part: leafy ones that are a crown, else bare ones."""
+        is_whole = leafy >= 0 and self._sizes[0][leafy] >= _WHOLE
+        return (0, leafy) if is_whole or bare < 0 else (1, bare)
 
     def _about(self, number: int, reach_m: float) -> Integers:
         """Cells near the end of a trunk in plan."""
@@ -225,9 +229,8 @@ class CrownShares:
         if self._part_of[number, 1] < 0:
             return 1.0
         away = np.hypot(*(self._tops - self._tops[number]).T)
-        is_rival = (
-            is_asked & (self._part_of == self._part_of[number]).all(axis=1) & (away < CROWN_M)
-        )
+        link, part = self._part_of[number].tolist()
+        is_rival = is_asked & (self._touches[:, link] == part) & (away < CROWN_M)
         is_rival[number] = False
         worse = [
             (middles[one] + middles[number]).aside(self._tops[one])
