@@ -43,7 +43,6 @@ from tests.processing.methods.road.bad_recordings import (
 
 LENGTH_M = 30.0
 GROUND_M = 0.16
-BUILDING = 6
 STAKED = np.array([6.0, 5.5, GROUND_M])
 STAKED_DIAMETER_M = 0.18
 STEMMED = np.array([14.0, 5.5, GROUND_M])
@@ -323,13 +322,3 @@ def test_without_a_trajectory_trees_are_found_all_the_same(tmp_path: Path) -> No
     driven = DrivenRecording(way, facing_along(way), avenue(), head=HEAD_45, pulses=1_000)
     request = replace(delivered(driven, tmp_path), trajectories=())
     assert len(told_of("trees", request, tmp_path).candidates) == 2
-
-
-def test_a_trunk_whose_crown_is_known_to_be_a_house_is_no_tree(tmp_path: Path) -> None:
-    way = straight(AVENUE_M)
-    driven = DrivenRecording(way, facing_along(way), avenue(), head=HEAD_45, pulses=1_000)
-    drives = recorded(tmp_path, driven)
-    for drive in drives:
-        up = drive.xyz(slice(0, drive.count))[:, 2] - ORIGIN[2] - GROUND_M
-        drive.columns.hold("label", np.where(up > 2.0, BUILDING, 0).astype(np.uint8))
-    assert told_by("trees", drives, tmp_path).candidates == ()

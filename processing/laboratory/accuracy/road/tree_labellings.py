@@ -1,7 +1,7 @@
-"""Trees found without a prior labelling and with one, and as the thesis finds them with one.
+"""Trees found without a prior labelling, and as the thesis finds them with one.
 
 The thesis keeps points of crowns, posts and buildings and looks for trees among those; this program
-looks at all points and leaves out what is said to be a house, a wire, a vehicle or a sign.
+looks at all points.
 """
 
 from __future__ import annotations
@@ -27,7 +27,6 @@ from processing.laboratory.accuracy.road.tree_scenes import (
     ScoredTrees,
     TreeScene,
     asked_of,
-    score_scene,
 )
 from processing.laboratory.accuracy.road.true_labels import labels_of_drive
 from processing.methods.classes.class_models import shipped_models
@@ -68,14 +67,14 @@ class FoundTrees(NamedTuple):
 
 
 def found_trees(street: ScoredTrees) -> list[FoundTrees]:
-    """What this program finds without classes and with them, and the thesis' way with them."""
+    """What this program finds without classes, and the thesis' way with them."""
     scene = street.scene
     found = [_ours(street, NONE)]
     for labelling in (OWN, TRUE):
         for drive in scene.drives:
             codes = _codes_of(drive) if labelling == OWN else labels_of_drive(drive, scene.labels)
             drive.columns.hold(_LABEL, codes)
-        found += [_ours(score_scene(scene), labelling), _as_thesis(scene, labelling)]
+        found.append(_as_thesis(scene, labelling))
     return found
 
 

@@ -54,16 +54,16 @@ thesis has it, within 2 m, but one to one, if 20 points on its trunk show it. Di
 are those of trunks of which 60° and more were seen, stakes included; “within” is the \
 share whose error is no greater than `dbh_within_m`, which should be 95 %.
 """
-_LABELLINGS = "### Trees with a prior labelling, and as the thesis finds them"
+_LABELLINGS = "### Trees as the thesis finds them"
 _ABOUT_KINDS = """The same trees; of deliveries by what is special about them, where they say so.
 """
 _ABOUT_WAYS = """The same trunks, with the points within 0.9 m of the true foot, measured in \
 other ways: RMS and greatest error of those that were measured at all.
 """
-_ABOUT_LABELLINGS = """What is gained by classes of points that are known before: this program \
-then leaves out what is a house, a wire, a vehicle or a sign. The thesis' own way needs \
-them: it keeps crowns, posts and buildings of one head, wires their pixels, and takes \
-components with a column of circles whose smoothed edges point anywhere.
+_ABOUT_LABELLINGS = """The thesis' own way of finding trees needs classes of points that are \
+known before: it keeps crowns, posts and buildings of one head, wires their pixels, and takes \
+components with a column of circles whose smoothed edges point anywhere. Its thresholds are \
+not told; chosen ones were not calibrated. This program needs no classes.
 """
 _ABOUT_REAL = """Trees that were scanned by themselves; nobody taped them, so this compares and \
 does not judge.

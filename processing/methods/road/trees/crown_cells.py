@@ -19,7 +19,6 @@ from processing.core.kernels import kernel
 from processing.core.monitor import Monitor
 from processing.methods.road.objects.drive_chunks import chunks_of
 from processing.methods.road.objects.sparse_plan import TILE, SparsePlan, cell_of
-from processing.recording.columns.counted_classes import class_columns
 from processing.recording.drive import Drive
 
 _Number = TypeVar("_Number", np.float32, np.int64)
@@ -30,12 +29,6 @@ wires keep farther away."""
 
 LOW_M = 0.6
 """Above the foot: what is lower is grass, shoots and the ground of a bank."""
-
-_BUILT = 6, 11, 14, 15, 64, 65, 67
-"""Classes that no crown is of: building, road, wire, tower, vehicle, sign, curb. Boughs are
-pole-like, and leaves may be grass or hedge."""
-
-_IS_BUILT = np.isin(np.arange(256), _BUILT)
 
 _FEWEST = 6
 """Points of a cell from which its shape is told."""
@@ -166,7 +159,7 @@ def crown_cells(
     Notes
     -----
     1. Each point above the foot of the trunk nearest to it that lies on none of its stems is
-       counted in its cell of 0.4 m; where points have classes, no house, wire, vehicle or sign.
+       counted in its cell of 0.4 m.
     2. A cell is flat if its points and those of the cells about it lie in a plane or on a line that
        rises less or more than branches do. One scan line through a crown is a plane too, hence the
        cells about it.
@@ -176,15 +169,12 @@ def crown_cells(
     boxes: NDArray[np.float32] = np.zeros((_FIRST_SLOTS // 2, 6), np.float32)
     places = np.zeros((_FIRST_SLOTS // 2, 4), np.int64)
     used = 0
-    classes = [class_columns(drive.columns) for drive in drives]
     for chunk in chunks_of(drives, plan.origin, monitor):
-        codes = classes[chunk.drive].codes_between(chunk.start, chunk.start + len(chunk.local))
-        is_other = chunk.is_noise | _IS_BUILT[codes]
         begin = 0
         while begin < len(chunk.local):
             begin, used = fill_kernel(
                 chunk.local,
-                is_other,
+                chunk.is_noise,
                 (begin, used),
                 (plan.table, owners.reshape(-1)),
                 stems,
@@ -251,7 +241,7 @@ def rehash_kernel(slots: Integers, wider: Integers) -> None:
 @kernel
 def fill_kernel(
     local: Floats,
-    is_other: NDArray[np.bool_],
+    is_noise: NDArray[np.bool_],
     at: tuple[int, int],
     plan: tuple[NDArray[np.int32], NDArray[np.int32]],
     stems: StandingStems,
@@ -273,7 +263,7 @@ def fill_kernel(
     table, owners = plan
     slots, places, sums, boxes = cells
     for point in range(begin, len(local)):
-        if is_other[point]:
+        if is_noise[point]:
             continue
         east, north, up = local[point, 0], local[point, 1], local[point, 2]
         below = cell_of(east, north, table, TILE)

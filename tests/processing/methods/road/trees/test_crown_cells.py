@@ -11,7 +11,6 @@ from processing.core.arrays import Floats
 from processing.methods.road.objects.columns import _columns_of
 from processing.methods.road.objects.sparse_plan import TILE
 from processing.methods.road.trees.crown_cells import (
-    _IS_BUILT,
     CrownCells,
     StandingStems,
     _keys_of,
@@ -109,8 +108,3 @@ def test_a_thick_trunk_is_a_column_though_its_middle_is_empty() -> None:
     assert raised == []
     for middle, _ in found:
         assert middle == pytest.approx(np.array([31.5, 41.5]) - 7, abs=1.0)
-
-
-def test_what_is_known_to_be_a_house_or_a_sign_is_in_no_crown() -> None:
-    assert _IS_BUILT[[6, 14, 64, 65]].all()
-    assert not _IS_BUILT[[0, 1, 3, 4, 5, 66]].any()
