@@ -30,6 +30,7 @@ from processing.methods.road.wires.span_kernels import (
     SpanLimits,
     span_kernel,
 )
+from processing.methods.road.wires.wire_points import WirePoints
 
 _FEWEST, _LEAST_LONG_M = 6, 1.0
 """Points and length of a piece that tells a direction."""
@@ -38,6 +39,13 @@ _TRIM, _LEAST_TRIM_M = 3.0, 0.012
 """Points off by more than so many times the noise, and by more than that, are another thing's."""
 
 _TURNS = 4
+
+_SEED_M = 1.0
+"""To either side of a point: how far a wire is followed by the line through the point alone."""
+
+_SEEDS, _GROWTHS = 4, 12
+"""Points of a group that are tried in vain; times that a wire is followed further, each time by
+half of what was found: from 2 m to more than any span."""
 
 _USUAL_BEND, _BEND_OFF = 0.004, 0.004
 """Half of the second derivative of usual wires, 1/m, and how far others are off: spans of 25 to
@@ -120,21 +128,15 @@ class WireSpan:
         return np.asarray((places[:, :2] - self.middle) @ self.way)
 
 
-def spans_of(local: Floats, group: Integers, monitor: Monitor) -> list[WireSpan]:
-    """The wires that groups of points are.
-
-    Parameters
-    ----------
-    local : (n, 3) float64
-        m about the plan's origin.
-    group : (n,) int64
-    """
+def spans_of(points: WirePoints, monitor: Monitor) -> list[WireSpan]:
+    """The wires that groups of points are."""
+    local, group = points.local, points.group
     order = np.argsort(group, kind="stable")
     _, first = np.unique(group[order], return_index=True)
     pieces: list[WireSpan] = []
     for lines in np.split(order, first[1:]):
         if lines.size >= _FEWEST:
-            pieces += _pieces(local, lines, monitor)
+            pieces += _pieces(points, lines, monitor)
     return _joined(local, pieces, monitor)
 
 
@@ -157,32 +159,47 @@ def _fit(local: Floats, lines: Integers) -> WireSpan | None:
     )
 
 
-def _pieces(local: Floats, lines: Integers, monitor: Monitor) -> list[WireSpan]:
-    """A group as one wire, or split where it is held by a pole or another one begins."""
+def _pieces(points: WirePoints, lines: Integers, monitor: Monitor) -> list[WireSpan]:
+    """The wires of a group: one, or several that cross, run side by side or meet at a pole."""
+    local = points.local
     span = _fit(local, lines)
     if span is None:
         return []
     is_whole = span.lines.size > 0.9 * lines.size and span.noise_m < MOST_OFF_M / 2
     if is_whole or lines.size < 2 * _FEWEST:
         return [span] if span.noise_m < MOST_OFF_M else []
-    order = lines[np.argsort(span.along(local[lines]), kind="stable")]
-    best: tuple[float, list[WireSpan]] | None = None
-    for share in np.linspace(0.1, 0.9, 17):
+    rest, failed = lines, 0
+    found: list[WireSpan] = []
+    while rest.size >= _FEWEST and failed < _SEEDS:
         monitor.check()
-        cut = int(share * lines.size)
-        parts = [_fit(local, part) for part in (order[:cut], order[cut:])]
-        found = [part for part in parts if part is not None]
-        if not found:
-            continue
-        covered = sum(part.lines.size for part in found)
-        cost = sum(part.noise_m**2 * part.lines.size for part in found)
-        cost += (lines.size - covered) * MOST_OFF_M**2
-        if best is None or cost < best[0]:
-            best = (cost, found)
-    alone = span.noise_m**2 * span.lines.size + (lines.size - span.lines.size) * MOST_OFF_M**2
-    if best is None or best[0] > 0.6 * alone:
-        return [span] if span.noise_m < MOST_OFF_M else []
-    return [one for part in best[1] for one in _pieces(local, np.sort(part.lines), monitor)]
+        grown = _grown(points, rest, rest[(2 * failed + 1) * rest.size // (2 * _SEEDS)])
+        if grown is None:
+            failed += 1
+        else:
+            found.append(grown)
+            rest = np.setdiff1d(rest, grown.lines, assume_unique=True)
+    return found
+
+
+def _grown(points: WirePoints, rest: Integers, seed: int) -> WireSpan | None:
+    """The wire through a point, from what lies on its line to where others leave it."""
+    local = points.local[rest]
+    from_seed, way = local - points.local[seed], points.direction[seed]
+    along = from_seed @ way
+    near = np.linalg.norm(from_seed - along[:, None] * way, axis=1) < MOST_OFF_M
+    span = _fit(points.local, rest[near & (np.abs(along) < _SEED_M)])
+    for _ in range(_GROWTHS):
+        if span is None or span.noise_m > MOST_OFF_M / 2:
+            return None
+        at = span.along(local)
+        reach = max(_SEED_M, span.long_m / 2)
+        near = (at > span.start_m - reach) & (at < span.end_m + reach)
+        near[near] = np.linalg.norm(local[near] - span.at(at[near]), axis=1) < MOST_OFF_M
+        longer = _fit(points.local, rest[near])
+        if longer is None or longer.long_m < span.long_m + _SEED_M / 10:
+            return span
+        span = longer
+    return span
 
 
 def _joined(local: Floats, pieces: Sequence[WireSpan], monitor: Monitor) -> list[WireSpan]:
