@@ -8,7 +8,7 @@ a = 112 m, Irvine 1981, Cable Structures, 1.2).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -63,6 +63,10 @@ MOST_OFF_M = 0.03
 
 _GAP_M, _GAP_SHARE = 15.0, 1.5
 """Over which a wire is joined, and how many times as long as both sides together."""
+
+_END_M, _END_GAP_M = 2.5, 0.35
+"""How far a wire is followed at its ends, a quarter of its length at most, and over which gaps:
+insulators, arms and other wires are near there, so that no line is free."""
 
 _TURN = 0.03
 """Sine between the directions of two pieces of one wire: short ones are off by their noise."""
@@ -137,7 +141,32 @@ def spans_of(points: WirePoints, monitor: Monitor) -> list[WireSpan]:
     for lines in np.split(order, first[1:]):
         if lines.size >= _FEWEST:
             pieces += _pieces(points, lines, monitor)
-    return _joined(local, pieces, monitor)
+    return _followed_to_ends(points.thin, _joined(local, pieces, monitor))
+
+
+def _followed_to_ends(thin: Floats, spans: Sequence[WireSpan]) -> list[WireSpan]:
+    """The same, each as far as thin points follow it: about poles too many things are near."""
+    from scipy.spatial import cKDTree
+
+    if not spans:
+        return []
+    tree = cKDTree(thin)
+    found: list[WireSpan] = []
+    for span in spans:
+        reach = min(_END_M, span.long_m / 4)
+        at = np.array([span.start_m - reach / 2, span.end_m + reach / 2])
+        ends = [span.start_m, span.end_m]
+        for side, near in enumerate(tree.query_ball_point(span.at(at), reach / 2 + MOST_OFF_M)):
+            places = thin[near]
+            along = span.along(places)
+            is_on = np.linalg.norm(places - span.at(along), axis=1) < MOST_OFF_M
+            beyond = np.sort((along - ends[side])[is_on] * (-1, 1)[side])
+            beyond = beyond[beyond > 0]
+            gaps = np.diff(beyond, prepend=0.0) > _END_GAP_M
+            last = int(np.argmax(gaps)) if gaps.any() else beyond.size
+            ends[side] += (-1, 1)[side] * (float(beyond[last - 1]) if last else 0.0)
+        found.append(replace(span, start_m=ends[0], end_m=ends[1]))
+    return found
 
 
 def _fit(local: Floats, lines: Integers) -> WireSpan | None:

@@ -84,6 +84,8 @@ class WirePoints:
         Which of the drives each is of, and its number there.
     solid : SolidCells
         What is no thin thing, as high as they are.
+    thin : (m, 3) float64
+        All points in short runs, m about the plan's origin, those on lines among them.
     """
 
     local: Floats
@@ -92,6 +94,7 @@ class WirePoints:
     drives: Integers
     points: Integers
     solid: SolidCells
+    thin: Floats
 
 
 def wire_points(
@@ -177,6 +180,7 @@ def points_on_lines(
     order, _, starts, grid = _sorted(local)
     monitor.check()
     local, which, numbers = local[order], which[order], numbers[order]
+    thin = local
     crowded = np.zeros(len(local), np.bool_)
     for some in chunk_ranges(starts.size - 1, _CELLS_AT_ONCE):
         monitor.check()
@@ -200,7 +204,7 @@ def points_on_lines(
         monitor.check()
         groups_kernel(local, direction, cells, starts, grid, _LIMITS.core_m, some, group)
     firsts_kernel(group)
-    return WirePoints(local, direction, group, which[order], numbers[order], solid)
+    return WirePoints(local, direction, group, which[order], numbers[order], solid, thin)
 
 
 def _directions(
