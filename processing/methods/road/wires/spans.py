@@ -7,8 +7,10 @@ a = 112 m, Irvine 1981, Cable Structures, 1.2).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -256,15 +258,35 @@ def _joined(local: Floats, pieces: Sequence[WireSpan], monitor: Monitor) -> list
     return [span for number, span in enumerate(spans) if joined_to[number] == number]
 
 
-def _way_of(span: WireSpan) -> tuple[float, float, float]:
-    """Its way in plan and how long it is."""
-    return float(span.way[0]), float(span.way[1]), span.long_m
+class _PieceWay(NamedTuple):
+    """Middle, way in plan, slope and length of a piece: what rules most neighbours out."""
+
+    middle: tuple[float, float, float]
+    way: tuple[float, float]
+    slope: float
+    long_m: float
 
 
-def _turns_away(one: tuple[float, float, float], other: tuple[float, float, float]) -> bool:
-    """Whether two pieces run in directions that one wire doesn't have."""
-    sine = abs(one[0] * other[1] - one[1] * other[0])
-    return sine > _TURN + 0.1 / min(one[2], other[2])
+def _way_of(span: WireSpan) -> _PieceWay:
+    east, north, height = span.at(np.zeros(1))[0].tolist()
+    way = (float(span.way[0]), float(span.way[1]))
+    return _PieceWay((east, north, height), way, float(span.rise[1]), span.long_m)
+
+
+def _turns_away(one: _PieceWay, other: _PieceWay) -> bool:
+    """Whether two pieces can't be of one wire, by their directions and where they are."""
+    least = _TURN + 0.1 / min(one.long_m, other.long_m)
+    if abs(one.way[0] * other.way[1] - one.way[1] * other.way[0]) > least:
+        return True
+    east, north, up = (b - a for a, b in zip(one.middle, other.middle, strict=True))
+    far = math.hypot(east, north)
+    if abs(one.way[0] * north - one.way[1] * east) > _SIDE_M + least * far:
+        return True
+    along = one.way[0] * east + one.way[1] * north
+    facing = math.copysign(1.0, one.way[0] * other.way[0] + one.way[1] * other.way[1])
+    # Between two points of a parabola the chord is as steep as both are in the mean.
+    foretold = along * (one.slope + facing * other.slope) / 2
+    return abs(up - foretold) > _SIDE_M + least * far
 
 
 def _neighbours(pieces: Sequence[WireSpan]) -> list[tuple[int, int]]:
