@@ -32,6 +32,10 @@ _BEHIND_M = 0.24  # of posts behind the curb or the gutter
 _ROOM_M = 0.12  # kept between a barrier and what stands in its way
 _LEAST_M = 3.0
 _BEHIND_REFLECTORS_M = 0.45
+_BANDS_BELOW_M, _BAND_M = (0.16, 0.32), 0.1
+"""Below the top of a rubber pole: where its bands of retroreflective sheet begin, and how high they
+are (視線誘導標設置基準: delineators reflect)."""
+
 _RUBBER_SHARE = 0.15
 
 _HIGHWAY = {"beam": 0.5, "concrete": 0.15, "cables": 0.15, "pipes": 0.1, "": 0.1}
@@ -156,6 +160,9 @@ def _add_rubber_poles(
         foot, instance = positions.where(spot), built.thing("rubber_pole")
         built.mesh.add(posts(foot[None], radius, high), Material.PLASTIC, POLE, instance)
         built.mesh.add(posts(foot[None], 0.1, 0.03), Material.RUBBER, POLE, instance)
+        for below in _BANDS_BELOW_M:
+            band = posts(foot[None] + [0.0, 0.0, high - below], radius + 0.001, _BAND_M, below_m=0)
+            built.mesh.add(band, Material.SIGN_FACE, POLE, instance)
         facts: dict[str, Fact] = {
             "kind": "pole",
             "type": "delineator",

@@ -121,10 +121,15 @@ shops."""
 _SHORT_M = 1.35
 """Bollards and delineators are lower: 0.65 to 0.85 m (車止め), up to 1.2 m (視線誘導標設置基準)."""
 
-_THIN_POST_M, _REFLECTOR_POST_M = 0.07, 0.1
-"""Diameter between posts of delineators, 34 to 60.5 mm, and of bollards, 76.3 mm and more
-(JIS G 3444). Up to the second one a reflector tells delineators, of 89.1 mm and of rubber (80 mm),
-from bollards, whose bands shine too (114.3 mm and more)."""
+_THIN_POST_M, _REFLECTOR_POST_M, _REFLECTOR_HIGH_M = 0.07, 0.1, 0.87
+"""Diameter between posts of delineators, 34 to 60.5 mm, and of bollards, 60.5 mm and more (JIS G
+3444), and the least height of a delineator whose reflector is turned away: its middle hangs 90 cm
+above the road (視線誘導標設置基準), bollards are lower. Up to the second diameter a reflector tells
+delineators, of 89.1 mm and of rubber (80 mm), from bollards, whose bands shine too (114.3 mm and
+more)."""
+
+_THINNEST_BOLLARD_M = 0.05
+"""No bollard is thinner: 60.5 mm, less what a scanner is off."""
 
 _UTILITY_M, _UTILITY_HIGH_M = 0.2, 7.5
 """Diameter 1.2 m above the ground and height of a utility pole whose wires weren't seen: poles of
@@ -434,8 +439,10 @@ def type_of(shaft: Shaft, carried: Carried, *, is_reflecting: bool) -> str:
     """
     diameter, high = 2 * shaft.radius_at(min(_BREAST_M, shaft.top_m / 2)), shaft.top_m
     if is_short(shaft):
-        thickest = _REFLECTOR_POST_M if is_reflecting else _THIN_POST_M
-        return "delineator" if diameter < thickest else "bollard"
+        if is_reflecting:
+            return "delineator" if diameter < _REFLECTOR_POST_M else "bollard"
+        is_high = high > _REFLECTOR_HIGH_M and diameter < _THIN_POST_M
+        return "delineator" if is_high or diameter < _THINNEST_BOLLARD_M else "bollard"
     has_plate = carried.plate_points >= _PLATE_FEWEST and carried.plate_m > _LEAST_PLATE_M
     plate = "mirror_pole" if carried.curved > _CURVED else "sign_pole"
     is_board = diameter > _SIGN_POST_M and not is_reflecting

@@ -36,6 +36,10 @@ a sign's plate fewer."""
 
 _BELOW_TOP_M, _ABOVE_TOP_M = 0.3, 1.2
 
+_BELOW_TOP_SHARE, _RAILED_SHARE = 0.25, 0.5
+"""Of the height of a low shaft: from there on a roof is looked for, and rails; a hedge or a curb
+about its foot is neither, rails of fences go to the top."""
+
 _LEAST_CROWN_M = 1.8
 """Lower shafts carry neither crowns nor banners."""
 
@@ -115,6 +119,8 @@ def surroundings_kernel(points: Floats, axis: Floats, told: Floats) -> None:
     plan = np.zeros((side, side), np.bool_)
     over = np.zeros(10, np.bool_)
     low, top = axis[4], axis[5]
+    is_low = top <= _LEAST_CROWN_M
+    covered_from = top - min(_BELOW_TOP_M, _BELOW_TOP_SHARE * top)
     plate = _CLOTH_M if top > _LEAST_CROWN_M else _PLATE_M
     for point in range(len(points)):
         up = points[point, 2]
@@ -132,8 +138,9 @@ def surroundings_kernel(points: Floats, axis: Floats, told: Floats) -> None:
         i = math.floor(east / _CELL_M) + side // 2
         j = math.floor(north / _CELL_M) + side // 2
         if 0 <= i < side and 0 <= j < side:
-            plan[i, j] |= top - _BELOW_TOP_M <= up <= top + _ABOVE_TOP_M
-    first, last = max(int(low / _SLAB_M), 2), min(int(top / _SLAB_M), _SLABS)
+            plan[i, j] |= covered_from <= up <= top + _ABOVE_TOP_M
+    seen_from = max(low, _RAILED_SHARE * top) if is_low else low
+    first, last = max(int(seen_from / _SLAB_M), 2), min(int(top / _SLAB_M), _SLABS)
     hemmed = 0
     for slab in range(first, last):
         for sector in range(_SECTORS):

@@ -7,8 +7,10 @@ a = 112 m, Irvine 1981, Cable Structures, 1.2).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -30,6 +32,7 @@ from processing.methods.road.wires.span_kernels import (
     SpanLimits,
     span_kernel,
 )
+from processing.methods.road.wires.wire_points import WirePoints
 
 _FEWEST, _LEAST_LONG_M = 6, 1.0
 """Points and length of a piece that tells a direction."""
@@ -38,6 +41,13 @@ _TRIM, _LEAST_TRIM_M = 3.0, 0.012
 """Points off by more than so many times the noise, and by more than that, are another thing's."""
 
 _TURNS = 4
+
+_SEED_M = 1.0
+"""To either side of a point: how far a wire is followed by the line through the point alone."""
+
+_SEEDS, _GROWTHS = 4, 12
+"""Points of a group that are tried in vain; times that a wire is followed further, each time by
+half of what was found: from 2 m to more than any span."""
 
 _USUAL_BEND, _BEND_OFF = 0.004, 0.004
 """Half of the second derivative of usual wires, 1/m, and how far others are off: spans of 25 to
@@ -55,6 +65,10 @@ MOST_OFF_M = 0.03
 
 _GAP_M, _GAP_SHARE = 15.0, 1.5
 """Over which a wire is joined, and how many times as long as both sides together."""
+
+_END_M, _END_GAP_M = 2.5, 0.35
+"""How far a wire is followed at its ends, a quarter of its length at most, and over which gaps:
+insulators, arms and other wires are near there, so that no line is free."""
 
 _TURN = 0.03
 """Sine between the directions of two pieces of one wire: short ones are off by their noise."""
@@ -120,22 +134,41 @@ class WireSpan:
         return np.asarray((places[:, :2] - self.middle) @ self.way)
 
 
-def spans_of(local: Floats, group: Integers, monitor: Monitor) -> list[WireSpan]:
-    """The wires that groups of points are.
-
-    Parameters
-    ----------
-    local : (n, 3) float64
-        m about the plan's origin.
-    group : (n,) int64
-    """
+def spans_of(points: WirePoints, monitor: Monitor) -> list[WireSpan]:
+    """The wires that groups of points are."""
+    local, group = points.local, points.group
     order = np.argsort(group, kind="stable")
     _, first = np.unique(group[order], return_index=True)
     pieces: list[WireSpan] = []
     for lines in np.split(order, first[1:]):
         if lines.size >= _FEWEST:
-            pieces += _pieces(local, lines, monitor)
-    return _joined(local, pieces, monitor)
+            pieces += _pieces(points, lines, monitor)
+    return _followed_to_ends(points.thin, _joined(local, pieces, monitor))
+
+
+def _followed_to_ends(thin: Floats, spans: Sequence[WireSpan]) -> list[WireSpan]:
+    """The same, each as far as thin points follow it: about poles too many things are near."""
+    from scipy.spatial import cKDTree
+
+    if not spans:
+        return []
+    tree = cKDTree(thin)
+    found: list[WireSpan] = []
+    for span in spans:
+        reach = min(_END_M, span.long_m / 4)
+        at = np.array([span.start_m - reach / 2, span.end_m + reach / 2])
+        ends = [span.start_m, span.end_m]
+        for side, near in enumerate(tree.query_ball_point(span.at(at), reach / 2 + MOST_OFF_M)):
+            places = thin[near]
+            along = span.along(places)
+            is_on = np.linalg.norm(places - span.at(along), axis=1) < MOST_OFF_M
+            beyond = np.sort((along - ends[side])[is_on] * (-1, 1)[side])
+            beyond = beyond[beyond > 0]
+            gaps = np.diff(beyond, prepend=0.0) > _END_GAP_M
+            last = int(np.argmax(gaps)) if gaps.any() else beyond.size
+            ends[side] += (-1, 1)[side] * (float(beyond[last - 1]) if last else 0.0)
+        found.append(replace(span, start_m=ends[0], end_m=ends[1]))
+    return found
 
 
 def _fit(local: Floats, lines: Integers) -> WireSpan | None:
@@ -157,32 +190,47 @@ def _fit(local: Floats, lines: Integers) -> WireSpan | None:
     )
 
 
-def _pieces(local: Floats, lines: Integers, monitor: Monitor) -> list[WireSpan]:
-    """A group as one wire, or split where it is held by a pole or another one begins."""
+def _pieces(points: WirePoints, lines: Integers, monitor: Monitor) -> list[WireSpan]:
+    """The wires of a group: one, or several that cross, run side by side or meet at a pole."""
+    local = points.local
     span = _fit(local, lines)
     if span is None:
         return []
     is_whole = span.lines.size > 0.9 * lines.size and span.noise_m < MOST_OFF_M / 2
     if is_whole or lines.size < 2 * _FEWEST:
         return [span] if span.noise_m < MOST_OFF_M else []
-    order = lines[np.argsort(span.along(local[lines]), kind="stable")]
-    best: tuple[float, list[WireSpan]] | None = None
-    for share in np.linspace(0.1, 0.9, 17):
+    rest, failed = lines, 0
+    found: list[WireSpan] = []
+    while rest.size >= _FEWEST and failed < _SEEDS:
         monitor.check()
-        cut = int(share * lines.size)
-        parts = [_fit(local, part) for part in (order[:cut], order[cut:])]
-        found = [part for part in parts if part is not None]
-        if not found:
-            continue
-        covered = sum(part.lines.size for part in found)
-        cost = sum(part.noise_m**2 * part.lines.size for part in found)
-        cost += (lines.size - covered) * MOST_OFF_M**2
-        if best is None or cost < best[0]:
-            best = (cost, found)
-    alone = span.noise_m**2 * span.lines.size + (lines.size - span.lines.size) * MOST_OFF_M**2
-    if best is None or best[0] > 0.6 * alone:
-        return [span] if span.noise_m < MOST_OFF_M else []
-    return [one for part in best[1] for one in _pieces(local, np.sort(part.lines), monitor)]
+        grown = _grown(points, rest, rest[(2 * failed + 1) * rest.size // (2 * _SEEDS)])
+        if grown is None:
+            failed += 1
+        else:
+            found.append(grown)
+            rest = np.setdiff1d(rest, grown.lines, assume_unique=True)
+    return found
+
+
+def _grown(points: WirePoints, rest: Integers, seed: int) -> WireSpan | None:
+    """The wire through a point, from what lies on its line to where others leave it."""
+    local = points.local[rest]
+    from_seed, way = local - points.local[seed], points.direction[seed]
+    along = from_seed @ way
+    near = np.linalg.norm(from_seed - along[:, None] * way, axis=1) < MOST_OFF_M
+    span = _fit(points.local, rest[near & (np.abs(along) < _SEED_M)])
+    for _ in range(_GROWTHS):
+        if span is None or span.noise_m > MOST_OFF_M / 2:
+            return None
+        at = span.along(local)
+        reach = max(_SEED_M, span.long_m / 2)
+        near = (at > span.start_m - reach) & (at < span.end_m + reach)
+        near[near] = np.linalg.norm(local[near] - span.at(at[near]), axis=1) < MOST_OFF_M
+        longer = _fit(points.local, rest[near])
+        if longer is None or longer.long_m < span.long_m + _SEED_M / 10:
+            return span
+        span = longer
+    return span
 
 
 def _joined(local: Floats, pieces: Sequence[WireSpan], monitor: Monitor) -> list[WireSpan]:
@@ -210,15 +258,35 @@ def _joined(local: Floats, pieces: Sequence[WireSpan], monitor: Monitor) -> list
     return [span for number, span in enumerate(spans) if joined_to[number] == number]
 
 
-def _way_of(span: WireSpan) -> tuple[float, float, float]:
-    """Its way in plan and how long it is."""
-    return float(span.way[0]), float(span.way[1]), span.long_m
+class _PieceWay(NamedTuple):
+    """Middle, way in plan, slope and length of a piece: what rules most neighbours out."""
+
+    middle: tuple[float, float, float]
+    way: tuple[float, float]
+    slope: float
+    long_m: float
 
 
-def _turns_away(one: tuple[float, float, float], other: tuple[float, float, float]) -> bool:
-    """Whether two pieces run in directions that one wire doesn't have."""
-    sine = abs(one[0] * other[1] - one[1] * other[0])
-    return sine > _TURN + 0.1 / min(one[2], other[2])
+def _way_of(span: WireSpan) -> _PieceWay:
+    east, north, height = span.at(np.zeros(1))[0].tolist()
+    way = (float(span.way[0]), float(span.way[1]))
+    return _PieceWay((east, north, height), way, float(span.rise[1]), span.long_m)
+
+
+def _turns_away(one: _PieceWay, other: _PieceWay) -> bool:
+    """Whether two pieces can't be of one wire, by their directions and where they are."""
+    least = _TURN + 0.1 / min(one.long_m, other.long_m)
+    if abs(one.way[0] * other.way[1] - one.way[1] * other.way[0]) > least:
+        return True
+    east, north, up = (b - a for a, b in zip(one.middle, other.middle, strict=True))
+    far = math.hypot(east, north)
+    if abs(one.way[0] * north - one.way[1] * east) > _SIDE_M + least * far:
+        return True
+    along = one.way[0] * east + one.way[1] * north
+    facing = math.copysign(1.0, one.way[0] * other.way[0] + one.way[1] * other.way[1])
+    # Between two points of a parabola the chord is as steep as both are in the mean.
+    foretold = along * (one.slope + facing * other.slope) / 2
+    return abs(up - foretold) > _SIDE_M + least * far
 
 
 def _neighbours(pieces: Sequence[WireSpan]) -> list[tuple[int, int]]:

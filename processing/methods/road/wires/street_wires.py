@@ -110,7 +110,7 @@ def street_wires(
                 clearance_m=_least(over),
                 road_clearance_m=_least(over[is_over(line)]),
                 noise_m=span.noise_m,
-                confidence=chance_of(facts_of(span)),
+                confidence=chance_of(facts_of(span, found.solid)),
                 points=np.where(rests >= 0, found.points[rests], -1),
                 drives=np.where(rests >= 0, found.drives[rests], 0),
             )
@@ -134,7 +134,7 @@ def _seen_wires(
         chosen = [drives[one] for one in members]
         found = wire_points(chosen, plan, ground, settings.lowest_m, part)
         found = replace(found, drives=np.array(members, np.int64)[found.drives])
-        spans = spans_of(found.local, found.group, part)
+        spans = spans_of(found, part)
         seen += [(one, found, number) for one in spans if one.long_m >= settings.shortest_m]
     seen.sort(key=lambda one: -one[0].lines.size)
     kept: list[tuple[WireSpan, WirePoints, int]] = []

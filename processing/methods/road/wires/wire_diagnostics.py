@@ -12,6 +12,7 @@ from processing.core.text import Text
 from processing.methods.road.asked_points import stretch_about
 from processing.methods.road.diagnostics import Diagnostic, DiagnosticTest
 from processing.methods.road.requested_position import RequestedPosition
+from processing.methods.road.wires.solid_cells import SolidCells, solid_keys
 from processing.methods.road.wires.spans import MOST_OFF_M, WireSpan, spans_of
 from processing.methods.road.wires.street_wires import WireSettings
 from processing.methods.road.wires.wire_confidence import chance_of, facts_of
@@ -51,16 +52,19 @@ def wire_diagnostics(
     local = drive.coordinates.chunk_about(start, stop, asked.xyz)
     ground = float(np.quantile(local[:, 2], _GROUND_SHARE))
     thin = thin_points(drive, pulse_interval(drive), start, local)
-    kept = np.flatnonzero(thin & (local[:, 2] > ground + settings.lowest_m))
+    high = local[:, 2] > ground + settings.lowest_m
+    kept = np.flatnonzero(thin & high)
     no_drive = np.zeros(kept.size, np.int64)
-    lines = points_on_lines(local[kept], no_drive, start + kept, SilentMonitor())
+    solid = SolidCells([solid_keys(local, high & ~thin)])
+    lines = points_on_lines(local[kept], no_drive, start + kept, solid, SilentMonitor())
     right = asked.scanlines.rights[len(asked.scanlines.rights) // 2]
     forward = np.array([-right[1], right[0]])
     found: list[Diagnostic] = []
-    for span in spans_of(lines.local, lines.group, SilentMonitor()):
+    for span in spans_of(lines, SilentMonitor()):
         at = _crossing(span, forward)
         if at is not None:
-            whole = _whole(span, at, (ground, settings), least_confidence)
+            chance = chance_of(facts_of(span, solid))
+            whole = _whole(span, at, (ground, settings), (chance, least_confidence))
             found += [whole, *_residuals(span, lines, at, is_wire=whole.is_taken)]
     # The places are about the asked one; the layer is drawn in the project's own system.
     return tuple(Diagnostic(one.xyz + asked.xyz, one.outcomes, one.is_taken) for one in found)
@@ -77,18 +81,21 @@ def _crossing(span: WireSpan, forward: Floats) -> float | None:
 
 
 def _whole(
-    span: WireSpan, at_m: float, over: tuple[float, WireSettings], least_confidence: float
+    span: WireSpan,
+    at_m: float,
+    over: tuple[float, WireSettings],
+    sure: tuple[float, float],
 ) -> Diagnostic:
     """A line at the section, and what makes it a wire."""
     ground, settings = over
     place = span.at(np.array([at_m]))[0]
-    high, chance = float(place[2] - ground), chance_of(facts_of(span))
+    high = float(place[2] - ground)
     tests = (
         _at_least(_LONG, span.long_m, settings.shortest_m, "m"),
         _at_least(_HIGH, high, settings.lowest_m, "m"),
         _at_most(_NOISE, span.noise_m, MOST_OFF_M),
         _at_least(_SAG, span.sag_m, 0.0, "m"),
-        _at_least(_CHANCE, chance, least_confidence, ""),
+        _at_least(_CHANCE, *sure, ""),
     )
     # A short piece of a taut wire may seem to bulge; its likelihood weighs that.
     needed = (tests[0], tests[1], tests[2], tests[4])

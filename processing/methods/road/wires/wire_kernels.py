@@ -27,6 +27,9 @@ metre away, share a bin or lie in the next one. Bins along a side of a map, marg
 _OVERLAP = 1.15
 """Tangent up to which a direction counts in both maps, of the one axis and of the other."""
 
+_BESIDE_SEEDS = 8
+"""Points beside a line through which another one along it is looked for."""
+
 _SAME_WAY = 0.985
 """Cosine between the directions of two points of one line: 10°, what points 16 cm off by 3 cm
 leave open."""
@@ -296,7 +299,11 @@ def _on_line(
         off = square[one] - along * along
         on += off < core
         beside += (off > ring) & (off < free)
-    if on < limits.fewest or beside > limits.beside * on or on - beside <= most:
+    if on < limits.fewest or on <= most:
+        return 0
+    if beside > limits.beside * on:
+        beside -= _on_neighbours(offs, count, way, limits)
+    if beside > limits.beside * on or on - beside <= most:
         return 0
     low, high = 0.0, 0.0
     for one in range(count):
@@ -304,6 +311,62 @@ def _on_line(
         if square[one] - along * along < core:
             low, high = min(low, along), max(high, along)
     return on - beside if high - low >= limits.reach_m / 2 else 0
+
+
+@kernel
+def _on_neighbours(
+    offs: Floats, count: int, way: tuple[float, float, float], limits: LineLimits
+) -> int:
+    """How many of the points beside a line lie on two others along it: cables of one route."""
+    core, ring, free = limits.core_m**2, limits.ring_m**2, limits.free_m**2
+    beside = np.empty((4, count))
+    number = 0
+    for one in range(count):
+        along = offs[0, one] * way[0] + offs[1, one] * way[1] + offs[2, one] * way[2]
+        if ring < offs[3, one] - along * along < free:
+            beside[3, number] = along
+            for axis in range(3):
+                beside[axis, number] = offs[axis, one] - along * way[axis]
+            number += 1
+    total = 0
+    for _ in range(2):
+        best, home = _fullest_neighbour(beside, number, core, limits.reach_m / 2)
+        if best < limits.fewest:
+            break
+        total += best
+        of_home, left = beside[:, home].copy(), 0
+        for one in range(number):
+            if _square_between(beside[:, one], of_home) >= core:
+                beside[:, left] = beside[:, one]
+                left += 1
+        number = left
+    return total
+
+
+@kernel
+def _fullest_neighbour(
+    beside: Floats, number: int, core: float, least_long_m: float
+) -> tuple[int, int]:
+    """How many points lie on the line along the way that holds the most, and one of them."""
+    best, home = 0, 0
+    for seed in range(0, number, max(1, number // _BESIDE_SEEDS)):
+        on, low, high = 0, math.inf, -math.inf
+        for one in range(number):
+            if _square_between(beside[:, one], beside[:, seed]) < core:
+                on += 1
+                low, high = min(low, beside[3, one]), max(high, beside[3, one])
+        if on > best and high - low >= least_long_m:
+            best, home = on, seed
+    return best, home
+
+
+@kernel
+def _square_between(one: Floats, other: Floats) -> float:
+    """Of the distance between two places across a line."""
+    square = 0.0
+    for axis in range(3):
+        square += (one[axis] - other[axis]) ** 2
+    return square
 
 
 @kernel

@@ -19,6 +19,7 @@ from processing.core.worked_ahead import in_order
 from processing.methods.road.objects.drive_chunks import DriveChunk, chunks_of
 from processing.methods.road.objects.ground_heights import GROUND_CELLS
 from processing.methods.road.objects.sparse_plan import SparsePlan, cell_of
+from processing.methods.road.wires.solid_cells import SolidCells, solid_keys
 from processing.methods.road.wires.wire_kernels import (
     LineLimits,
     WireGrid,
@@ -81,6 +82,10 @@ class WirePoints:
         The same for points that lie on each other's lines.
     drives, points : (n,) int64
         Which of the drives each is of, and its number there.
+    solid : SolidCells
+        What is no thin thing, as high as they are.
+    thin : (m, 3) float64
+        All points in short runs, m about the plan's origin, those on lines among them.
     """
 
     local: Floats
@@ -88,6 +93,8 @@ class WirePoints:
     group: Integers
     drives: Integers
     points: Integers
+    solid: SolidCells
+    thin: Floats
 
 
 def wire_points(
@@ -108,19 +115,21 @@ def wire_points(
     """
     intervals = [pulse_interval(drive) for drive in drives]
 
-    def high_and_thin(chunk: DriveChunk) -> tuple[Floats, Integers, Integers]:
+    def high_and_thin(chunk: DriveChunk) -> tuple[Floats, Integers, Integers, Integers]:
         short = thin_points(drives[chunk.drive], intervals[chunk.drive], chunk.start, chunk.local)
-        short &= ~chunk.is_noise
-        high_kernel(chunk.local, plan.table, ground.reshape(-1), lowest_m, short)
-        kept = np.flatnonzero(short)
+        high = ~chunk.is_noise
+        high_kernel(chunk.local, plan.table, ground.reshape(-1), lowest_m, high)
+        kept = np.flatnonzero(short & high)
         drive = np.full(kept.size, chunk.drive, np.int64)
-        return chunk.local[kept], drive, chunk.start + kept
+        solid = solid_keys(chunk.local, high & ~short)
+        return chunk.local[kept], drive, chunk.start + kept, solid
 
     parts = list(in_order(high_and_thin, chunks_of(drives, plan.origin, monitor)))
     local = np.concatenate([np.empty((0, 3)), *(one[0] for one in parts)])
     which = np.concatenate([np.empty(0, np.int64), *(one[1] for one in parts)])
     numbers = np.concatenate([np.empty(0, np.int64), *(one[2] for one in parts)])
-    return points_on_lines(local, which, numbers, monitor)
+    solid = SolidCells([one[3] for one in parts])
+    return points_on_lines(local, which, numbers, solid, monitor)
 
 
 def thin_points(drive: Drive, interval_s: float, start: int, local: Floats) -> NDArray[np.bool_]:
@@ -154,7 +163,7 @@ def pulse_interval(drive: Drive) -> float:
 
 
 def points_on_lines(
-    local: Floats, which: Integers, numbers: Integers, monitor: Monitor
+    local: Floats, which: Integers, numbers: Integers, solid: SolidCells, monitor: Monitor
 ) -> WirePoints:
     """Those of points in short runs that lie on thin free lines, and on which together.
 
@@ -164,11 +173,14 @@ def points_on_lines(
         m about any origin.
     which, numbers : (n,) int64
         Of which drive each is, and its number there.
+    solid : SolidCells
+        What else is there.
     """
     monitor.check()
     order, _, starts, grid = _sorted(local)
     monitor.check()
     local, which, numbers = local[order], which[order], numbers[order]
+    thin = local
     crowded = np.zeros(len(local), np.bool_)
     for some in chunk_ranges(starts.size - 1, _CELLS_AT_ONCE):
         monitor.check()
@@ -192,7 +204,7 @@ def points_on_lines(
         monitor.check()
         groups_kernel(local, direction, cells, starts, grid, _LIMITS.core_m, some, group)
     firsts_kernel(group)
-    return WirePoints(local, direction, group, which[order], numbers[order])
+    return WirePoints(local, direction, group, which[order], numbers[order], solid, thin)
 
 
 def _directions(

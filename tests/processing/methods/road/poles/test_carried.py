@@ -129,3 +129,21 @@ def test_patches_of_leaves_are_rough_and_those_of_balls_too_small_for_mirrors() 
         patches_kernel(points, heads, np.array([middle]), np.zeros(2), told)
         states.append(told[0, STATE])
     assert states == [ROUGH, SMOOTH, BULGING, ROUGH]
+
+
+@pytest.mark.parametrize(
+    ("diameter_m", "top_m", "shines", "expected"),
+    [
+        (0.0605, 0.83, False, "bollard"),
+        (0.0605, 0.93, False, "delineator"),
+        (0.034, 0.8, False, "delineator"),
+        (0.08, 0.68, True, "delineator"),
+        (0.1143, 0.7, True, "bollard"),
+    ],
+)
+def test_a_reflector_tells_delineators_and_without_one_their_height(
+    diameter_m: float, top_m: float, *, shines: bool, expected: str
+) -> None:
+    shaft = _shaft(diameter_m, top_m)
+    assert asks_for_brightness(shaft)
+    assert type_of(shaft, carried_of(_about(NOTHING), shaft), is_reflecting=shines) == expected
