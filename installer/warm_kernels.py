@@ -140,8 +140,22 @@ def run_tool(tool: str, project: Path, folder: Path) -> None:
     _do("run", tool, copied)
 
 
-def run_tools_beside(tools: Sequence[str], processes: int) -> None:
-    """Run tools on the bundled street, each in one of several processes."""
+def fly(folder: Path) -> None:
+    """Simulate a small flight with waveforms, and find and classify its returns."""
+    _do("simulate", "flight", "--length", 40, "--seed", 1, "--out", folder / "flight")
+    flight = folder / "flight" / "in" / "flight.las"
+    for tool in ("waveform-decompose", "waveform-classify"):
+        _do("run", tool, flight, "--output", folder / f"{tool}.las")
+
+
+def run_tools_beside(tools: Sequence[str], processes: int, *, flying: bool = False) -> None:
+    """Run tools on the bundled street, each in one of several processes.
+
+    Parameters
+    ----------
+    flying : bool
+        Simulate a flight with waveforms as well, and run the tools of flights on it.
+    """
     fresh = multiprocessing.get_context("spawn")
     with (
         TemporaryDirectory(prefix="zuka-kernels-") as name,
@@ -149,7 +163,9 @@ def run_tools_beside(tools: Sequence[str], processes: int) -> None:
     ):
         folder = Path(name)
         project = pool.submit(import_street, folder).result()
-        for done in [pool.submit(run_tool, tool, project, folder) for tool in tools]:
+        running = [pool.submit(run_tool, tool, project, folder) for tool in tools]
+        running += [pool.submit(fly, folder)] if flying else []
+        for done in running:
             done.result()
 
 
@@ -179,7 +195,8 @@ def main() -> int:
     remove_stale_code(Path(__file__).resolve().parent.parent / "processing")
     folders = folders_of(importlib.import_module("processing"), without)
     warmed = warm_beside(folders, options.processes)
-    run_tools_beside(DEMO_TOOLS if options.demo else TOOLS, options.processes)
+    tools = DEMO_TOOLS if options.demo else TOOLS
+    run_tools_beside(tools, options.processes, flying=not options.demo)
     seconds = time.perf_counter() - start
     sys.stderr.write(f"zuka: kernels of {len(warmed)} modules are ready after {seconds:.0f} s\n")
     return 0
