@@ -1,23 +1,28 @@
 """Compiles every kernel once, so that no one waits for a compiler in the program.
 
 A module of ``processing`` that holds kernels may define ``warm_up()``, which runs them once on
-tiny arrays of the dtypes they get in earnest; numba keeps the machine code on disk. Any error
-ends the set-up: a kernel that does not compile here fails in the program too.
+tiny arrays of the dtypes they get in earnest; numba keeps the machine code on disk. Then every tool
+runs once on the bundled street, which compiles what no warm-up names. Any error ends the set-up: a
+kernel that does not compile here fails in the program too.
 """
 
 from __future__ import annotations
 
 import argparse
 import importlib
+import io
 import multiprocessing
 import os
 import pkgutil
+import shutil
 import sys
 import time
 from collections import defaultdict
 from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor
+from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from types import FunctionType, ModuleType
 
 WARM_UP = "warm_up"
@@ -28,6 +33,12 @@ LATER = (
     "processing.methods.templates",
 )
 """What the demo doesn't use; numba compiles a kernel at its first use where nobody did before."""
+
+DEMO_TOOLS = ("classify", "curbs", "gutters", "noise", "ground")
+"""What the demo runs; the slowest first, so that no process waits for another at the end."""
+
+TOOLS = (*DEMO_TOOLS, "wires", "signs", "trees", "markings", "segments", "normals")
+"""Tools with kernels that run on a drive as it is."""
 
 TRAINING = (
     "processing.laboratory.class_training.image_network",
@@ -114,6 +125,61 @@ def warm_beside(folders: Sequence[Sequence[str]], processes: int) -> tuple[str, 
         return tuple(name for names in done for name in names)
 
 
+def import_street(folder: Path) -> Path:
+    """Import one scanner of the bundled street; gives the project."""
+    from resources import path_of
+
+    street, project = path_of("sample_street"), folder / "street.zuka"
+    _do("import", project, street / "left.laz", "--trajectory", street / "trajectory.csv")
+    return project
+
+
+def run_tool(tool: str, project: Path, folder: Path) -> None:
+    """Run a tool on a copy of a project."""
+    copied = shutil.copytree(project, folder / f"{tool}.zuka")
+    _do("run", tool, copied)
+
+
+def fly(folder: Path) -> None:
+    """Simulate a small flight with waveforms, and find and classify its returns."""
+    _do("simulate", "flight", "--length", 40, "--seed", 1, "--out", folder / "flight")
+    flight = folder / "flight" / "in" / "flight.las"
+    for tool in ("waveform-decompose", "waveform-classify"):
+        _do("run", tool, flight, "--output", folder / f"{tool}.las")
+
+
+def run_tools_beside(tools: Sequence[str], processes: int, *, flying: bool = False) -> None:
+    """Run tools on the bundled street, each in one of several processes.
+
+    Parameters
+    ----------
+    flying : bool
+        Simulate a flight with waveforms as well, and run the tools of flights on it.
+    """
+    fresh = multiprocessing.get_context("spawn")
+    with (
+        TemporaryDirectory(prefix="zuka-kernels-") as name,
+        ProcessPoolExecutor(processes, mp_context=fresh) as pool,
+    ):
+        folder = Path(name)
+        project = pool.submit(import_street, folder).result()
+        running = [pool.submit(run_tool, tool, project, folder) for tool in tools]
+        running += [pool.submit(fly, folder)] if flying else []
+        for done in running:
+            done.result()
+
+
+def _do(*words: object) -> None:
+    from app.cli.terminal import run_in_terminal
+
+    said = io.StringIO()
+    with redirect_stdout(said), redirect_stderr(said):
+        status = run_in_terminal([str(word) for word in words])
+    if status != 0:
+        message = f"zuka {' '.join(map(str, words))} ended with {status}: {said.getvalue()}"
+        raise RuntimeError(message)
+
+
 def _fail(name: str) -> None:
     raise ImportError(f"{name} cannot be imported") from sys.exc_info()[1]
 
@@ -129,6 +195,8 @@ def main() -> int:
     remove_stale_code(Path(__file__).resolve().parent.parent / "processing")
     folders = folders_of(importlib.import_module("processing"), without)
     warmed = warm_beside(folders, options.processes)
+    tools = DEMO_TOOLS if options.demo else TOOLS
+    run_tools_beside(tools, options.processes, flying=not options.demo)
     seconds = time.perf_counter() - start
     sys.stderr.write(f"zuka: kernels of {len(warmed)} modules are ready after {seconds:.0f} s\n")
     return 0

@@ -15,6 +15,7 @@ from PySide6.QtCore import QByteArray, QSettings
 from app.layout.view_area import AreaLayout
 from app.settings.language import system_language
 from app.settings.theme import ThemeChoice
+from processing.core.stored_json import json_of
 from processing.core.text import Language
 from processing.image.search.corridor import CorridorExtent
 from widgets.parts.recent_project import RecentProject
@@ -189,7 +190,7 @@ class Settings:
         """A value that was kept as JSON; the usual one where that is of another version."""
         stored = str(self._store.value(name, ""))
         try:
-            return kind(**json.loads(stored)) if stored else kind()
+            return kind(**json_of(stored)) if stored else kind()
         except (ValueError, TypeError):
             return kind()
 

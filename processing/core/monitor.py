@@ -62,10 +62,10 @@ def parts_of(whole: Monitor, sizes: Iterable[float]) -> tuple[PartMonitor, ...]:
 class TerminalMonitor:
     """Writes progress to a stream: in place on a terminal, a line each 10 % elsewhere."""
 
-    def __init__(self, stream: TextIO = sys.stderr, language: Language = "en") -> None:
-        self._stream = stream
+    def __init__(self, stream: TextIO | None = None, language: Language = "en") -> None:
+        self._stream = sys.stderr if stream is None else stream
         self._language = language
-        self._in_place = stream.isatty()
+        self._in_place = self._stream.isatty()
         self._text = Text("", "")
         self._last_percent = -1
         self._last_time = 0.0

@@ -6,6 +6,7 @@ import re
 import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any, get_args
 
@@ -164,8 +165,9 @@ def _read_attributes(whole: _Table) -> dict[str, AttributeField]:
     if not isinstance(tables, dict):
         raise whole.not_allowed("attribute", tables, Text.same("[attribute.NAME]"))
     read = {}
+    headers = _headers(whole.lines)
     for name, values in tables.items():
-        header = _line_of_header(whole.lines, rf"attribute\s*\.\s*[\"']?{re.escape(name)}[\"']?")
+        header = _line_of_header(headers, rf"attribute\s*\.\s*[\"']?{re.escape(name)}[\"']?")
         if not isinstance(values, dict):
             raise whole.not_allowed("attribute", name, Text.same("[attribute.NAME]"))
         read[name] = _read_attribute(_Table(whole.path, whole.lines, values, header), name)
@@ -223,7 +225,7 @@ def _kind_tables(whole: _Table) -> list[_Table]:
     values = whole.values.get("kind", [])
     if not isinstance(values, list) or not all(isinstance(one, dict) for one in values):
         raise whole.not_allowed("kind", values, Text.same("[[kind]]"))
-    headers = _lines_of_headers(whole.lines, r"\[\s*kind\s*\]")
+    headers = _lines_of_headers(_headers(whole.lines), r"\[\s*kind\s*\]")
     # Kinds written as one inline array have no headers: the array's line stands for all.
     headers += [whole.line_of("kind")] * (len(values) - len(headers))
     tables = [
@@ -306,6 +308,7 @@ def _chosen_attributes(
     return chosen
 
 
+@cache
 def symbol_names() -> tuple[str, ...]:
     """The survey symbols that come with the program, by name."""
     return tuple(sorted(path.stem for path in path_of("symbols").glob("*.svg")))
@@ -334,13 +337,18 @@ def _not_toml(whole: _Table, error: ValueError | RecursionError) -> BadFile:
     )
 
 
-def _line_of_header(lines: list[str], name: str) -> int:
-    return next(iter(_lines_of_headers(lines, name)), 1)
+def _headers(lines: list[str]) -> list[tuple[int, str]]:
+    """The lines that open a table, numbered from 1."""
+    return [(number, line) for number, line in enumerate(lines, 1) if line.lstrip()[:1] == "["]
 
 
-def _lines_of_headers(lines: list[str], name: str) -> list[int]:
+def _line_of_header(headers: list[tuple[int, str]], name: str) -> int:
+    return next(iter(_lines_of_headers(headers, name)), 1)
+
+
+def _lines_of_headers(headers: list[tuple[int, str]], name: str) -> list[int]:
     header = re.compile(rf"\s*\[\s*{name}\s*\]")
-    return [number for number, line in enumerate(lines, 1) if header.match(line)]
+    return [number for number, line in headers if header.match(line)]
 
 
 def _opens(line: str, key: str) -> bool:

@@ -12,6 +12,7 @@ from typing import Any
 
 from processing.core.block_sums import refuse_damaged, write_with_sums
 from processing.core.errors import BadFile, report_as_user_error
+from processing.core.stored_json import json_of
 from processing.core.text import Text
 from processing.recording.columns.source_order import SourceRun
 
@@ -133,9 +134,9 @@ def read_drive_info(folder: Path) -> DriveInfo:
     path = folder / FILE_NAME
     refuse_damaged(path)
     with report_as_user_error(path):
-        text = path.read_text(encoding="utf-8")
+        text = path.read_bytes()
     try:
-        return _from_json(json.loads(text))
+        return _from_json(json_of(text))
     except (ValueError, TypeError, KeyError) as error:
         raise BadFile(
             Text(

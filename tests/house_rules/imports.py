@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from functools import cache
 from pathlib import PurePosixPath
 
-from tests.house_rules.sources import python_files, text_of
+from tests.house_rules.sources import python_files, text_of, tree_of
 
 Graph = Mapping[str, frozenset[str]]
 """What each file, or each folder, imports of the others."""
@@ -67,7 +67,7 @@ def importers(files: Graph) -> dict[str, list[str]]:
 
 
 def _imported(source: str, files: Mapping[str, str]) -> Iterator[str]:
-    for node in ast.walk(ast.parse(source)):
+    for node in ast.walk(tree_of(source)):
         if isinstance(node, ast.Import):
             modules = [(one.name, "") for one in node.names]
         elif isinstance(node, ast.ImportFrom) and node.module:

@@ -11,13 +11,17 @@ from importlib.metadata import packages_distributions
 from pathlib import PurePosixPath
 
 from tests.house_rules.imports import program
-from tests.house_rules.sources import PARTS, python_files, text_of, tracked
+from tests.house_rules.sources import PARTS, python_files, text_of, tracked, tree_of
 
 FORMER_WORDS = {
     *("wish", "wishes", "doubts", "tails", "trial", "trials", "darkroom", "pilot", "likings"),
     *("lay", "lays", "guides", "adopter"),
 }
 """Words of our own that standard terms replaced: request, diagnostics, orientation …"""
+_FORMER = re.compile(
+    rf"((?<![A-Za-z])({'|'.join(FORMER_WORDS)})|{'|'.join(w.capitalize() for w in FORMER_WORDS)})"
+    "(?![a-z])"
+)
 ALLOWED_PARTS = ("lay_out", "lay_stones", "what_lay_beside")  # the verb
 _TYPED = re.compile(r"^\s*\w[\w, ]* : (.*[^.\n])$", re.MULTILINE)
 _QUOTED = re.compile(r'"[^"]*"')
@@ -31,7 +35,9 @@ def drawers(names: Iterable[str]) -> list[str]:
 
 def former_words(source: str) -> list[str]:
     """Give the names of a source, of any kind, that hold a word which was replaced."""
-    names = {name for node in ast.walk(ast.parse(source)) for name in _names_in(node)}
+    if _FORMER.search(source) is None:  # most sources, and sooner than by their trees
+        return []
+    names = {name for node in ast.walk(tree_of(source)) for name in _names_in(node)}
     return sorted(name for name in names if _words_of(name) & FORMER_WORDS)
 
 
@@ -39,9 +45,7 @@ def documented_types(source: str) -> set[str]:
     """Give the classes that docstrings name as types of parameters and attributes."""
     nodes = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
     docs = [
-        ast.get_docstring(one) or ""
-        for one in ast.walk(ast.parse(source))
-        if isinstance(one, nodes)
+        ast.get_docstring(one) or "" for one in ast.walk(tree_of(source)) if isinstance(one, nodes)
     ]
     types = (said[1] for doc in docs for said in _TYPED.finditer(doc))
     words = (word for said in types for word in re.findall(r"\b[A-Z]\w+", _QUOTED.sub("", said)))
@@ -66,7 +70,7 @@ def public_classes(sources: Mapping[str, str]) -> dict[str, list[str]]:
     """Give the public classes that stand in several modules, with these."""
     found: dict[str, list[str]] = {}
     for path, source in sources.items():
-        for node in ast.parse(source).body:
+        for node in tree_of(source).body:
             if isinstance(node, ast.ClassDef) and not node.name.startswith("_"):
                 found.setdefault(node.name, []).append(path)
     return {name: paths for name, paths in found.items() if len(paths) > 1}
@@ -74,8 +78,8 @@ def public_classes(sources: Mapping[str, str]) -> dict[str, list[str]]:
 
 def is_front_matter_only(source: str) -> bool:
     """Tell whether a module holds nothing but its docstring."""
-    body = ast.parse(source).body
-    return len(body) == 1 and ast.get_docstring(ast.parse(source)) is not None
+    body = tree_of(source).body
+    return len(body) == 1 and ast.get_docstring(tree_of(source)) is not None
 
 
 def shared_names(distributions: Mapping[str, Iterable[str]]) -> dict[str, list[str]]:

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import ast
-
-from tests.house_rules.sources import functions_of, python_files, text_of
+from tests.house_rules.sources import function_sizes, python_files, text_of
 
 MOST_LINES = 600
 MOST_FUNCTION_LINES = 60
@@ -17,27 +15,22 @@ def too_long(source: str) -> bool:
 
 def long_functions(source: str) -> list[str]:
     return [
-        f"{function.name} (line {function.lineno}): {lines} lines"
-        for function in functions_of(source)
-        if (lines := (function.end_lineno or 0) - function.lineno + 1) > MOST_FUNCTION_LINES
+        f"{one.name} (line {one.line}): {one.lines} lines"
+        for one in function_sizes(source)
+        if one.lines > MOST_FUNCTION_LINES
     ]
 
 
 def wide_functions(source: str) -> list[str]:
-    """Name functions with too many positional parameters; ``self`` and ``cls`` are not counted."""
-    found = []
-    for function in functions_of(source):
-        names = [one.arg for one in (*function.args.posonlyargs, *function.args.args)]
-        count = len(names) - (names[:1] in (["self"], ["cls"]))
-        if count > MOST_POSITIONAL and not _is_kernel(function):
-            found.append(f"{function.name} (line {function.lineno}): {count} positional parameters")
-    return found
+    """Name functions with too many positional parameters.
 
-
-def _is_kernel(function: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
-    """Kernels take arrays one by one: numba knows no keyword-only parameters."""
-    words = {ast.unparse(decorator) for decorator in function.decorator_list}
-    return bool(words & {"kernel", "parallel_kernel"})
+    Kernels take arrays one by one: numba knows no keyword-only parameters.
+    """
+    return [
+        f"{one.name} (line {one.line}): {one.positional} positional parameters"
+        for one in function_sizes(source)
+        if one.positional > MOST_POSITIONAL and not one.decorators & {"kernel", "parallel_kernel"}
+    ]
 
 
 def test_no_file_is_longer_than_600_lines() -> None:

@@ -13,7 +13,17 @@ from typing_extensions import override
 
 from installer import commands
 from installer.environment import Environment
-from installer.warm_kernels import LATER, folders_of, remove_stale_code, warm, warm_beside
+from installer.warm_kernels import (
+    DEMO_TOOLS,
+    LATER,
+    TOOLS,
+    folders_of,
+    remove_stale_code,
+    run_tools_beside,
+    warm,
+    warm_beside,
+)
+from processing.tools.registry import tools_of_drives
 
 
 @pytest.fixture
@@ -168,3 +178,14 @@ def test_machine_code_that_is_older_than_its_source_is_removed(tmp_path: Path) -
 def test_what_the_demo_leaves_out_is_there() -> None:
     for name in LATER:
         assert importlib.util.find_spec(name) is not None
+
+
+def test_tools_run_on_the_bundled_street_and_one_that_fails_ends_the_set_up() -> None:
+    run_tools_beside(["curbs"], 1)
+    with pytest.raises(RuntimeError, match="no such tool|Tools"):
+        run_tools_beside(["nothing"], 1)
+
+
+def test_what_runs_at_set_up_are_tools() -> None:
+    assert set(TOOLS) <= tools_of_drives().keys()
+    assert set(DEMO_TOOLS) < set(TOOLS)

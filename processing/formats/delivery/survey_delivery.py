@@ -124,7 +124,13 @@ def _write_papers(
 ) -> None:
     work = _work(delivery, facts)
     points = checked_points(delivery)
-    check = check_map(delivery.every_feature, delivery.catalogue, monitor, crs=delivery.crs)
+    check = check_map(
+        delivery.every_feature,
+        delivery.catalogue,
+        monitor,
+        crs=delivery.crs,
+        drives={drive.id for drive in delivery.drives},
+    )
     quality = QualityFacts(
         check,
         delivery.catalogue,

@@ -16,7 +16,7 @@ from processing.formats.format import Content
 from processing.formats.points.point_files import read_chunks, read_info
 from processing.formats.points.text.text_numbers import TextPart, number_blocks
 from processing.formats.registry import FORMATS
-from processing.recording.columns.array_files import read_arrays
+from processing.recording.columns.array_files import map_array, read_arrays
 from processing.recording.columns.quantisation import Quantisation
 from processing.scoring.points.coded_points import CodedFile, CodedPoints
 
@@ -105,10 +105,9 @@ def _loaded_array(path: Path) -> Arrays:
 def _map_array(path: Path) -> NDArray[Any]:
     try:
         with report_as_user_error(path):
-            found: NDArray[Any] = np.load(path, mmap_mode="r", allow_pickle=False)
+            return map_array(path)
     except (ValueError, EOFError) as error:
         raise _make_damage_error(path) from error
-    return found
 
 
 def _loaded_arrays(path: Path) -> Arrays:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from processing.core.errors import BadFile
 from processing.core.japanese_text import read_text
+from processing.core.stored_json import json_of
 from processing.core.text import Text
 
 
@@ -27,8 +27,8 @@ def read_numbers(path: Path, needed: Sequence[str]) -> Mapping[str, float]:
     """
     text = read_text(path)
     try:
-        whole = json.loads(text)
-    except (ValueError, RecursionError) as error:
+        whole = json_of(text)
+    except ValueError as error:
         raise _no_object(path) from error
     if not isinstance(whole, dict):
         raise _no_object(path)

@@ -77,7 +77,7 @@ def _shapes(path: Path) -> tuple[NDArray[np.object_], str]:
             # Of GDAL, about what other programs left out of the file: what counts is what it reads.
             warnings.simplefilter("ignore", RuntimeWarning)
             facts, _, binary, _ = raw.read(path, columns=[])
-        shapes = shapely.from_wkb(binary)
+            shapes = shapely.from_wkb(binary)
     except (DataSourceError, DataLayerError, shapely.errors.GEOSException, ValueError) as error:
         raise BadFile(
             Text("The file can't be read.", "ファイルを読めません。"),

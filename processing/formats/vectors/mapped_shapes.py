@@ -139,7 +139,7 @@ def read_layers(path: Path, name: Text, *, encoding: str = "", layer: str = "") 
             for shape, *values in rows:
                 facts = dict(zip(reported["fields"], map(_plain, values), strict=True))
                 facts.setdefault("layer", layer or own)
-                features += _of_wkb(shape, facts, len(features) + 1)
+                features += _of_wkb(shape, facts, len(features) + 1, path)
     except (
         CRSError, DataLayerError, DataSourceError, FeatureError, UnicodeError,
         shapely.GEOSException,
@@ -188,15 +188,27 @@ def _plain(value: Any) -> object:
     return None if isinstance(plain, float) and np.isnan(plain) else plain
 
 
-def _of_wkb(shape: bytes | None, facts: dict[str, object], number: int) -> Iterator[MappedFeature]:
+def _of_wkb(
+    shape: bytes | None, facts: dict[str, object], number: int, path: Path
+) -> Iterator[MappedFeature]:
     import shapely
 
     if shape is None:
         return
-    for part in shapely.get_parts(shapely.from_wkb(shape)):
+    with np.errstate(invalid="ignore"):  # coordinates that are no numbers: told below
+        parts = shapely.get_parts(shapely.from_wkb(shape))
+    for part in parts:
         kind = _GEOPACKAGE_SHAPES.get(part.geom_type)
         if kind is None or part.is_empty:
             continue
         outline = part.exterior if kind == "area" else part
         xyz: Floats = shapely.get_coordinates(outline, include_z=True)
+        if not np.isfinite(xyz[:, :2]).all():
+            raise BadFile(
+                Text("A coordinate is no number.", "座標が数値ではありません。"),
+                Text("{path}, feature {number}", "{path}、地物{number}").filled(
+                    path=path, number=number
+                ),
+                _AGAIN,
+            )
         yield MappedFeature(number, kind, xyz[:-1] if kind == "area" else xyz, facts)

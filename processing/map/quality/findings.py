@@ -23,6 +23,7 @@ RuleId = Literal[
     "ledger_missing",
     "undecided",
     "unseen",
+    "drive_gone",
 ]
 
 
@@ -114,6 +115,14 @@ RULES: Mapping[RuleId, Rule] = {
         Text(
             "Look at it, and accept or reject it; it is handed in.",
             "目視で確認し、採用か却下してください。このままでも納品されます。",
+        ),
+        is_error=False,
+    ),
+    "drive_gone": Rule(
+        Text("Drawn on a drive that is no longer here", "削除・差替え済みの走行データ上の図形"),
+        Text(
+            "Compare it with the points that are here, and move or delete it if need be.",
+            "現在の点群と照合し、必要なら移動・削除してください。",
         ),
         is_error=False,
     ),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import chain, groupby
 
@@ -104,6 +104,7 @@ def check_map(
     monitor: Monitor | None = None,
     *,
     crs: str = "",
+    drives: Collection[str] | None = None,
 ) -> MapCheck:
     """Look a map through.
 
@@ -113,6 +114,9 @@ def check_map(
         All of them: accepted ones are checked, candidates and rejected ones are counted.
     crs : str
         ``EPSG:n``: in a plane rectangular system of Japan lines are looked at where sheets meet.
+    drives : collection of str, optional
+        Ids of the project's drives: what rests on points of another is told. None where the map
+        stands without its project.
 
     Raises
     ------
@@ -138,6 +142,7 @@ def check_map(
             _not_in_ledgers(accepted, kind),
             _undecided(members),
             _unseen(accepted),
+            () if drives is None else _on_other_drives(accepted, drives),
         )
         findings.extend(found)
     order = list(RULES)
@@ -186,6 +191,14 @@ def _unseen(features: Sequence[Feature]) -> Iterator[Finding]:
     for one in features:
         if one.provenance.unseen:
             yield Finding("unseen", (one.id,), one.kind, one.vertices[0].xyz)
+
+
+def _on_other_drives(features: Sequence[Feature], drives: Collection[str]) -> Iterator[Finding]:
+    for one in features:
+        for vertex in one.vertices:
+            if vertex.measured is not None and vertex.measured.drive not in drives:
+                yield Finding("drive_gone", (one.id,), one.kind, vertex.xyz)
+                break
 
 
 def _counted(kind: str, features: Sequence[Feature]) -> KindCount:

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from processing.core.errors import BadFile, Unsuitable, report_as_user_error
+from processing.core.stored_json import json_of
 from processing.core.text import Text
 from processing.methods.classes.class_models import ClassModels, shipped_models, shipped_version
 from processing.methods.classes.learning import Gain
@@ -117,7 +118,7 @@ def _read_table(folder: Path) -> dict[str, Any]:
     with report_as_user_error(path):
         content = path.read_bytes()
     try:
-        table = json.loads(content)
+        table = json_of(content)
         if not {"format", "shipped", "sum"} <= set(table):
             raise _damaged(path)
     except (ValueError, TypeError) as error:

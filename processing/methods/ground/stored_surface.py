@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 
 from processing.core.block_sums import refuse_damaged
 from processing.core.errors import BadFile, report_as_user_error
+from processing.core.stored_json import json_of
 from processing.core.text import Text
 from processing.methods.ground.filters.band import heights_at
 from processing.methods.ground.filters.cells import CellGrid
@@ -167,7 +168,7 @@ class StoredSurface:
             file.seek(at)
             text = file.read()
         try:
-            self._take(json.loads(text))
+            self._take(json_of(text))
         except (ValueError, TypeError, KeyError) as error:
             raise _damaged(path, at) from error
         if any(one.at + _BYTES_PER_CELL * one.rows * one.columns > at for one in self._positions):

@@ -22,6 +22,7 @@ from filelock import FileLock, Timeout
 import processing
 from processing.core.errors import report_as_user_error
 from processing.core.process_memory import memory_of_tree
+from processing.core.stored_json import json_of
 from processing.core.text import Text
 from processing.operations.batch.job import JobFile, job_of_order, order_of
 from processing.operations.batch.unit_state import (
@@ -195,7 +196,7 @@ class _Process:
                 last = self._lines.get_nowait()
         if not last:
             return before
-        said = json.loads(last)
+        said = json_of(last)
         text = Text(said["en"], said["ja"])
         return UnitProgress(float(said["fraction"]), text, before.held_bytes, before.peak_bytes)
 

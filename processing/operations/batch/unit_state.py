@@ -141,7 +141,7 @@ def read_state(folder: Path, name: str) -> UnitState:
     if not path.exists():
         return UnitState(name)
     with report_as_user_error(path):
-        text = path.read_text(encoding="utf-8")
+        text = path.read_text(encoding="utf-8", errors="replace")
     return value_from(UnitState, table_from_text(text, str(path)), str(path))
 
 
@@ -249,7 +249,7 @@ def write_progress(folder: Path, progress: UnitProgress) -> None:
 def read_progress(folder: Path) -> UnitProgress:
     """How far a drive said that it is; nothing where it said nothing readable."""
     try:
-        text = (folder / PROGRESS_FILE).read_text(encoding="utf-8")
+        text = (folder / PROGRESS_FILE).read_text(encoding="utf-8", errors="replace")
         return value_from(UnitProgress, table_from_text(text, PROGRESS_FILE))
     except (OSError, BadFile):
         return UnitProgress()

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any
 
 from processing.core.errors import report_as_user_error
+from processing.core.stored_json import json_of
 from processing.recording.columns.replacing import flush_folder, flush_names
 
 PLAN, JOURNAL, FINISHED = "plan.json", "journal.jsonl", "finished.json"
@@ -148,7 +149,7 @@ class ImportJournal:
         for line in lines:
             # The last line may be cut off by the kill.
             with suppress(ValueError, TypeError, AttributeError):
-                self._facts.update(json.loads(line))
+                self._facts.update(json_of(line))
         self._is_begun = bool(self._facts)
 
     def _start(self) -> None:

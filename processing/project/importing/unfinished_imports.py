@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Collection
 from contextlib import suppress
 from dataclasses import dataclass
@@ -17,6 +16,7 @@ from processing.core.owned_files import (
     remove_folder,
     remove_marked,
 )
+from processing.core.stored_json import json_of
 from processing.project.importing.import_journal import FINISHED, PLAN
 from processing.project.importing.import_request import (
     ImportRequest,
@@ -129,7 +129,7 @@ def _request_of(folder: Path) -> ImportRequest | None:
     """What is imported there, if the delivered files are still as they were."""
     try:
         text = (folder / PLAN).read_text(encoding="utf-8")
-        request, marks = request_from(json.loads(text))
+        request, marks = request_from(json_of(text))
         is_same = marks_of(request) == marks
     except (OSError, ValueError, TypeError, KeyError, UserError):
         return None
@@ -138,7 +138,7 @@ def _request_of(folder: Path) -> ImportRequest | None:
 
 def _finished_drives(folder: Path) -> tuple[str, ...]:
     try:
-        ids = json.loads((folder / FINISHED).read_text(encoding="utf-8"))
+        ids = json_of((folder / FINISHED).read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return ()
     return tuple(map(str, ids)) if isinstance(ids, list) else ()

@@ -7,6 +7,7 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+from processing.core.stored_json import json_of
 from processing.map.catalogue import Geometry
 from processing.map.change import Change, ListedDrive, Replacement, SystemChange
 from processing.map.feature import Feature, PointReference, Position, Provenance, Status, Vertex
@@ -63,10 +64,10 @@ def feature_of(row: tuple[Any, ...]) -> Feature:
         geometry=geometry,
         vertices=_vertices(
             positions,
-            {} if measured == "{}" else _mapping(json.loads(measured)),
-            [] if occluded == "[]" else json.loads(occluded),
+            {} if measured == "{}" else _mapping(json_of(measured)),
+            [] if occluded == "[]" else json_of(occluded),
         ),
-        attributes={} if attributes == "{}" else _mapping(json.loads(attributes)),
+        attributes={} if attributes == "{}" else _mapping(json_of(attributes)),
         status=Status(status),
         provenance=_provenance(provenance),
     )
@@ -101,7 +102,7 @@ def change_from_json(text: str, project: Path) -> Change:
     ValueError, KeyError, TypeError, IndexError
         The text is damaged.
     """
-    stored = json.loads(text)
+    stored = json_of(text)
     return Change(
         added=tuple(_from_plain(one) for one in stored["added"]),
         replaced=tuple(Replacement(_from_plain(b), _from_plain(a)) for b, a in stored["replaced"]),
@@ -171,7 +172,7 @@ def _plain_provenance(provenance: Provenance) -> dict[str, object]:
 @lru_cache(maxsize=4096)
 def _provenance(text: str) -> Provenance:
     """Candidates of a run share theirs; a value that nobody changes may be shared."""
-    return Provenance(**json.loads(text))
+    return Provenance(**json_of(text))
 
 
 def _references(vertices: tuple[Vertex, ...]) -> dict[str, list[int | None]]:

@@ -14,6 +14,7 @@ from filelock import FileLock, Timeout
 
 from processing.core.errors import InUse, NoSpace, report_as_user_error
 from processing.core.owned_files import new_file, refuse_link
+from processing.core.stored_json import json_of
 from processing.core.text import Text
 
 LOCK_FILES = ("lock", "lock-owner.json")
@@ -66,7 +67,7 @@ class ProjectLock:
 
     def _owner(self) -> Text:
         try:
-            owner = json.loads(self._owner_path.read_text(encoding="utf-8"))
+            owner = json_of(self._owner_path.read_text(encoding="utf-8"))
             return Text(
                 "on {host} by process {process} since {since}",
                 "{host}、プロセス {process}、{since} から",

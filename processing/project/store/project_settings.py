@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import sqlite3
 
+from processing.core.stored_json import json_of
 from processing.project.store.database import Database
 from processing.project.store.database_errors import damaged
 
@@ -25,7 +26,7 @@ class ProjectSettings:
         self._values: dict[str, JsonValue] = {}
         for key, value in database.rows("SELECT key, value FROM zuka_settings"):
             try:
-                self._values[str(key)] = json.loads(str(value))
+                self._values[str(key)] = json_of(str(value))
             except ValueError as error:
                 raise damaged(database.path, f"zuka_settings.{key}: {error}") from error
 

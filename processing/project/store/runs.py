@@ -10,6 +10,7 @@ from datetime import datetime
 from typing import Any
 from uuid import uuid4
 
+from processing.core.stored_json import json_of
 from processing.core.text import Text
 from processing.map.feature import AttributeValue
 from processing.project.store.database import Database
@@ -125,8 +126,8 @@ def _run_of(row: tuple[Any, ...]) -> Run:
         id=id_,
         tool=tool,
         version=int(version),
-        parameters=json.loads(parameters),
-        drives=tuple(json.loads(drives)),
+        parameters=json_of(parameters),
+        drives=tuple(json_of(drives)),
         started=datetime.fromisoformat(started),
         finished=datetime.fromisoformat(finished),
         summary=Text(en, ja),

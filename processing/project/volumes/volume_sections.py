@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from processing.core.errors import report_as_user_error
 from processing.methods.earthwork.sections.drawing_parts import DrawnSection, SectionedLine
 from processing.project.volumes.volume_facts import damaged
+from processing.recording.columns.array_files import read_arrays
 
 SectionSpans = tuple[tuple[float, float], ...]
 
@@ -53,12 +54,8 @@ def read_sections(path: Path) -> tuple[SectionedLine, SectionSpans]:
         The file is damaged.
     """
     try:
-        with (
-            report_as_user_error(path),
-            path.open("rb") as file,
-            np.load(file, allow_pickle=False) as stored,
-        ):
-            arrays = {name: stored[name] for name in stored.files}
+        with report_as_user_error(path):
+            arrays = read_arrays(path)
         return _line_of(arrays), tuple((cut, fill) for cut, fill in arrays["between"].tolist())
     except (ValueError, KeyError, IndexError, EOFError, BadZipFile) as error:
         raise damaged(path) from error

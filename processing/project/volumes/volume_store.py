@@ -18,6 +18,7 @@ import numpy as np
 
 from processing.core.errors import BadFile, MissingInput, UserError, report_as_user_error
 from processing.core.owned_files import is_link, make_marked, remove_folder
+from processing.core.stored_json import json_of
 from processing.methods.earthwork.maps.change_grid import ChangeGrid
 from processing.methods.earthwork.volumes.volume_result import VolumeResult
 from processing.methods.ground.filters.cells import CellGrid
@@ -30,6 +31,7 @@ from processing.project.volumes.volume_facts import (
     values_of,
 )
 from processing.project.volumes.volume_sections import read_sections, write_sections
+from processing.recording.columns.array_files import map_array
 
 VOLUMES = "results/volumes"
 """Folder of a project: a folder for each volume."""
@@ -152,7 +154,7 @@ def _flush(file: int) -> None:
 def _map_grid(path: Path, grid: CellGrid) -> Any:  # each array has its own dtype
     with report_as_user_error(path):
         try:
-            values = np.load(path, mmap_mode="r", allow_pickle=False)
+            values = map_array(path)
         except (ValueError, EOFError) as error:
             raise damaged(path) from error
     if values.shape != (grid.rows, grid.columns) or values.dtype != _ARRAYS[path.stem]:
@@ -165,7 +167,7 @@ def _read_facts(folder: Path) -> VolumeRecord:  # what JSON holds
     with report_as_user_error(path):
         text = path.read_bytes()
     try:
-        facts = json.loads(text)
+        facts = json_of(text)
     except ValueError as error:
         raise damaged(path) from error
     if not isinstance(facts, dict):

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from processing.core.block_sums import refuse_damaged, write_with_sums
 from processing.core.errors import BadFile, report_as_user_error
+from processing.core.stored_json import json_of
 from processing.core.text import Text
 from processing.recording.camera_images.image_list import CameraImage, ImageList
 
@@ -38,9 +39,9 @@ def read_images(folder: Path) -> ImageList | None:
         return None
     refuse_damaged(path)
     with report_as_user_error(path):
-        text = path.read_text(encoding="utf-8")
+        text = path.read_bytes()
     try:
-        noted = json.loads(text)
+        noted = json_of(text)
         images = tuple(
             CameraImage(
                 **{

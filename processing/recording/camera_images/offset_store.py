@@ -10,6 +10,7 @@ from pathlib import Path
 
 from processing.core.block_sums import refuse_damaged, write_with_sums
 from processing.core.errors import BadFile, report_as_user_error
+from processing.core.stored_json import json_of
 from processing.core.text import Text
 from processing.recording.camera_images.calibration import CameraOffset
 
@@ -49,7 +50,7 @@ def read_offsets(folder: Path) -> dict[str, CameraOffset]:
     with report_as_user_error(path):
         text = path.read_bytes()
     try:
-        noted = json.loads(text.decode("utf-8"))
+        noted = json_of(text)
         offsets = {
             str(camera): CameraOffset(**{name: _number(v) for name, v in values.items()})
             for camera, values in noted.items()

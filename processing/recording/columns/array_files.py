@@ -7,6 +7,7 @@ Python 3.11 counts the depth of what it parses for all threads together (python/
 from __future__ import annotations
 
 import struct
+import tokenize
 import zlib
 from collections.abc import Callable
 from pathlib import Path
@@ -17,7 +18,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 # What the parsers of headers and archives raise beside what they are documented to raise.
-_DAMAGE = (RuntimeError, MemoryError, SyntaxError, struct.error, zlib.error)
+_DAMAGE = (
+    ArithmeticError,
+    MemoryError,
+    RuntimeError,
+    SyntaxError,
+    TypeError,
+    struct.error,
+    tokenize.TokenError,
+    zlib.error,
+)
 
 _TRIES = 5
 _reading = Lock()
@@ -35,6 +45,22 @@ def read_array(path: Path) -> NDArray[Any]:
 
     def read() -> NDArray[Any]:
         found: NDArray[Any] = np.load(path, allow_pickle=False)
+        return found
+
+    return _try_reading(read)
+
+
+def map_array(path: Path) -> NDArray[Any]:
+    """The array of a ``.npy`` file, read where it is looked at.
+
+    Raises
+    ------
+    OSError, ValueError, EOFError
+        The file is missing or damaged.
+    """
+
+    def read() -> NDArray[Any]:
+        found: NDArray[Any] = np.load(path, mmap_mode="r", allow_pickle=False)
         return found
 
     return _try_reading(read)

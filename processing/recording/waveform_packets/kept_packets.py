@@ -17,6 +17,7 @@ from typing import Any
 
 from processing.core.errors import BadFile, report_as_user_error
 from processing.core.owned_files import new_file
+from processing.core.stored_json import json_of
 from processing.core.text import Text
 from processing.recording.waveform_packets.descriptors import PacketFile, WaveformDescriptor
 
@@ -56,9 +57,9 @@ def read_packet_files(folder: Path) -> tuple[PacketFile, ...]:
     if not path.is_file():
         return ()
     with report_as_user_error(path):
-        text = path.read_text(encoding="utf-8")
+        text = path.read_bytes()
     try:
-        return tuple(_file_from(one) for one in json.loads(text))
+        return tuple(_file_from(one) for one in json_of(text))
     except (ValueError, TypeError, KeyError, AttributeError) as error:
         raise BadFile(
             Text(

@@ -104,7 +104,13 @@ class QualityPanel(QWidget):
             return
         self._is_checking = True
         self._show_state()
-        check = partial(check_map, features, self._source.catalogue(), crs=self._source.crs())
+        check = partial(
+            check_map,
+            features,
+            self._source.catalogue(),
+            crs=self._source.crs(),
+            drives={drive.id for drive in self._source.drives()},
+        )
         self._in_background(check, self._take)
 
     def _new_table(self) -> QTableWidget:

@@ -38,7 +38,13 @@ def write_quality_map(delivery: MapDelivery, position: Position, monitor: Monito
     UserError
         What stands against writing; `Cancelled`.
     """
-    check = check_map(delivery.every_feature, delivery.catalogue, monitor, crs=delivery.crs)
+    check = check_map(
+        delivery.every_feature,
+        delivery.catalogue,
+        monitor,
+        crs=delivery.crs,
+        drives={drive.id for drive in delivery.drives},
+    )
     points = checked_points(delivery)
     software = f"Zuka {version('zuka')}"
     facts = QualityFacts(

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from processing.map.catalogue import Catalogue, Geometry
 from processing.map.catalogue_file import read_catalogue
-from processing.map.feature import Feature, Position, Provenance, Status, Vertex
+from processing.map.feature import Feature, PointReference, Position, Provenance, Status, Vertex
 from processing.map.quality.findings import Finding
 from processing.map.quality.map_check import check_map
 from processing.map.quality.repairs import repair
@@ -73,6 +73,17 @@ def test_a_clean_map_has_no_findings(catalogue: Catalogue) -> None:
     assert found.findings == ()
     assert found.errors == 0
     assert found.decided_share == 1.0
+
+
+def test_what_rests_on_a_drive_that_is_gone_is_told_once(catalogue: Catalogue) -> None:
+    places = _places((0, 0), (5, 0), (10, 0))
+    on = [replace(one, measured=PointReference("left", at)) for at, one in enumerate(places)]
+    line = Feature("l", "road_edge", Geometry.LINE, (on[0], places[1], on[2]))
+    free = _line((0, 9), (10, 9))
+    assert check_map([line, free], catalogue).findings == ()
+    assert check_map([line, free], catalogue, drives={"left"}).findings == ()
+    (finding,) = check_map([line, free], catalogue, drives={"right"}).findings
+    assert (finding.rule, finding.features, finding.position) == ("drive_gone", ("l",), on[0].xyz)
 
 
 def test_lines_that_cross_on_one_level_are_found_at_the_crossing(catalogue: Catalogue) -> None:
