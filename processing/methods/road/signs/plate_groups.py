@@ -217,7 +217,7 @@ def _joined(
         for other in sorted(near, key=order.index if len(order) < 50 else None):
             if taken[other] or not _are_one(whole, groups[other]):
                 continue
-            if _are_as_bright(pieces, (whole, groups[other]), is_bright):
+            if not _is_plate_on_wall(pieces, (whole, groups[other]), is_bright):
                 both = group_of(pieces.values, np.union1d(whole.pieces, groups[other].pieces))
                 if both is not None and both.noise_m <= _SAME_PLANE_M / 2:
                     whole, taken[other] = both, True
@@ -238,10 +238,13 @@ def _are_one(whole: PlateGroup, other: PlateGroup) -> bool:
     return bool((low <= whole.high + _BESIDE_M).all() and (high >= whole.low - _BESIDE_M).all())
 
 
-def _are_as_bright(
+def _is_plate_on_wall(
     pieces: ScanPieces, groups: tuple[PlateGroup, PlateGroup], is_bright: NDArray[np.bool_]
 ) -> bool:
-    """Whether groups of one plane don't differ seen from one side: a plate on a wall shines."""
+    """Whether, seen from one side, one group shines within the other one, which doesn't.
+
+    Parts of one face may lie beside each other, of which one is darker by its paint.
+    """
     for sign in (-1.0, 1.0):
         shares = []
         for group in groups:
@@ -250,8 +253,11 @@ def _are_as_bright(
             if mine.size:
                 shares.append(np.average(is_bright[mine], weights=pieces.values[mine, COUNT]) > 0.5)
         if len(set(shares)) > 1:
-            return False
-    return True
+            bright, dull = groups if shares[0] else groups[::-1]
+            corners = dull.flat(bright.xyz(np.array([bright.low, bright.high])))
+            if (corners >= dull.low).all() and (corners <= dull.high).all():
+                return True
+    return False
 
 
 class _PieceSearch:
