@@ -221,7 +221,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for scene in streets:
         sys.stderr.write(f"{scene.name}: {scene.points:,} points\n")
         table += [one.cells() for one in checked_street(scene)]
-    write_sections(options.markdown, {_HEADING: f"{_HEADING}\n{_ABOUT}\n{markdown_table(table)}"})
+    write_sections(options.markdown, {_HEADING: f"{_ABOUT}\n{markdown_table(table)}"})
     return 0
 
 
