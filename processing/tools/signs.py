@@ -16,10 +16,11 @@ from processing.core.text import Text
 from processing.methods.road.diagnostics import Diagnostic
 from processing.methods.road.requested_position import RequestedPosition
 from processing.methods.road.signs.asked_signs import asked_signs, is_near
+from processing.methods.road.signs.image_positions import sighted_positions
 from processing.methods.road.signs.initial_positions import (
     FARTHEST_M,
     InitialPosition,
-    MissedPositions,
+    SignPixel,
     misplaced,
     read_positions,
 )
@@ -56,9 +57,13 @@ class SignParameters:
         name=Text("Initial positions", "初期位置"),
         explanation=Text(
             "A CSV file of rough positions (easting_m, northing_m, and where known height_m, "
-            "shape, size_m): only these signs are measured. Without it all signs are looked for.",
-            "概略位置のCSVファイル（easting_m, northing_m、分かればheight_m, shape, size_m）。"
-            "指定すると、その標識だけを計測します。指定しない場合は全ての標識を探します。",
+            "shape, size_m), or of pixels of camera images (image, column_px, row_px; the same "
+            "sign for one in several images): only these signs are measured. Without it all "
+            "signs are looked for.",
+            "概略位置（easting_m, northing_m、分かればheight_m, shape, size_m）または"
+            "カメラ画像上の位置（image, column_px, row_px、複数の画像に写る標識はsignを共通にする）"
+            "のCSVファイル。指定すると、その標識だけを計測します。指定しない場合は全ての標識を"
+            "探します。",
         ),
         picture="sign/positions",
     )
@@ -98,9 +103,16 @@ def diagnose_signs(asked: RequestedPosition, parameters: SignParameters) -> tupl
 
 
 def _by_positions(
-    drives: Sequence[Drive], positions: Sequence[InitialPosition], monitor: Monitor
+    drives: Sequence[Drive],
+    given: Sequence[InitialPosition | SignPixel],
+    monitor: Monitor,
 ) -> CandidateResult:
     """The signs of given positions; those without one are named."""
+    sighted = sighted_positions(
+        [one for one in given if isinstance(one, SignPixel)], drives, monitor
+    )
+    positions = [one for one in given if isinstance(one, InitialPosition)]
+    positions += sighted.positions
     lowest = np.min([drive.info.lowest for drive in drives], axis=0)
     highest = np.max([drive.info.highest for drive in drives], axis=0)
     missed = misplaced(positions, lowest, highest)
@@ -113,7 +125,7 @@ def _by_positions(
     found = road_signs(drives, PartMonitor(monitor, 0.0, _FOUND), shapes_at)
     signs, without = asked_signs(found, here)
     nothing = tuple(one.line for one in without)
-    whole = MissedPositions(missed.outside, missed.swapped, missed.degrees, nothing)
+    whole = replace(missed, nothing=nothing, unknown=sighted.unknown, unmet=sighted.unmet)
     note = _joined(whole.note(), _unsure_facing(signs))
     return _with_pictures(signs, drives, note, PartMonitor(monitor, _FOUND, 1.0))
 

@@ -69,9 +69,10 @@ TABLES = {
     "trees": AccuracyTable("accuracy.road.trees", "trees"),
     "signs": AccuracyTable("accuracy.road.signs", "streets"),
     "poles": AccuracyTable("accuracy.road.poles", "streets"),
+    "ledgers": AccuracyTable("accuracy.ledgers", "streets"),
     "waveform-echoes": AccuracyTable("accuracy.waveform_echoes", "flights", takes_page=False),
     "waveform-estimates": AccuracyTable("accuracy.waveform_estimates", "flights", takes_page=False),
-    "labels": AccuracyTable("accuracy.road.labels_against_tools", "streets"),
+    "labels": AccuracyTable("accuracy.labels_against_tools", "streets"),
 }
 """By name, in the order in which they are made."""
 

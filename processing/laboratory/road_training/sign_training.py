@@ -60,6 +60,8 @@ EXPECTED = WeightPrior(
             unheld=-1.5,
             painted=-3.0,
             cut=-2.5,
+            averted=-2.5,
+            over_board=-4.0,
         ),
     ),
     (
@@ -84,6 +86,8 @@ EXPECTED = WeightPrior(
             unheld=1.0,
             painted=0.7,
             cut=0.7,
+            averted=1.0,
+            over_board=0.7,
         ),
     ),
 )

@@ -39,7 +39,11 @@ BACKS = tuple(
     for number, (shape, size) in enumerate(zip(SHAPES, SIZES, strict=True))
 )
 BESIDE = (known("square", 0.6, (26.0, Y - 0.33, 2.5)), known("square", 0.6, (26.0, Y + 0.33, 2.5)))
-PLATES = (LEAFY, *FRONTS, *BACKS, *BESIDE)
+ON_WALL = known("diamond", 0.6, (24.0, Y, 2.5))
+"""Its plate is 2 cm before the wall, so that all scan lines go on beyond its rim."""
+
+WALL = box((23.8, 4.0, 0.0), (23.98, 7.0, 4.0))
+PLATES = (LEAFY, *FRONTS, *BACKS, *BESIDE, ON_WALL)
 
 
 def leaves(plate: KnownPlate, *, seed: int = 3) -> list[TriangleShape]:
@@ -67,6 +71,7 @@ def drives(tmp_path_factory: pytest.TempPathFactory) -> tuple[Drive, ...]:
         *(post(one.middle[0] - 0.06, Y, 2.9) for one in (LEAFY, *FRONTS)),
         *(post(one.middle[0] + 0.06, Y, 2.9) for one in BACKS),
         post(25.94, Y, 2.85),
+        WALL,
         box((11.0, -6.1, 0.0), (20.0, -5.4, 1.83)),
     )
     request = delivered(
@@ -119,6 +124,10 @@ def test_plates_side_by_side_on_one_post_are_two(told: RunOutcome) -> None:
     for plate in BESIDE:
         check(told, plate)
         assert sign_at(told, plate).attributes["plates"] == 2
+
+
+def test_a_plate_on_a_wall_is_found_by_where_it_stops_shining(told: RunOutcome) -> None:
+    check(told, ON_WALL)
 
 
 def test_leaves_and_a_machine_are_no_signs(told: RunOutcome) -> None:

@@ -268,7 +268,11 @@ def assert_foot(row: dict[str, str], kind: str) -> None:
 
 def test_the_ledger_of_poles_is_true(told: RunOutcome, tmp_path: Path) -> None:
     told_rows = ledger_of(told, "pole", tmp_path / "ledger_pole.csv")
-    rows = {row["Kind of pole"]: row for row in told_rows}
+    types = read_catalogue(path_of("catalogue/level500.toml"))["pole"].attribute("type")
+    assert types is not None
+    ids = {types.name_of_choice(one).en: one for one in HEIGHTS_M}
+    assert all(" " in name or name.istitle() for name in ids), "names, not ids"
+    rows = {ids[row["Kind of pole"]]: row for row in told_rows}
     assert set(rows) == set(HEIGHTS_M) - {"mirror_pole"}
     for kind, row in rows.items():
         assert float(row["Height [m]"]) == pytest.approx(HEIGHTS_M[kind], abs=0.25)

@@ -133,3 +133,28 @@ def test_images_that_are_gone_are_counted_and_signs_stay(plain: tuple[Drive, ...
     assert len(result.candidates) == len(PLATES)
     assert all(one.picture is None for one in result.candidates)
     assert "can't be read: 1;" in result.note.en
+
+
+def test_pixels_of_images_give_their_signs_by_one_line_of_sight_or_by_two(
+    pictured: Drive, tmp_path: Path
+) -> None:
+    assert pictured.images is not None
+    images = pictured.images
+
+    def pixel(number: int, plate: KnownPlate, sign: str) -> str:
+        place = (plate.centroid + ORIGIN)[None]
+        column, line = Camera(images[number]).pixels_of(place)[0].tolist()
+        return f"{sign},C:\\photos\\{images[number].path.name},{column:.1f},{line:.1f},"
+
+    rows = ["sign,image,column_px,row_px,shape", pixel(0, CIRCLE, "a"), pixel(1, CIRCLE, "a")]
+    rows += [pixel(1, TRIANGLE, ""), ",9.png,800,600,", f",{images[0].path.name},800,2,"]
+    table = tmp_path / "pixels.csv"
+    table.write_text("\n".join(rows) + "\n", "utf-8")
+    request = RunRequest("signs", pictured, SignParameters(positions=str(table)))
+    result = run(request, SilentMonitor(), into=tmp_path / "c")
+    assert isinstance(result, CandidateResult)
+    assert len(result.candidates) == 2
+    for plate in (CIRCLE, TRIANGLE):
+        assert at_plate(result, plate).xyz[0] == pytest.approx(plate.centroid + ORIGIN, abs=0.03)
+    assert "name images that the drives don't have: 5" in result.note.en
+    assert "Nothing was measured where these lines look: 6" in result.note.en

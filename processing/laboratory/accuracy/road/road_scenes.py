@@ -259,17 +259,29 @@ def found_by(tool: str, drives: Sequence[Drive]) -> RoadRun:
     """
     features: list[MappedFeature] = []
     notes: list[str] = []
+    for result in results_of(tool, drives):
+        for one in result.candidates:
+            if not one.is_drawing:
+                features.append(map_candidate(one, len(features) + 1))
+        notes += [result.note.en] if result.note.en else []
+    return RoadRun(MappedFile(Path(f"{tool}.geojson"), _CRS, tuple(features)), (*notes,))
+
+
+def results_of(tool: str, drives: Sequence[Drive]) -> Iterator[CandidateResult]:
+    """What a tool finds with its own parameters, one result for each share of the drives.
+
+    Raises
+    ------
+    UserError
+        As the runner does.
+    """
     parameters = TOOLS[tool].parameters()
     with TemporaryDirectory(prefix="zuka-") as position:
         for share in run_shares(tool, drives, parameters, SilentMonitor()):
             into = Path(position) / share.drives[0].id
             result = run(share.request, share.monitor, into=into)
             if isinstance(result, CandidateResult):
-                for one in result.candidates:
-                    if not one.is_drawing:
-                        features.append(map_candidate(one, len(features) + 1))
-                notes += [result.note.en] if result.note.en else []
-    return RoadRun(MappedFile(Path(f"{tool}.geojson"), _CRS, tuple(features)), (*notes,))
+                yield result
 
 
 def map_candidate(candidate: Candidate, number: int) -> MappedFeature:

@@ -1,7 +1,7 @@
 """Where signs are said to be: a table of rough positions, measured in images or kept in a ledger.
 
 Takahashi 2022, 8.3: an initial position lies within some 2 m of its sign, and may come with the
-sign's shape and size.
+sign's shape and size. A table of pixels says instead where images show signs (`image_positions`).
 """
 
 from __future__ import annotations
@@ -26,7 +26,9 @@ own width."""
 
 _SHAPES = (*STANDARD_M, RECTANGLE)
 _LARGEST_BYTES = 16 << 20
-_NUMBERS = ("easting_m", "northing_m", "height_m", "size_m")
+_PLACE = ("easting_m", "northing_m")
+_PIXEL = ("image", "column_px", "row_px")
+_NUMBERS = (*_PLACE, "height_m", "size_m")
 _MOST_NAMED = 8
 """Rows that a note names; the others are counted."""
 
@@ -57,8 +59,37 @@ class InitialPosition:
     size_m: float = math.nan
 
 
-def read_positions(path: Path) -> tuple[InitialPosition, ...]:
-    """The rows of a CSV file.
+@dataclass(frozen=True)
+class SignPixel:
+    """A row of a table of pixels.
+
+    Attributes
+    ----------
+    line : int
+        Of the file, from 1.
+    image : str
+        Name of the image's file.
+    column_px, row_px : float
+        Of the plate's middle.
+    sign : str
+        What other rows call the same sign; empty where it is in this row alone.
+    shape : str
+        Empty where it isn't known.
+    size_m : float
+        NaN where it isn't known.
+    """
+
+    line: int
+    image: str
+    column_px: float
+    row_px: float
+    sign: str = ""
+    shape: str = ""
+    size_m: float = math.nan
+
+
+def read_positions(path: Path) -> tuple[InitialPosition | SignPixel, ...]:
+    """The rows of a CSV file: all of positions, or all of pixels.
 
     Raises
     ------
@@ -75,12 +106,15 @@ def read_positions(path: Path) -> tuple[InitialPosition, ...]:
     lines = read_lines(path)
     rows = [(number, row) for number, row in enumerate(csv.reader(lines), 1) if any(row)]
     names = [one.strip().lower() for one in rows[0][1]] if rows else []
-    if "easting_m" not in names or "northing_m" not in names:
+    if {*_PIXEL} <= {*names}:
+        return tuple(_pixel(path, number, names, row) for number, row in rows[1:])
+    if not {*_PLACE} <= {*names}:
         raise _bad(
             path,
             Text(
-                "The header line must name easting_m and northing_m.",
-                "見出し行にeasting_mとnorthing_mの列が必要です。",
+                "The header line must name easting_m and northing_m, or image, column_px and "
+                "row_px.",
+                "見出し行にeasting_mとnorthing_m、またはimageとcolumn_pxとrow_pxの列が必要です。",
             ),
             1,
         )
@@ -89,15 +123,48 @@ def read_positions(path: Path) -> tuple[InitialPosition, ...]:
 
 def _position(path: Path, line: int, names: list[str], row: list[str]) -> InitialPosition:
     cells = {name: cell.strip() for name, cell in zip(names, row, strict=False)}
+    numbers = _numbers(path, line, cells, _NUMBERS, needed=_PLACE)
+    return InitialPosition(
+        line,
+        numbers["easting_m"],
+        numbers["northing_m"],
+        numbers["height_m"],
+        _shape(path, line, cells),
+        numbers["size_m"],
+    )
+
+
+def _pixel(path: Path, line: int, names: list[str], row: list[str]) -> SignPixel:
+    cells = {name: cell.strip() for name, cell in zip(names, row, strict=False)}
+    needed = _PIXEL[1:]
+    numbers = _numbers(path, line, cells, (*needed, "size_m"), needed=needed)
+    # A list made on another machine may name images with their folders, in either way of writing.
+    image = cells.get("image", "").replace("\\", "/").rpartition("/")[2]
+    if not image:
+        raise _bad(path, Text("No image is named.", "画像名がありません。"), line)
+    return SignPixel(
+        line,
+        image,
+        numbers["column_px"],
+        numbers["row_px"],
+        cells.get("sign", ""),
+        _shape(path, line, cells),
+        numbers["size_m"],
+    )
+
+
+def _numbers(
+    path: Path, line: int, cells: dict[str, str], names: Sequence[str], *, needed: Sequence[str]
+) -> dict[str, float]:
+    """The numbers of a row by name; NaN where a cell is empty that may be."""
     numbers: dict[str, float] = {}
-    for name in _NUMBERS:
+    for name in names:
         text = cells.get(name, "")
         try:
             numbers[name] = float(text) if text else math.nan
         except ValueError:
             numbers[name] = math.inf
-        is_needed = name in _NUMBERS[:2]
-        if math.isinf(numbers[name]) or (is_needed and math.isnan(numbers[name])):
+        if math.isinf(numbers[name]) or (name in needed and math.isnan(numbers[name])):
             raise _bad(
                 path,
                 Text(
@@ -105,6 +172,10 @@ def _position(path: Path, line: int, names: list[str], row: list[str]) -> Initia
                 ).filled(name=name, text=text[:40]),
                 line,
             )
+    return numbers
+
+
+def _shape(path: Path, line: int, cells: dict[str, str]) -> str:
     shape = cells.get("shape", "").lower()
     if shape and shape not in _SHAPES:
         raise _bad(
@@ -114,14 +185,7 @@ def _position(path: Path, line: int, names: list[str], row: list[str]) -> Initia
             ).filled(shape=shape[:40]),
             line,
         )
-    return InitialPosition(
-        line,
-        numbers["easting_m"],
-        numbers["northing_m"],
-        numbers["height_m"],
-        shape,
-        numbers["size_m"],
-    )
+    return shape
 
 
 def _bad(path: Path, what: Text, line: int) -> BadFile:
@@ -138,12 +202,16 @@ class MissedPositions:
     outside, swapped, degrees, nothing : tuple of int
         Lines of the file: outside of the points; inside them if easting and northing are swapped;
         longitude and latitude; where nothing like a plate was measured.
+    unknown, unmet : tuple of int
+        Of pixels: of an image that isn't there; whose line of sight meets nothing.
     """
 
     outside: tuple[int, ...] = ()
     swapped: tuple[int, ...] = ()
     degrees: tuple[int, ...] = ()
     nothing: tuple[int, ...] = ()
+    unknown: tuple[int, ...] = ()
+    unmet: tuple[int, ...] = ()
 
     def note(self) -> Text:
         """Sentences that name them; empty where all were found."""
@@ -154,6 +222,8 @@ class MissedPositions:
                 (self.swapped, _SWAPPED),
                 (self.outside, _OUTSIDE),
                 (self.nothing, _NOTHING),
+                (self.unknown, _UNKNOWN),
+                (self.unmet, _UNMET),
             )
             if lines
         ]
@@ -175,6 +245,16 @@ _OUTSIDE = Text(
 _NOTHING = Text(
     "No plate was measured near these lines: {lines}.",
     "次の行の付近には、標識板とみなせるものが計測されていません: {lines}。",
+)
+
+
+_UNKNOWN = Text(
+    "These lines name images that the drives don't have: {lines}.",
+    "次の行の画像は走行データにありません: {lines}。",
+)
+_UNMET = Text(
+    "Nothing was measured where these lines look: {lines}.",
+    "次の行の画素の方向には、計測された点がありません: {lines}。",
 )
 
 

@@ -50,6 +50,12 @@ _FAR_M = 0.25
 less deep (サッシ: 10 to 20 cm)."""
 
 
+_SYMBOL_M, _DULL_BEYOND, _MOST_BEYOND = 0.25, 3, 100
+"""Beyond a bright piece so far nothing shines and so many pulses, of at most so many, met dull
+things: the rim of a plate on a wall or a pole. Dark symbols on a face are smaller (標識令,
+別表第二), and it shines again behind them."""
+
+
 class PieceLimits(NamedTuple):
     """What is followed.
 
@@ -368,6 +374,10 @@ def _keep(
     behind = _beyond(chunk, points, 1, long_m, limits)
     middle = points[count // 2]
     piece[COUNT], piece[BRIGHTS] = count, bright
+    if is_bright and before == GOES_ON and _is_dull_beyond(chunk, kinds, points, -1, long_m):
+        before = STEP
+    if is_bright and behind == GOES_ON and _is_dull_beyond(chunk, kinds, points, 1, long_m):
+        behind = STEP
     piece[BEFORE], piece[BEHIND] = before, behind
     piece[FIRST], piece[LAST] = points[0], points[count - 1]
     pulses = chunk.pulses[points[count - 1]] - chunk.pulses[points[0]]
@@ -457,6 +467,25 @@ def _beyond(
             break
         point += way
     return found
+
+
+@kernel
+def _is_dull_beyond(
+    chunk: ChunkPoints, kinds: NDArray[np.uint8], points: Integers, way: int, long_m: float
+) -> bool:
+    """Whether nothing shines for some way beyond the end of a bright piece, and dull things do."""
+    end = points[len(points) - 1] if way > 0 else points[0]
+    other = points[0] if way > 0 else points[len(points) - 1]
+    step = long_m / max(1, abs(chunk.pulses[end] - chunk.pulses[other]))
+    farthest = min(int(_SYMBOL_M / max(step, 1e-3)) + 1, _MOST_BEYOND)
+    dull = 0
+    point = end + way
+    while 0 <= point < len(kinds) and abs(chunk.pulses[point] - chunk.pulses[end]) <= farthest:
+        if kinds[point] == BRIGHT:
+            return False
+        dull += kinds[point] == DULL
+        point += way
+    return dull >= _DULL_BEYOND
 
 
 def warm_up() -> None:

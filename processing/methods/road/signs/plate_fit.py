@@ -78,6 +78,10 @@ _CENTRED_M = 0.06
 """How far below a plate another one belongs to it, and how far beside its middle: clamps of one
 post hold them a few centimetres apart."""
 
+_BOARD_HIGH = 1.2
+"""A board below another plate over that plate's height: those of bus stops hold a timetable, plates
+below signs are lower than the sign."""
+
 _BELOW_WIDE_M, _BELOW_HIGH_M = (0.4, 0.6), 0.2
 """Usual widths and a height to begin with of what hangs below (標識令, 補助標識)."""
 
@@ -89,6 +93,10 @@ _SNAP_COST = 3.0
 _USUAL_M = 0.1
 """Sides of rectangles are whole decimetres (標識令: 40 and 60 cm below signs, guide signs by
 letters of 10 cm)."""
+
+_LEAST_PART_M, _LEVEL_M, _FEW_CROSS = 0.1, 0.01, 0.1
+"""Of a stack of plates: the smallest part, and where it is cut: at the level that the fewest lines
+cross, a tenth of those that cross the fullest one at most."""
 
 _MOST_EMPTY = 60
 """Places without a plate that are looked at: all lines of a large plate have two each."""
@@ -272,12 +280,20 @@ def _prior(plate: FittedPlate, above: tuple[FittedPlate, ...]) -> float:
 
 def hangs_below(plate: FittedPlate, upper: FittedPlate) -> bool:
     """Whether a rectangle that is no larger hangs right below another plate."""
+    return _is_right_below(plate, upper) and plate.shape.high_m < upper.shape.high_m
+
+
+def is_board_below(plate: FittedPlate, upper: FittedPlate) -> bool:
+    """Whether a rectangle that is no wider but higher hangs right below another plate."""
+    return _is_right_below(plate, upper) and plate.shape.high_m > _BOARD_HIGH * upper.shape.high_m
+
+
+def _is_right_below(plate: FittedPlate, upper: FittedPlate) -> bool:
     gap = (upper.pose[1] - upper.shape.high_m / 2) - (plate.pose[1] + plate.shape.high_m / 2)
     return bool(
         plate.shape.shape == RECTANGLE
         and _BELOW_M[0] <= gap <= _BELOW_M[1]
         and abs(plate.pose[0] - upper.pose[0]) <= _CENTRED_M
-        and plate.shape.high_m < upper.shape.high_m
         and plate.shape.wide_m <= upper.shape.wide_m + _CENTRED_M
     )
 
@@ -292,10 +308,7 @@ def _unexplained(lines: Floats) -> float:
 
 def _best_fits(lines: Floats, empty: Floats, outlines: _Outlines) -> list[tuple[SignShape, Floats]]:
     """Shapes with their places, the best first."""
-    ends = np.concatenate(
-        [lines[:, [U, V]], lines[:, [U, V]] + lines[:, [LONG]] * lines[:, [ALONG_U, ALONG_V]]]
-    )
-    box = np.array([ends.min(axis=0), ends.max(axis=0)])
+    box = _box_of(lines)
     every = np.concatenate([lines, empty])
     slack = 2 * (0.06 + _spacing_across(lines))
     is_small = (outlines.sizes <= box[1] - box[0] + slack).all(axis=1)
@@ -356,13 +369,53 @@ def _rectangles(lines: Floats, every: Floats, box: Floats) -> list[tuple[float, 
     clean = sorted(coarse, key=lambda one: one[3])[:_RECTANGLES]
     chosen = coarse[:_RECTANGLES]
     chosen += [one for one in clean if all(one is not other for other in chosen)]
-    found = []
-    for _, pose, sides, _ in chosen:
-        cost = stretch_kernel(every, _STRETCH, pose, sides, np.zeros(2))
-        cost, pose, sides = _snapped(every, cost, pose, sides)
-        shape = SignShape(RECTANGLE, float(sides[0]), float(sides[1]))
-        found.append((cost + _RECTANGLE_COST, shape, pose))
+    found = [_finely(every, pose, sides) for _, pose, sides, _ in chosen]
+    empty = every[len(lines) :]
+    for part in _parts_beside_gaps(lines):
+        low, high = _box_of(part)
+        own, pose = np.concatenate([part, empty]), np.array([*(low + high) / 2, 0.0])
+        sides = np.maximum(high - low, 0.08)
+        stretch_kernel(own, _STRETCH_COARSE, pose, sides, np.zeros(2))
+        found.append(_finely(own, pose, sides))
     return found
+
+
+def _finely(every: Floats, pose: Floats, sides: Floats) -> tuple[float, SignShape, Floats]:
+    """A rectangle where it fits to the millimetre, with what it costs."""
+    cost = stretch_kernel(every, _STRETCH, pose, sides, np.zeros(2))
+    cost, pose, sides = _snapped(every, cost, pose, sides)
+    return cost + _RECTANGLE_COST, SignShape(RECTANGLE, float(sides[0]), float(sides[1])), pose
+
+
+def _parts_beside_gaps(lines: Floats) -> list[Floats]:
+    """The lines on either side of strips that hardly any line crosses, level or upright.
+
+    Plates of a stack are each laid on their own lines: beside those of the others a rectangle that
+    holds the whole stack explains more.
+    """
+    starts = lines[:, [U, V]]
+    ends = starts + lines[:, [LONG]] * lines[:, [ALONG_U, ALONG_V]]
+    low, high = np.minimum(starts, ends), np.maximum(starts, ends)
+    found: list[Floats] = []
+    for axis in range(2):
+        first, last = float(low[:, axis].min()), float(high[:, axis].max())
+        levels = np.arange(first + _LEAST_PART_M, last - _LEAST_PART_M, _LEVEL_M)
+        is_on = (low[:, axis, None] <= levels) & (high[:, axis, None] >= levels)
+        crossed = is_on.sum(axis=0)
+        if not levels.size or crossed.min() > _FEW_CROSS * crossed.max():
+            continue
+        gap = np.flatnonzero(crossed == crossed.min())
+        is_below = (low + high)[:, axis] / 2 < levels[gap[gap.size // 2]]
+        if 2 <= is_below.sum() <= len(lines) - 2:
+            found += [lines[is_below], lines[~is_below]]
+    return found
+
+
+def _box_of(lines: Floats) -> Floats:
+    """(2, 2) lowest and highest place of their ends."""
+    starts = lines[:, [U, V]]
+    ends = np.concatenate([starts, starts + lines[:, [LONG]] * lines[:, [ALONG_U, ALONG_V]]])
+    return np.array([ends.min(axis=0), ends.max(axis=0)])
 
 
 def _own_cost(lines: Floats, pose: Floats, sides: Floats) -> float:

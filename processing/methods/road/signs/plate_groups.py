@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from processing.core.arrays import Floats, Integers
@@ -129,7 +130,7 @@ def plate_groups(pieces: ScanPieces, reaches: Floats, monitor: Monitor) -> list[
                 groups += _planes(pieces, members)
     search = _PieceSearch(pieces)
     found: list[PlateGroup] = []
-    for joined in _joined(pieces, groups):
+    for joined in _joined(pieces, groups, is_bright):
         monitor.check()
         one = search.completed(joined)
         if is_bright[one.pieces].any() or _may_be_dull(pieces, one):
@@ -196,7 +197,9 @@ def group_of(values: Floats, members: Integers) -> PlateGroup | None:
     )
 
 
-def _joined(pieces: ScanPieces, groups: list[PlateGroup]) -> list[PlateGroup]:
+def _joined(
+    pieces: ScanPieces, groups: list[PlateGroup], is_bright: NDArray[np.bool_]
+) -> list[PlateGroup]:
     """Groups of one plate as one, those that have the most points first."""
     if len(groups) < 2:
         return groups
@@ -212,7 +215,9 @@ def _joined(pieces: ScanPieces, groups: list[PlateGroup]) -> list[PlateGroup]:
         whole = groups[first]
         near = tree.query_ball_point(whole.middle, float(np.hypot(*(whole.high - whole.low))) + 1)
         for other in sorted(near, key=order.index if len(order) < 50 else None):
-            if not taken[other] and _are_one(whole, groups[other]):
+            if taken[other] or not _are_one(whole, groups[other]):
+                continue
+            if not _is_plate_on_wall(pieces, (whole, groups[other]), is_bright):
                 both = group_of(pieces.values, np.union1d(whole.pieces, groups[other].pieces))
                 if both is not None and both.noise_m <= _SAME_PLANE_M / 2:
                     whole, taken[other] = both, True
@@ -231,6 +236,28 @@ def _are_one(whole: PlateGroup, other: PlateGroup) -> bool:
     flat = whole.flat(corners)
     low, high = flat.min(axis=0), flat.max(axis=0)
     return bool((low <= whole.high + _BESIDE_M).all() and (high >= whole.low - _BESIDE_M).all())
+
+
+def _is_plate_on_wall(
+    pieces: ScanPieces, groups: tuple[PlateGroup, PlateGroup], is_bright: NDArray[np.bool_]
+) -> bool:
+    """Whether, seen from one side, one group shines within the other one, which doesn't.
+
+    Parts of one face may lie beside each other, of which one is darker by its paint.
+    """
+    for sign in (-1.0, 1.0):
+        shares = []
+        for group in groups:
+            towards = sign * (pieces.values[group.pieces, VIEW : VIEW + 3] @ groups[0].normal)
+            mine = group.pieces[towards > 0]
+            if mine.size:
+                shares.append(np.average(is_bright[mine], weights=pieces.values[mine, COUNT]) > 0.5)
+        if len(set(shares)) > 1:
+            bright, dull = groups if shares[0] else groups[::-1]
+            corners = dull.flat(bright.xyz(np.array([bright.low, bright.high])))
+            if (corners >= dull.low).all() and (corners <= dull.high).all():
+                return True
+    return False
 
 
 class _PieceSearch:

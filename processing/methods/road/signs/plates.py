@@ -26,7 +26,7 @@ from processing.methods.road.signs.piece_kernels import (
     HIDDEN,
     NOISE,
 )
-from processing.methods.road.signs.plate_fit import Fit, FittedPlate, hangs_below
+from processing.methods.road.signs.plate_fit import Fit, FittedPlate, hangs_below, is_board_below
 from processing.methods.road.signs.plate_groups import PlateGroup, group_of
 from processing.methods.road.signs.plate_sides import sides_of
 from processing.methods.road.signs.scan_pieces import ScanPieces
@@ -80,6 +80,8 @@ class PlateEvidence(NamedTuple):
     cut : float
         Share of its points of drives that begin or end on it: it may go on where nothing was
         measured.
+    over_board : bool
+        Whether a board that is higher than it hangs right below it, as at bus stops.
     """
 
     bright: float
@@ -98,6 +100,7 @@ class PlateEvidence(NamedTuple):
     both_seen: bool
     shine: float
     cut: float
+    over_board: bool
 
 
 @dataclass(frozen=True)
@@ -203,6 +206,7 @@ def _plate(
         both_seen=sides.both_seen,
         shine=sides.shine,
         cut=_cut(pieces, members),
+        over_board=any(is_board_below(one, fitted) for one in fit.plates),
     )
     return Plate(fitted.shape, xyz[0], xyz[1:], sides.facing, evidence, upper, members)
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from processing.laboratory.accuracy.road.labels_against_tools import (
+from processing.laboratory.accuracy.labels_against_tools import (
     LabelledStreet,
     corrections_of,
     features_of_labels,

@@ -27,6 +27,7 @@ EVIDENCE = PlateEvidence(
     both_seen=True,
     shine=9.0,
     cut=0.0,
+    over_board=False,
 )
 LIKELY = 0.1
 

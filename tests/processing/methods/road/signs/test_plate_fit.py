@@ -16,7 +16,7 @@ from processing.methods.road.signs.fit_kernels import (
     cost_of,
     fit_kernel,
 )
-from processing.methods.road.signs.plate_fit import Fit, fit_plates, hangs_below
+from processing.methods.road.signs.plate_fit import Fit, fit_plates, hangs_below, is_board_below
 from processing.methods.road.signs.sign_shapes import (
     RECTANGLE,
     SignShape,
@@ -90,6 +90,37 @@ def test_plates_side_by_side_and_below_are_told_apart() -> None:
     assert upper.shape == circle
     assert hangs_below(lower, upper)
     assert lower.shape.size_m == pytest.approx(0.4)
+
+
+def test_a_disc_over_a_board_of_its_width_is_told_from_it_through_the_post_before_both() -> None:
+    disc, board = shape_of("circle", 0.4), SignShape(RECTANGLE, 0.4, 0.85)
+    stack = np.concatenate([lines_on(disc, (0.0, 0.68)), lines_on(board, (0.0, 0.0))])
+    lower, upper = sorted(fitted(without_strip(stack)).plates, key=lambda one: one.pose[1])
+    assert upper.shape == disc
+    assert lower.shape.high_m == pytest.approx(0.85, abs=0.03)
+    assert is_board_below(lower, upper)
+    assert not is_board_below(upper, lower)
+
+
+def without_strip(lines: Floats) -> Floats:
+    """Lines without what an upright post of 8 cm hides."""
+    found = []
+    for line in lines:
+        to_strip = (np.array([-0.04, 0.04]) - line[0]) / line[2]
+        for start, stop, hidden in (
+            (0.0, to_strip[0], OPEN_END),
+            (to_strip[1], line[4], OPEN_START),
+        ):
+            part = line.copy()
+            first, last = max(start, 0.0), min(stop, line[4])
+            if last - first < SPACING_M:
+                continue
+            part[:2] += first * part[2:4]
+            part[4] = last - first
+            if (last < line[4]) if hidden == OPEN_END else (first > 0.0):
+                part[hidden] = 0.0
+            found.append(part)
+    return np.array(found)
 
 
 def test_kernels_say_the_same_as_plain_functions() -> None:

@@ -7,6 +7,7 @@ import math
 import numpy as np
 import pytest
 
+from processing.core.arrays import Floats
 from processing.methods.road.signs.plates import Plate, PlateEvidence
 from processing.methods.road.signs.sign_confidence import chance_of, facts_of
 from processing.methods.road.signs.sign_shapes import shape_of
@@ -28,11 +29,15 @@ BACK = PlateEvidence(
     both_seen=False,
     shine=-0.5,
     cut=0.0,
+    over_board=False,
 )
 """Of a plate of which the metal back alone was seen, and of its rim a part."""
 
 
-def chance(evidence: PlateEvidence) -> float:
+ALONG = np.array([0.0, 1.0])
+
+
+def chance(evidence: PlateEvidence, way: Floats = ALONG) -> float:
     outline = np.array([[0.3, 0.0, 2.3], [-0.3, 0.0, 2.3], [0.0, 0.0, 2.9]])
     plate = Plate(
         shape_of("circle", 0.6),
@@ -43,7 +48,7 @@ def chance(evidence: PlateEvidence) -> float:
         -1,
         np.arange(10),
     )
-    return chance_of(facts_of(plate, 0.0, np.array([0.0, 1.0])))
+    return chance_of(facts_of(plate, 0.0, way))
 
 
 @pytest.mark.parametrize(
@@ -52,12 +57,20 @@ def chance(evidence: PlateEvidence) -> float:
         BACK._replace(shine=2.0),
         BACK._replace(both_seen=True),
         BACK._replace(cut=1.0),
+        BACK._replace(over_board=True),
     ],
-    ids=["as bright as paint", "neither side shines", "the recording ends on it"],
+    ids=["as bright as paint", "neither side shines", "the recording ends on it", "a bus stop"],
 )
 def test_a_dull_plate_that_is_no_back_of_a_sign_is_hardly_one(worse: PlateEvidence) -> None:
     assert chance(BACK) > 0.7
     assert chance(worse) < 0.5
+
+
+def test_a_dull_plate_that_looks_across_the_road_is_no_sign_and_a_bright_one_may_be() -> None:
+    across = np.array([1.0, 0.0])
+    assert chance(BACK, across) < 0.1
+    face = BACK._replace(bright=1.0, shine=9.0, sectors=0.9)
+    assert chance(face, across) > 0.5
 
 
 def test_where_nothing_of_a_recording_shines_paint_says_nothing() -> None:

@@ -1,6 +1,6 @@
 """What labels alone give of a street, beside what its tools find, and what mending labels costs.
 
-``python -m processing.laboratory.accuracy.road.labels_against_tools --samples FOLDER…
+``python -m processing.laboratory.accuracy.labels_against_tools --samples FOLDER…
 --markdown docs/accuracy.md``
 
 Curbs, trees, signs and poles are made from the classes of points by nothing but joining what hangs
@@ -253,7 +253,7 @@ def _correction_rows(streets: Sequence[LabelledStreet]) -> Iterator[list[str]]:
 
 
 _ABOUT = """\
-`python -m processing.laboratory.accuracy.road.labels_against_tools --samples FOLDER… \
+`python -m processing.laboratory.accuracy.labels_against_tools --samples FOLDER… \
 --markdown docs/accuracy.md` makes this section: F in percent of curbs (sections of upper edges \
 within 10 cm), trees, signs and poles that are made from the classes of points by joining what \
 hangs together, beside what the tools find on the same streets. Classes are found without the \
