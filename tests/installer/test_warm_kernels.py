@@ -182,7 +182,7 @@ def test_what_the_demo_leaves_out_is_there() -> None:
 
 def test_tools_run_on_the_bundled_street_and_one_that_fails_ends_the_set_up() -> None:
     run_tools_beside(["curbs"], 1)
-    with pytest.raises(RuntimeError, match="no such tool|Tools"):
+    with pytest.raises(RuntimeError, match="nothing"):
         run_tools_beside(["nothing"], 1)
 
 

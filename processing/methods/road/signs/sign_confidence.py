@@ -139,8 +139,8 @@ class SignFacts(NamedTuple):
 # of 101 from 0.5 were right, 99 of 102 without the two. The command ran from end to end since, on
 # 54 streets and avenues (4,261 plates, of which 408 are signs): what it learnt was as good on own
 # streets and one percent worse on those of another simulator, and is not used.
-# `averted` and `over_board` stand as reasoning expects them: on 11 streets (seeds 700 to 710) no
-# sign of what is dull looks across the road or has a higher board below it, and 176 others do.
+# `averted` and `over_board` stand as reasoning expects them: on 5 streets (seeds 700 to 704, 31
+# signs) no dull sign looks across the road or has a higher board below it.
 _CONSTANT = -5.12
 _WEIGHTS = SignFacts(
     bright=1.65,
