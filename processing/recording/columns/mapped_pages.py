@@ -21,7 +21,9 @@ _ROUNDS = 2
 second round at once, or it would count as the program's own and the limit would creep upwards."""
 
 _LOOKED_AT_EVERY_S = 0.02
-_LOOKED_AGAIN_AFTER_S = 0.03
+_LOOKED_AGAIN_AFTER_S, _LOOKED_AGAIN_AT_LEAST_S = 0.03, 0.25
+"""While what is held changes, and at most while it doesn't: a program at rest is to be at rest."""
+
 _STATM = Path("/proc/self/statm")
 _FILE_PAGES = 2
 
@@ -55,10 +57,7 @@ class MappedPages:
                 self._held_before = self._held_bytes()
             self._maps.add(mapped)
         if is_first and self._can_give_back:
-            # A kernel may go through gigabytes of a map between two times that it is asked for.
-            threading.Thread(
-                target=_look_again, args=(weakref.ref(self),), name="mapped pages", daemon=True
-            ).start()
+            _WATCH.begin(self)
 
     @property
     def has_maps(self) -> bool:
@@ -89,16 +88,55 @@ class MappedPages:
         """Pages of files that the process holds."""
         if not self._can_give_back:
             return 0
-        return int(_STATM.read_text().split()[_FILE_PAGES]) * mmap.PAGESIZE
+        return _held_bytes()
 
 
-def _look_again(of: weakref.ref[MappedPages]) -> None:
-    """Look every now and then for as long as there are maps."""
-    pause = threading.Event()
-    while True:
-        pause.wait(_LOOKED_AGAIN_AFTER_S)
-        pages = of()
-        if pages is None or not pages.has_maps:
-            return
-        pages.look()
-        del pages
+def _held_bytes() -> int:
+    return int(_STATM.read_text().split()[_FILE_PAGES]) * mmap.PAGESIZE
+
+
+class _Watch:
+    """Looks every now and then, for as long as there are maps.
+
+    A kernel may go through gigabytes of a map between two times that it is asked for. One thread
+    looks for all: what is held is the process's.
+    """
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._watched: weakref.WeakSet[MappedPages] = weakref.WeakSet()
+        self._is_running = False
+
+    def begin(self, pages: MappedPages) -> None:
+        """Look after these too."""
+        with self._lock:
+            self._watched.add(pages)
+            if self._is_running:
+                return
+            self._is_running = True
+        threading.Thread(target=self._run, name="mapped pages", daemon=True).start()
+
+    def _run(self) -> None:
+        pause, seconds, held = threading.Event(), _LOOKED_AGAIN_AFTER_S, 0
+        while True:
+            pause.wait(seconds)
+            if not self._look():
+                return
+            before, held = held, _held_bytes()
+            seconds = (
+                min(2 * seconds, _LOOKED_AGAIN_AT_LEAST_S)
+                if held == before
+                else _LOOKED_AGAIN_AFTER_S
+            )
+
+    def _look(self) -> bool:
+        """Look once; tells whether there is anything left to look after."""
+        with self._lock:
+            left = [pages for pages in self._watched if pages.has_maps]
+            self._is_running = bool(left)
+        for pages in left:
+            pages.look()
+        return bool(left)
+
+
+_WATCH = _Watch()

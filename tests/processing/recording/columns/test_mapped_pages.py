@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import threading
 from pathlib import Path
 
 import numpy as np
@@ -72,3 +73,23 @@ def test_a_map_that_nobody_has_any_more_is_no_longer_watched(tmp_path: Path) -> 
         pass
     gc.collect()
     assert not len(pages._maps)
+
+
+def watching() -> list[threading.Thread]:
+    return [thread for thread in threading.enumerate() if thread.name == "mapped pages"]
+
+
+def test_one_thread_watches_all_maps_and_ends_with_the_last(tmp_path: Path) -> None:
+    gc.collect()
+    for thread in watching():  # those of maps that went with tests before
+        thread.join(timeout=5.0)
+    others = bool(watching())  # of a project that a fixture holds
+    with ColumnWriter(tmp_path) as writer:
+        writer.append({"time": np.zeros(5)})
+    many = [Columns(tmp_path, 5, MappedPages()) for _ in range(8)]
+    assert all(columns["time"].size == 5 for columns in many)
+    (thread,) = watching()
+    many.clear()
+    gc.collect()
+    thread.join(timeout=0.0 if others else 5.0)
+    assert thread.is_alive() == others
