@@ -8,7 +8,6 @@ the program, by a signal or not at all is written below FOLDER and printed.
 from __future__ import annotations
 
 import argparse
-import io
 import os
 import random
 import resource
@@ -17,14 +16,13 @@ import signal
 import sys
 import time
 from collections import Counter
-from contextlib import redirect_stderr, redirect_stdout
 from pathlib import Path
 
-from app.cli.terminal import BAD_INPUT, DONE, run_in_terminal
 from processing.core.block_sums import SUFFIX
 from tests.broken_files.full_project import make_full_project
 from tests.broken_files.mutations import copy_of, files_of, mutate
 from tests.older_project import forget_all_sums
+from tests.reliability.operations import Answer, answer_to
 
 MOST_SECONDS = 180
 MOST_BYTES = 3 << 30
@@ -47,26 +45,20 @@ _COMMANDS = (
 )  # fmt: skip
 
 
-def commands_on(project: Path, out: Path) -> list[tuple[str, int, str]]:
-    """Every command on a project: what it was, its status and the end of what it said."""
-    found = []
-    for words in _COMMANDS:
-        filled = [word.format(project=project, out=out) for word in words]
-        said = io.StringIO()
-        with redirect_stderr(said), redirect_stdout(io.StringIO()):
-            status = run_in_terminal(filled)
-        line = (said.getvalue().rstrip("\n").splitlines() or [""])[-1]
-        found.append((" ".join(words[:3]), int(status), line))
-    return found
+def commands_on(project: Path, out: Path) -> list[tuple[str, Answer]]:
+    """The answer to every command on a project."""
+    return [
+        (" ".join(words[:3]), answer_to([word.format(project=project, out=out) for word in words]))
+        for words in _COMMANDS
+    ]
 
 
-def wrong_answers(answers: list[tuple[str, int, str]]) -> list[str]:
+def wrong_answers(answers: list[tuple[str, Answer]]) -> list[str]:
     """Answers that are neither work nor one sentence with what, where and remedy."""
     return [
-        f"{command}: {status}: {line[:300]}"
-        for command, status, line in answers
-        if status not in (DONE, BAD_INPUT)
-        or (status == BAD_INPUT and (line.count(" | ") < 2 or "Traceback" in line))
+        f"{command}: {answer.status}: {answer.line[:300]}"
+        for command, answer in answers
+        if not answer.is_right
     ]
 
 

@@ -39,14 +39,12 @@ from processing.formats.delivery.management_xml import (
 from processing.formats.delivery.metadata_xml import metadata_xml
 from processing.formats.map_delivery import DeliveryOptions, MapDelivery, Position
 from processing.formats.reports.quality.quality_pdf import write_quality_pdf
-from processing.formats.reports.quality.quality_report import checked_points, hand_check
-from processing.formats.reports.quality.quality_rows import QualityFacts
+from processing.formats.reports.quality.quality_report import checked_points, quality_facts
 from processing.formats.shift_jis import ShiftJisText
 from processing.formats.survey.dm import write_dm_map
 from processing.formats.survey.map_sheets import zone_for_sheets
 from processing.formats.work_facts import WorkFacts
 from processing.map.map_extent import extent_of
-from processing.map.quality.map_check import check_map
 from processing.map.reference_transform import reference_transform
 
 _DM, _QUALITY, _ACCURACY, _METADATA = (
@@ -124,22 +122,7 @@ def _write_papers(
 ) -> None:
     work = _work(delivery, facts)
     points = checked_points(delivery)
-    check = check_map(
-        delivery.every_feature,
-        delivery.catalogue,
-        monitor,
-        crs=delivery.crs,
-        drives={drive.id for drive in delivery.drives},
-    )
-    quality = QualityFacts(
-        check,
-        delivery.catalogue,
-        delivery.crs,
-        facts.software,
-        points,
-        work=work,
-        hand=hand_check(delivery, monitor),
-    )
+    quality = quality_facts(delivery, points, monitor, software=facts.software, work=work)
     write_quality_pdf(place(RESULTS, "HINSH001.PDF", _QUALITY), quality, "ja", monitor)
     if points is None:
         delivery.tell(_NO_ACCURACY)

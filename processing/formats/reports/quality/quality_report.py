@@ -17,6 +17,7 @@ from processing.formats.reports.quality.quality_pdf import write_quality_pdf
 from processing.formats.reports.quality.quality_rows import HandCheck, QualityFacts
 from processing.formats.vectors.delivered_maps import features_of_map
 from processing.formats.vectors.mapped_shapes import read_mapped
+from processing.formats.work_facts import WorkFacts
 from processing.map.catalogue import CHANGE_KIND
 from processing.map.feature import Status
 from processing.map.map_extent import extent_of
@@ -38,6 +39,44 @@ def write_quality_map(delivery: MapDelivery, position: Position, monitor: Monito
     UserError
         What stands against writing; `Cancelled`.
     """
+    points = checked_points(delivery)
+    software = f"Zuka {version('zuka')}"
+    facts = quality_facts(delivery, points, monitor, software=software, work=delivery.work)
+    language = delivery.language or "en"
+    write_quality_pdf(position("qa.pdf"), facts, language, monitor)
+    write_quality_html(position("qa.html"), facts, language)
+    words = json.dumps(
+        {**_numbers(facts.check, delivery.crs), **_accuracy(points), **_hand(facts.hand)},
+        ensure_ascii=False,
+        indent=1,
+    )
+    position("qa.json").write_text(words + "\n", encoding="utf-8")
+
+
+def quality_facts(
+    delivery: MapDelivery,
+    points: PointCheck | None,
+    monitor: Monitor,
+    *,
+    software: str,
+    work: WorkFacts,
+) -> QualityFacts:
+    """Look a map through for a report.
+
+    Parameters
+    ----------
+    points : PointCheck or None
+        As :func:`checked_points` gives it.
+    software : str
+        What the report says made it.
+    work : WorkFacts
+        What the report says the map was made for.
+
+    Raises
+    ------
+    UserError
+        As :func:`hand_check`; `Cancelled`.
+    """
     check = check_map(
         delivery.every_feature,
         delivery.catalogue,
@@ -45,26 +84,15 @@ def write_quality_map(delivery: MapDelivery, position: Position, monitor: Monito
         crs=delivery.crs,
         drives={drive.id for drive in delivery.drives},
     )
-    points = checked_points(delivery)
-    software = f"Zuka {version('zuka')}"
-    facts = QualityFacts(
+    return QualityFacts(
         check,
         delivery.catalogue,
         delivery.crs,
         software,
         points,
-        work=delivery.work,
+        work=work,
         hand=hand_check(delivery, monitor),
     )
-    language = delivery.language or "en"
-    write_quality_pdf(position("qa.pdf"), facts, language, monitor)
-    write_quality_html(position("qa.html"), facts, language)
-    words = json.dumps(
-        {**_numbers(check, delivery.crs), **_accuracy(points), **_hand(facts.hand)},
-        ensure_ascii=False,
-        indent=1,
-    )
-    position("qa.json").write_text(words + "\n", encoding="utf-8")
 
 
 def checked_points(delivery: MapDelivery) -> PointCheck | None:
