@@ -25,6 +25,7 @@ from processing.methods.classes.painted_cells import (
     PaintedLabels,
     painted_cells,
 )
+from processing.methods.classes.single_scans import is_single_scan
 from processing.operations.inputs import opened_project
 from processing.project.own_models import model_id, model_name
 from processing.project.project import Project
@@ -125,7 +126,8 @@ def learn(drives: Sequence[Drive], into: Path, monitor: Monitor) -> LearntModel:
     Raises
     ------
     Unsuitable
-        Too little was painted, or one class only, or all of it on clouds from the air.
+        Too little was painted, or one class only, or all of it on clouds from the air or
+        single scans.
     NoSpace, Cancelled
     """
     with report_as_user_error(into):
@@ -165,12 +167,13 @@ def store_model(project: Project, learnt: LearntModel) -> Change:
 def _painted(drives: Sequence[Drive], into: Path, monitor: Monitor) -> tuple[int, PaintedCells]:
     """How many points were painted by hand, and the cells that they are of."""
     labelled = [one for one in drives if one.count and one.columns.has(LABEL)]
-    painted = [one for one in labelled if not is_from_air(one)]
+    painted = [one for one in labelled if not (is_from_air(one) or is_single_scan(one))]
     if labelled and not painted:
         raise Unsuitable(
             Text(
-                "The model for clouds from the air does not learn from corrections.",
-                "上空からの点群用のモデルは、修正から学習できません。",
+                "The models for clouds from the air and for single scans do not learn from "
+                "corrections.",
+                "上空からの点群用と単独スキャン用のモデルは、修正から学習できません。",
             ),
             _where(labelled),
             Text(

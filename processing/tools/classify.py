@@ -16,10 +16,16 @@ from processing.core.scratch_arrays import scratch_array
 from processing.core.text import Text
 from processing.methods.classes.aerial_cells import is_from_air, spacing_m
 from processing.methods.classes.aerial_classes import classify_from_air
-from processing.methods.classes.class_models import ClassModels, aerial_models, shipped_models
+from processing.methods.classes.class_models import (
+    ClassModels,
+    aerial_models,
+    scan_models,
+    shipped_models,
+)
 from processing.methods.classes.drive_classes import FoundClasses, classify_drive
 from processing.methods.classes.found_things import FoundThings
 from processing.methods.classes.own_model import ModelFacts, read_own_model
+from processing.methods.classes.single_scans import SCAN_CELL_M, is_single_scan
 from processing.recording.columns.columns import ColumnWriter
 from processing.recording.columns.ordering import chunk_ranges, read_chunk
 from processing.recording.drive import Drive
@@ -60,6 +66,10 @@ _WORSE = Text(
 _FROM_AIR = Text(
     "points lie {spacing} m apart, so the model for clouds from the air says what they are",
     "点間隔が{spacing} mのため、上空からの点群用のモデルで分類しました",
+)
+_SINGLE_SCAN = Text(
+    "few points about one scanner, so the model for single scans says what they are",
+    "1か所から測ったまばらな点群のため、単独スキャン用のモデルで分類しました",
 )
 _UNREADABLE = Text("the program's own model: {why}", "付属のモデル: {why}")
 
@@ -143,20 +153,26 @@ def mark_classes(
     models, note = models_of(parameters)
     known = _Known(models, parameters.least_confidence)
     from_air = tuple(drive for drive in drives if is_from_air(drive))
-    on_street = tuple(drive for drive in drives if drive not in from_air)
+    scans = tuple(drive for drive in drives if drive not in from_air and is_single_scan(drive))
+    on_street = tuple(drive for drive in drives if drive not in (*from_air, *scans))
     looked, start = _NOTHING, 0.0
     if parameters.looks_for_things and on_street:
         looked, start = look_for_things(on_street, PartMonitor(monitor, 0.0, _LOOKING)), _LOOKING
-    sizes = [drive.count for drive in on_street] + [sum(drive.count for drive in from_air)]
-    *parts, flying = parts_of(PartMonitor(monitor, start, 1.0), sizes)
-    folder_of = dict(zip((drive.id for drive in drives), folders, strict=True))
-    columns: dict[str, FinishedColumns] = {}
-    for drive, part in zip(on_street, parts, strict=True):
-        columns[drive.id] = _mark_street(drive, known, looked.things, folder_of[drive.id], part)
+    thin = [_Thin((drive,), SCAN_CELL_M, scan_models()) for drive in scans]
     if from_air:
         apart_m = spacing_m(from_air)
-        columns |= _mark_flight(from_air, apart_m, known, folder_of, flying)
+        thin.append(_Thin(from_air, apart_m, aerial_models()))
         note = _joined(note, _FROM_AIR.filled(spacing=f"{apart_m:.2f}"))
+    if scans:
+        note = _joined(note, _SINGLE_SCAN)
+    sizes = [drive.count for drive in on_street] + [one.count for one in thin]
+    parts = parts_of(PartMonitor(monitor, start, 1.0), sizes)
+    folder_of = dict(zip((drive.id for drive in drives), folders, strict=True))
+    columns: dict[str, FinishedColumns] = {}
+    for drive, part in zip(on_street, parts[: len(on_street)], strict=True):
+        columns[drive.id] = _mark_street(drive, known, looked.things, folder_of[drive.id], part)
+    for cloud, part in zip(thin, parts[len(on_street) :], strict=True):
+        columns |= _mark_thin(cloud, parameters.least_confidence, folder_of, part)
     return TogetherResult(
         tuple(columns[drive.id] for drive in drives), note=_joined(note, looked.note)
     )
@@ -192,31 +208,40 @@ def _mark_street(
     return columns
 
 
-def _mark_flight(
-    strips: tuple[Drive, ...],
-    apart_m: float,
-    known: _Known,
-    folder_of: Mapping[str, Path],
-    monitor: Monitor,
+@dataclass(frozen=True)
+class _Thin:
+    """Drives that are classified together by cells of their own width, and by which models."""
+
+    drives: tuple[Drive, ...]
+    cell_m: float
+    models: ClassModels
+
+    @property
+    def count(self) -> int:
+        return sum(drive.count for drive in self.drives)
+
+
+def _mark_thin(
+    cloud: _Thin, least_confidence: float, folder_of: Mapping[str, Path], monitor: Monitor
 ) -> dict[str, FinishedColumns]:
-    """Classify the strips of a flight together, whose points lie so far apart."""
-    scratch = folder_of[strips[0].id] / "scratch"
+    """Classify strips of a flight together, or one single scan of a street."""
+    scratch = folder_of[cloud.drives[0].id] / "scratch"
     columns: dict[str, FinishedColumns] = {}
     with report_as_user_error(scratch):
         scratch.mkdir()
-        found = [unknown_classes(strip, scratch) for strip in strips]
+        found = [unknown_classes(drive, scratch) for drive in cloud.drives]
         classify_from_air(
-            strips,
+            cloud.drives,
             [one.codes for one in found],
             [one.confidence for one in found],
             scratch,
             PartMonitor(monitor, 0.0, _FINDING),
-            models=aerial_models(),
-            cell_m=apart_m,
+            models=cloud.models,
+            cell_m=cloud.cell_m,
         )
-        for strip, one in zip(strips, found, strict=True):
-            into = folder_of[strip.id]
-            columns[strip.id] = write_classes(strip, one, known.least_confidence, into, monitor)
+        for drive, one in zip(cloud.drives, found, strict=True):
+            into = folder_of[drive.id]
+            columns[drive.id] = write_classes(drive, one, least_confidence, into, monitor)
         remove_folder(scratch)
     return columns
 
@@ -286,12 +311,14 @@ CLASSIFY = Tool(
         "crowns (5), buildings (6), roads (11), wires (14), vehicles and people (64), signs (65), "
         "poles and trunks (66), curbs (67), other (1). Noise keeps its class. It asks for neither "
         "trajectory nor rows. Clouds from the air have a model of their own: ground, low plants, "
-        "crowns, buildings, wires, towers (15), poles and vehicles.",
+        "crowns, buildings, wires, towers (15), poles and vehicles; so have single scans of "
+        "spinning heads, with a street's classes.",
         "各点にクラスと信頼度を付けます。地面（2）、草地（3）、低木（4）、樹冠（5）、建物（6）、"
         "路面（11）、電線（14）、移動体（64）、標識（65）、柱状物・幹（66）、縁石（67）、その他（1）。"
         "ノイズのクラスはそのままです。走行軌跡もスキャンの並びも必要ありません。"
         "上空からの点群には専用のモデルを使い、地面・低木・樹冠・建物・電線・鉄塔（15）・柱状物・"
-        "移動体に分けます。",
+        "移動体に分けます。回転式スキャナの単独スキャンにも専用のモデルがあり、"
+        "クラスは道路と同じです。",
     ),
     group=Text("Points", "点群"),
     needs=Needs.POINTS,

@@ -16,6 +16,7 @@ MODELS = "models/classes"
 ALONE, AGAIN, SAMPLE = "alone.onnx", "again.onnx", "sample.npz"
 AERIAL_ALONE, AERIAL_AGAIN = "aerial_alone.onnx", "aerial_again.onnx"
 WAVE_ALONE, WAVE_AGAIN = "wave_alone.onnx", "wave_again.onnx"
+SCAN_ALONE, SCAN_AGAIN = "scan_alone.onnx", "scan_again.onnx"
 BARE_ALONE, BARE_AGAIN = "bare_alone.onnx", "bare_again.onnx"
 
 
@@ -51,6 +52,12 @@ def shipped_models() -> ClassModels:
 def aerial_models() -> ClassModels:
     """The models for clouds from the air."""
     return _read_models(AERIAL_ALONE, AERIAL_AGAIN)
+
+
+@cache
+def scan_models() -> ClassModels:
+    """The models for single scans of spinning heads on streets."""
+    return _read_models(SCAN_ALONE, SCAN_AGAIN)
 
 
 @cache
