@@ -15,7 +15,7 @@ from processing.core.parameters import ParameterChoice, choice, file, ratio, swi
 from processing.core.scratch_arrays import scratch_array
 from processing.core.text import Text
 from processing.methods.classes.aerial_cells import is_from_air, spacing_m
-from processing.methods.classes.aerial_classes import classify_from_air
+from processing.methods.classes.aerial_classes import classify_thin_cloud
 from processing.methods.classes.class_models import (
     ClassModels,
     aerial_models,
@@ -230,7 +230,7 @@ def _mark_thin(
     with report_as_user_error(scratch):
         scratch.mkdir()
         found = [unknown_classes(drive, scratch) for drive in cloud.drives]
-        classify_from_air(
+        classify_thin_cloud(
             cloud.drives,
             [one.codes for one in found],
             [one.confidence for one in found],

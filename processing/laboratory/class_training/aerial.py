@@ -20,7 +20,11 @@ from numpy.typing import NDArray
 
 from processing.core.monitor import SilentMonitor
 from processing.core.output_streams import write_every_character
-from processing.laboratory.class_training.examples import LabelledCells, codes_of_cells
+from processing.laboratory.class_training.examples import (
+    LabelledCells,
+    codes_of_cells,
+    points_above_ground,
+)
 from processing.laboratory.class_training.fitting import ForestSize
 from processing.laboratory.class_training.two_forests import (
     FOLDS,
@@ -45,7 +49,6 @@ from processing.methods.classes.class_models import (
     aerial_models,
 )
 from processing.methods.classes.drive_classes import shares_of_cells
-from processing.methods.ground.filters.adaptive import GroundAssumptions, find_ground
 from processing.scoring.points.class_scores import class_score
 from processing.scoring.points.confusion_matrix import ConfusionMatrix
 
@@ -115,16 +118,10 @@ def _flight(kind: str, seed: int, rng: np.random.Generator) -> _Flight:
     parts = [fly_over(land, seed, spacing_m, shaken)]
     parts += [power_line(land, seed, spacing_m, style) for style in (LOW, HIGH)]
     flown = FlightPoints(*(np.concatenate(one) for one in zip(*parts, strict=True)))
-    surface = find_ground(lambda: iter([flown.xyz]), GroundAssumptions(), SilentMonitor())
-    heights = flown.xyz[:, 2] - surface.heights_at(flown.xyz[:, :2])
     knows_returns = rng.random() >= _WITHOUT_RETURNS
     is_last, is_only = _returns_of(flown, rng)
-    points = AerialPoints(
-        flown.xyz,
-        np.where(np.isfinite(heights), heights, 0.0),
-        surface.is_ground(flown.xyz),
-        is_last | (not knows_returns),
-        is_only | (not knows_returns),
+    points = points_above_ground(
+        flown.xyz, is_last | (not knows_returns), is_only | (not knows_returns)
     )
     # Two strips cross: the points lie closer than the pulses of each.
     cells = aerial_cells(points, extent_m / len(flown.xyz) ** 0.5, SilentMonitor())

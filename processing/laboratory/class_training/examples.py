@@ -9,13 +9,15 @@ import numpy as np
 from numpy.random import Generator
 from numpy.typing import NDArray
 
-from processing.core.arrays import Integers
+from processing.core.arrays import Floats, Integers
 from processing.core.monitor import SilentMonitor
 from processing.image.images_of_drives import image_of
 from processing.laboratory.accuracy.road.road_scenes import RoadScene
 from processing.laboratory.accuracy.road.true_labels import labels_of_drive
+from processing.methods.classes.aerial_cells import AerialPoints
 from processing.methods.classes.drive_classes import DriveSurroundings
 from processing.methods.classes.features import ClassCells
+from processing.methods.ground.filters.adaptive import GroundAssumptions, find_ground
 from processing.recording.drive import Drive
 
 NOISE = (7, 18)
@@ -100,6 +102,24 @@ def codes_of_cells(cells: ClassCells, labels: NDArray[np.uint8]) -> NDArray[np.u
     return codes
 
 
+def points_above_ground(
+    xyz: Floats, is_last: NDArray[np.bool_], is_only: NDArray[np.bool_]
+) -> AerialPoints:
+    """A cloud with the ground that is found in it, as its cells ask for it.
+
+    Parameters
+    ----------
+    xyz : (n, 3) float64
+        m about an origin near by.
+    is_last, is_only : (n,) bool
+        Whether a return is its pulse's last, and its only one.
+    """
+    surface = find_ground(lambda: iter([xyz]), GroundAssumptions(), SilentMonitor())
+    heights = xyz[:, 2] - surface.heights_at(xyz[:, :2])
+    known = np.where(np.isfinite(heights), heights, 0.0)
+    return AerialPoints(xyz, known, surface.is_ground(xyz), is_last, is_only)
+
+
 def _variant(
     around: DriveSurroundings, labels: NDArray[np.uint8], points: Integers, rng: Generator
 ) -> LabelledCells:
@@ -123,11 +143,16 @@ def _variant(
 
 def _as_slower_scanner(drive: Drive, rng: Generator) -> Integers:
     """Every so many rows, and of these every so many points."""
-    starts = np.asarray(image_of(drive, drive.pixel_kind).row_starts)
-    rows = np.repeat(np.arange(starts.size - 1), np.diff(starts))
-    places = np.arange(drive.count) - starts[rows]
+    rows, places = rows_and_places(drive)
     every_row, every_point = rng.choice(np.array(_THINNINGS)).tolist()
     return np.flatnonzero((rows % every_row == 0) & (places % every_point == 0))
+
+
+def rows_and_places(drive: Drive) -> tuple[Integers, Integers]:
+    """(n,) int64 row of each point, and its place in the row as points were measured."""
+    starts = np.asarray(image_of(drive, drive.pixel_kind).row_starts)
+    rows = np.repeat(np.arange(starts.size - 1), np.diff(starts))
+    return rows, np.arange(drive.count) - starts[rows]
 
 
 def _as_one_scan(drive: Drive, rng: Generator) -> Integers:

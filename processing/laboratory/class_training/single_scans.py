@@ -24,14 +24,18 @@ from numpy.typing import NDArray
 from processing.core.arrays import Floats, Integers
 from processing.core.monitor import SilentMonitor
 from processing.core.output_streams import write_every_character
-from processing.image.images_of_drives import image_of
 from processing.laboratory.accuracy.road.road_scenes import (
     RoadScene,
     mounted_scenes,
     simulated_scenes,
 )
 from processing.laboratory.accuracy.road.true_labels import labels_of_drive
-from processing.laboratory.class_training.examples import LabelledCells, codes_of_cells
+from processing.laboratory.class_training.examples import (
+    LabelledCells,
+    codes_of_cells,
+    points_above_ground,
+    rows_and_places,
+)
 from processing.laboratory.class_training.fitting import ForestSize
 from processing.laboratory.class_training.two_forests import (
     FOLDS,
@@ -45,11 +49,10 @@ from processing.laboratory.simulate.assembly.street import Street
 from processing.laboratory.simulate.scene.chance import chance
 from processing.laboratory.simulate.spinning_head import spinning_scans
 from processing.laboratory.simulate.street.styles import style_of
-from processing.methods.classes.aerial_cells import AerialPoints, aerial_cells
+from processing.methods.classes.aerial_cells import aerial_cells
 from processing.methods.classes.class_models import SCAN_AGAIN, SCAN_ALONE, scan_models
 from processing.methods.classes.drive_classes import shares_of_cells
 from processing.methods.classes.single_scans import SCAN_CELL_M, points_a_place
-from processing.methods.ground.filters.adaptive import GroundAssumptions, find_ground
 from processing.recording.drive import Drive
 from processing.scoring.points.class_scores import class_score
 from processing.scoring.points.confusion_matrix import ConfusionMatrix
@@ -140,9 +143,7 @@ def _thinned(scene: RoadScene, rng: Generator) -> Iterator[LabelledCells]:
 
 def _sparse_points(drive: Drive, xyz: Floats, most: float, rng: Generator) -> Integers:
     """Every so many rows and points of a row, so that half of the places have no more points."""
-    starts = np.asarray(image_of(drive, drive.pixel_kind).row_starts)
-    rows = np.repeat(np.arange(starts.size - 1), np.diff(starts))
-    places = np.arange(drive.count) - starts[rows]
+    rows, places = rows_and_places(drive)
     every_row = every_point = 1
     kept = np.arange(drive.count)
     for _ in range(_STEPS):
@@ -166,16 +167,8 @@ def labelled_scan_cells(xyz: Floats, labels: NDArray[np.uint8]) -> LabelledCells
     labels : (n,) uint8
         Codes of the contract.
     """
-    surface = find_ground(lambda: iter([xyz]), GroundAssumptions(), SilentMonitor())
-    heights = xyz[:, 2] - surface.heights_at(xyz[:, :2])
     alone = np.ones(len(xyz), np.bool_)
-    points = AerialPoints(
-        xyz - xyz.min(axis=0),
-        np.where(np.isfinite(heights), heights, 0.0),
-        surface.is_ground(xyz),
-        alone,
-        alone,
-    )
+    points = points_above_ground(xyz - xyz.min(axis=0), alone, alone)
     cells = aerial_cells(points, SCAN_CELL_M, SilentMonitor())
     return LabelledCells(cells, codes_of_cells(cells, labels))
 

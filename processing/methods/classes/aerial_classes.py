@@ -108,7 +108,7 @@ class Strips:
         return np.memmap(path, dtype, "r", shape=(count,))
 
 
-def classify_from_air(
+def classify_thin_cloud(
     drives: Sequence[Drive],
     codes: Sequence[NDArray[np.uint8]],
     confidence: Sequence[NDArray[np.float32]],

@@ -10,7 +10,6 @@ from __future__ import annotations
 import numpy as np
 
 from processing.core.arrays import Floats
-from processing.methods.classes.aerial_cells import spacing_m
 from processing.methods.noise.neighbours.morton import nested_cells
 from processing.recording.drive import Drive
 
@@ -26,6 +25,9 @@ _GATHERED = 0.38
 points lie evenly, which makes it 0.53; about one scanner their number falls with the squared
 distance. 95 % of simulated single scans of many heads have no more, streets 0.49 and more."""
 
+_ENOUGH = 1_000
+"""Points, at least: a turn of the smallest head has ten times as many."""
+
 _LOOKED_AT = 500_000
 """Points from the middle of the recording that are looked at: a piece of street as it was
 measured."""
@@ -36,11 +38,11 @@ def is_single_scan(drive: Drive) -> bool:
 
     A handful of points is none: of it nothing is known.
     """
-    if not spacing_m([drive]):
-        return False
     first = max(0, (drive.count - _LOOKED_AT) // 2)
     xyz = drive.xyz(slice(first, min(drive.count, first + _LOOKED_AT)))
     xyz = xyz[np.isfinite(xyz).all(axis=1)]
+    if len(xyz) < _ENOUGH:
+        return False
     return points_a_place(xyz) <= _FEW and spread_of(xyz) <= _GATHERED
 
 

@@ -27,13 +27,6 @@ class Quantisation:
         metres += self._offset
         return metres
 
-    def local(self, integers: NDArray[Any], origin: Floats) -> Floats:
-        """Metres about an origin, (3,) m, project CRS: (…, 3) float64, a copy."""
-        scale, shift = self.about(origin)
-        local: Floats = integers * scale
-        local += shift
-        return local
-
     def about(self, origin: Floats) -> tuple[Floats, Floats]:
         """Scale and shift for kernels, (3,) each: integers × scale + shift = m about an origin."""
         return self._scale, self._offset - origin

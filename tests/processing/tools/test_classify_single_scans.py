@@ -47,7 +47,7 @@ def turns(tmp_path_factory: pytest.TempPathFactory) -> list[tuple[Drive, NDArray
     return found
 
 
-def test_a_single_scan_is_single_scan_and_not_from_the_air(
+def test_single_scans_are_told_from_flights(
     turns: list[tuple[Drive, NDArray[np.uint8]]],
 ) -> None:
     for drive, _ in turns:

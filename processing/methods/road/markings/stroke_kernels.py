@@ -499,3 +499,72 @@ def surface_kernel(
     for k in range(len(places)):
         cell = cell_of(places[k, 0], places[k, 1], table, TILE)
         heights[k] = surface[cell] if cell >= 0 else math.nan
+
+
+@kernel
+def smooth_kernel(
+    places: Floats, along: Floats, reach_m: float, step_m: float, smooth: Floats
+) -> None:
+    """Move places along a line onto parabolas through those about each, by least squares.
+
+    Where no more than eight are near, onto a straight line; two and fewer stay.
+
+    Parameters
+    ----------
+    places : (n, 2) float64
+        m, from one end to the other.
+    along : (n,) float64
+        m from the first, rising.
+    reach_m : float
+        How far those about a place reach to both sides; near the ends no farther to one side than
+        to the other, but at least half as far as the line is long.
+    step_m : float
+        Between places.
+    smooth : (n, 2) float64
+        Written; the places themselves before.
+    """
+    whole = along[-1]
+    sums = np.empty(5)
+    products = np.empty((2, 3))
+    for k in range(len(places)):
+        reach = min(reach_m, max(along[k], step_m), max(whole - along[k], step_m))
+        reach = max(reach, min(reach_m, 0.5 * whole))
+        first = np.searchsorted(along, along[k] - reach, side="left")
+        end = np.searchsorted(along, along[k] + reach, side="right")
+        if end - first < 3:
+            continue
+        sums[:] = 0.0
+        products[:] = 0.0
+        for near in range(first, end):
+            at = (along[near] - along[k]) / reach
+            power = 1.0
+            for n in range(5):
+                sums[n] += power
+                if n < 3:
+                    products[0, n] += power * (places[near, 0] - places[k, 0])
+                    products[1, n] += power * (places[near, 1] - places[k, 1])
+                power *= at
+        for axis in range(2):
+            smooth[k, axis] = places[k, axis] + _fitted_at_zero(sums, products[axis])
+
+
+@kernel
+def _fitted_at_zero(sums: Floats, products: Floats) -> float:
+    """What a parabola fitted by least squares tells at 0, or a straight line through eight places.
+
+    ``sums`` (5,) of the powers of what it is fitted over; ``products`` (3,) of the first three
+    powers with the values.
+    """
+    level = sums[0] * sums[2] - sums[1] * sums[1]
+    if level <= 1e-12 * sums[0] * sums[2]:
+        return float(products[0] / sums[0])
+    straight = float((sums[2] * products[0] - sums[1] * products[1]) / level)
+    if sums[0] <= 8:
+        return straight
+    one = sums[2] * sums[4] - sums[3] * sums[3]
+    two = sums[1] * sums[4] - sums[2] * sums[3]
+    three = sums[1] * sums[3] - sums[2] * sums[2]
+    bent = sums[0] * one - sums[1] * two + sums[2] * three
+    if abs(bent) <= 1e-12 * sums[0] * sums[2] * sums[4]:
+        return straight
+    return float((products[0] * one - products[1] * two + products[2] * three) / bent)

@@ -15,6 +15,7 @@ from processing.methods.road.markings.stroke_kernels import (
     STATION,
     StrokeLimits,
     StrokeRaster,
+    smooth_kernel,
     strokes_kernel,
 )
 
@@ -127,14 +128,5 @@ def _smoothed(places: Floats) -> Floats:
         return places
     along = np.r_[0.0, np.cumsum(np.hypot(*np.diff(places, axis=0).T))]
     smooth = places.copy()
-    for k in range(len(places)):
-        reach = min(_SMOOTHED_M, max(along[k], STEP_M), max(along[-1] - along[k], STEP_M))
-        reach = max(reach, min(_SMOOTHED_M, 0.5 * along[-1]))
-        near = np.abs(along - along[k]) <= reach
-        if near.sum() < 3:
-            continue
-        at = along[near] - along[k]
-        degree = 2 if near.sum() > 8 else 1
-        for axis in range(2):
-            smooth[k, axis] = np.polyval(np.polyfit(at, places[near, axis], degree), 0.0)
+    smooth_kernel(places, along, _SMOOTHED_M, STEP_M, smooth)
     return smooth

@@ -66,23 +66,24 @@ def rows_kernel(plan: Floats, noise_m: float, step: int, is_row: NDArray[np.bool
 def _likeliest_row(plan: Floats, left: NDArray[np.int64], noise_m: float) -> tuple[int, int]:
     """Two points whose line most others are near to; −1 where few are."""
     best, first, second = _FEWEST - 1, -1, -1
+    # Beside each other, so that several are counted at a time.
+    easts, norths = plan[left, 0].copy(), plan[left, 1].copy()
     state = 1
     for _ in range(_DRAWS):
         state = (state * _FACTOR + 1) % _MODULUS
-        a = left[state * left.size // _MODULUS]
+        a = state * left.size // _MODULUS
         state = (state * _FACTOR + 1) % _MODULUS
-        b = left[state * left.size // _MODULUS]
-        east, north = plan[b, 0] - plan[a, 0], plan[b, 1] - plan[a, 1]
+        b = state * left.size // _MODULUS
+        east, north = easts[b] - easts[a], norths[b] - norths[a]
         length = math.hypot(east, north)
         # Points nearer to each other tell no direction.
         if length < _LONG_M / 2:
             continue
-        count = 0
-        for one in left:
-            off = east * (plan[one, 1] - plan[a, 1]) - north * (plan[one, 0] - plan[a, 0])
-            count += abs(off) <= noise_m * length
+        count, middle, most = 0, east * norths[a] - north * easts[a], noise_m * length
+        for one in range(left.size):
+            count += abs(east * norths[one] - north * easts[one] - middle) <= most
         if count > best:
-            best, first, second = count, a, b
+            best, first, second = count, left[a], left[b]
     return first, second
 
 

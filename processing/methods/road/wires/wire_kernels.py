@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 from processing.core.arrays import Flags, Floats, Integers
 from processing.core.kernels import kernel
 
+Singles = NDArray[np.float32]
+
 _BACK = 8
 """Points before one that may be of the pulse before: four returns of each."""
 
@@ -201,7 +203,8 @@ def lines_kernel(
         Unit vectors. Written for the points of these cells.
     """
     found = np.empty(2 * _MOST_NEAR, np.int64)
-    offs = np.empty((4, found.size))
+    # Metres about a point, so that single precision tells micrometres.
+    offs = np.empty((4, found.size), np.float32)
     bins = np.empty((found.size, 2), np.int64)
     votes = np.zeros(2 * _SIDE * _SIDE, np.int32)
     spans = np.empty((9, 2), np.int64)
@@ -222,7 +225,7 @@ def lines_kernel(
 
 
 @kernel
-def _measure_offs(points: Floats, point: int, found: Integers, offs: Floats) -> None:
+def _measure_offs(points: Floats, point: int, found: Integers, offs: Singles) -> None:
     """Write how far points lie to the east, north and up of one, and the square of all three."""
     for one in range(found.size):
         square = 0.0
@@ -235,7 +238,7 @@ def _measure_offs(points: Floats, point: int, found: Integers, offs: Floats) -> 
 
 @kernel
 def _vote(
-    offs: Floats, count: int, limits: LineLimits, bins: Integers, votes: NDArray[np.int32]
+    offs: Singles, count: int, limits: LineLimits, bins: Integers, votes: NDArray[np.int32]
 ) -> None:
     """Count how many points about one lie in each direction from it, whichever way along it."""
     for one in range(count):
@@ -255,7 +258,7 @@ def _vote(
 
 @kernel
 def _best_line(
-    offs: Floats,
+    offs: Singles,
     count: int,
     limits: LineLimits,
     voted: tuple[Integers, NDArray[np.int32]],
@@ -274,7 +277,7 @@ def _best_line(
                 agreed += votes[home + i * _SIDE + j]
         if agreed < _AGREED:
             continue
-        long = math.sqrt(offs[3, one])
+        long = np.float32(math.sqrt(offs[3, one]))
         way = (offs[0, one] / long, offs[1, one] / long, offs[2, one] / long)
         score = _on_line(offs, count, way, limits, most)
         if score > most:
@@ -284,21 +287,26 @@ def _best_line(
 
 @kernel
 def _on_line(
-    offs: Floats, count: int, way: tuple[float, float, float], limits: LineLimits, most: int
+    offs: Singles,
+    count: int,
+    way: tuple[np.float32, np.float32, np.float32],
+    limits: LineLimits,
+    most: int,
 ) -> int:
     """How many points lie on a line through one, less those beside it.
 
     0 where too few lie on it, or too many beside it, or no more than `most` are told.
     """
     east, north, up, square = offs[0], offs[1], offs[2], offs[3]
-    core, ring, free = limits.core_m**2, limits.ring_m**2, limits.free_m**2
-    on, beside = 0, 0
+    core = np.float32(limits.core_m**2)
+    ring, free = np.float32(limits.ring_m**2), np.float32(limits.free_m**2)
+    on, beside = np.int32(0), np.int32(0)
     # Without a branch, so that several points are counted at a time.
     for one in range(count):
         along = east[one] * way[0] + north[one] * way[1] + up[one] * way[2]
         off = square[one] - along * along
-        on += off < core
-        beside += (off > ring) & (off < free)
+        on += np.int32(off < core)
+        beside += np.int32((off > ring) & (off < free))
     if on < limits.fewest or on <= most:
         return 0
     if beside > limits.beside * on:
@@ -310,12 +318,15 @@ def _on_line(
         along = east[one] * way[0] + north[one] * way[1] + up[one] * way[2]
         if square[one] - along * along < core:
             low, high = min(low, along), max(high, along)
-    return on - beside if high - low >= limits.reach_m / 2 else 0
+    return int(on - beside) if high - low >= limits.reach_m / 2 else 0
 
 
 @kernel
 def _on_neighbours(
-    offs: Floats, count: int, way: tuple[float, float, float], limits: LineLimits
+    offs: Singles,
+    count: int,
+    way: tuple[np.float32, np.float32, np.float32],
+    limits: LineLimits,
 ) -> int:
     """How many of the points beside a line lie on two others along it: cables of one route."""
     core, ring, free = limits.core_m**2, limits.ring_m**2, limits.free_m**2
