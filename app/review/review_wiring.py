@@ -27,6 +27,9 @@ _LEAST_MAP_SCALE = 12.0
 _LEAST_SECTION_SCALE = 200.0
 """The same across a line or an area: a curb is a step of a few centimetres."""
 
+_ROOM = 2.4
+"""Heights of a tree, a pole or a sign's post that a section holds about its place: all is seen."""
+
 
 def connect_review(parts: WindowParts) -> None:
     """Connect the review with the widgets of a window; again for new ones."""
@@ -69,6 +72,8 @@ class _ReviewWiring(QObject):
         self._parts = parts
         self._edited = ""
         self._is_near = False
+        self._framed: Geometry | None = None
+        self._section_scales: tuple[float, ...] = ()
 
     def keep_keys_to_views(self) -> None:
         """Enter and letters judge over the views and the queue only: in forms they are typed."""
@@ -84,7 +89,8 @@ class _ReviewWiring(QObject):
         """Every view has the candidate in its middle; the section cuts through it."""
         if not self._is_near:
             self._is_near = True
-            self._come_near(feature)
+            self._come_near()
+        self._come_near_in_section(feature)
         self._show_its_image(position)
         for view in self._parts.views:
             if view is not self._parts.camera_view:
@@ -105,7 +111,8 @@ class _ReviewWiring(QObject):
         review = self._parts.of(Review)
         self._parts.review_panel.show_review(review.progress, review.current, review.line_count)
         self._allow_keys()
-        self._is_near = self._is_near and review.is_open
+        if not review.is_open:
+            self._is_near, self._framed = False, None
         current = review.current
         is_judged = current is None or current.status is not Status.CANDIDATE
         if self._edited and (current is None or is_judged or current.id != self._edited):
@@ -145,7 +152,7 @@ class _ReviewWiring(QObject):
         self._parts.window.show_panel("review")
         review.open((run,), review.progress.state.order)
 
-    def _come_near(self, feature: Feature) -> None:
+    def _come_near(self) -> None:
         """Show what is judged large enough; later the operator's own zoom is kept."""
         image, scene, map_view = (
             self._parts.image_view,
@@ -155,9 +162,26 @@ class _ReviewWiring(QObject):
         image.zoom_by(max(_LEAST_IMAGE_ZOOM / image.viewport.zoom_v, 1.0))
         scene.zoom_by(max(scene.camera.distance_m / _FARTHEST_M, 1.0))
         map_view.zoom_by(max(_LEAST_MAP_SCALE / map_view.viewport.scale, 1.0))
-        if feature.geometry is not Geometry.POINT:  # trees and poles are looked at whole
-            for pane in self._parts.section_view.panes:
-                pane.zoom_by(max(_LEAST_SECTION_SCALE / pane.viewport.scale, 1.0))
+
+    def _come_near_in_section(self, feature: Feature) -> None:
+        """Lines are looked at from near; of trees, poles and signs all is seen.
+
+        Between candidates of one geometry the operator's own zoom is kept.
+        """
+        panes = self._parts.section_view.panes
+        is_own = tuple(pane.viewport.scale for pane in panes) != self._section_scales
+        if feature.geometry is self._framed and is_own:
+            return
+        high_m = feature.attributes.get("height_m")
+        for pane in panes:
+            scale = pane.viewport.scale
+            if feature.geometry is not Geometry.POINT:
+                pane.zoom_by(max(_LEAST_SECTION_SCALE / scale, 1.0))
+            elif isinstance(high_m, (int, float)) and high_m > 0:
+                shown_m = pane.height() / pane.viewport.scale_y
+                pane.zoom_by(min(shown_m / (_ROOM * high_m), _LEAST_SECTION_SCALE / scale))
+        self._framed = feature.geometry
+        self._section_scales = tuple(pane.viewport.scale for pane in panes)
 
     def _allow_keys(self) -> None:
         """While something is drawn, Enter and Delete belong to what is drawn."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from PySide6.QtCore import QPointF, Qt
@@ -11,12 +13,14 @@ from app.window.window_parts import WindowParts
 from processing.laboratory.bench.street_candidates import street_candidates
 from processing.map.feature import Feature, Position, Status
 from processing.map.feature_middle import middle_of
+from processing.tools.tool import CandidateResult
 from tests.processing.project.candidates import found
 from widgets.shared.cursor import PickedPosition
 
 COUNT = 50
 WITHIN_M = 0.10
 WAIT_MS = 30_000
+NEAR_PX = 200.0
 KEYS = {"accept": Qt.Key.Key_Return, "reject": Qt.Key.Key_Delete, "next": Qt.Key.Key_N}
 
 
@@ -77,6 +81,43 @@ def test_keys_type_in_forms_and_draw_while_something_is_drawn(desk, qtbot):
     desk.key(Qt.Key.Key_Return)
     assert review.current == first
     assert len(list(parts.document.features())) == 7
+
+
+def test_the_section_holds_trees_from_foot_to_top_and_comes_near_to_lines(desk):
+    parts, review = desk.parts, desk.parts.of(Review)
+    pane = parts.section_view.panes[0]
+    seen = street_candidates(desk.drive, 24).candidates
+    high_m = iter([9.0, 3.0, 14.0] * 8)
+    candidates = [
+        replace(one, attributes={"height_m": next(high_m)}) if one.geometry == "point" else one
+        for one in seen
+    ]
+    result = CandidateResult(tuple(candidates))
+    assert parts.document.store_run(found(result, drive=desk.drive.id))
+    parts.window.actions_by_id["review-start"].trigger()
+    while review.current is not None:
+        height_m = review.current.attributes.get("height_m")
+        if height_m is None:
+            assert pane.viewport.scale >= NEAR_PX
+        else:
+            assert pane.height() / pane.viewport.scale_y >= 2 * height_m
+        parts.window.actions_by_id["review-accept"].trigger()
+
+
+def test_between_trees_the_section_keeps_the_zoom_that_was_chosen(desk):
+    parts, review = desk.parts, desk.parts.of(Review)
+    pane = parts.section_view.panes[0]
+    seen = street_candidates(desk.drive, 12).candidates
+    trees = [replace(one, attributes={"height_m": 5.0}) for one in seen if one.geometry == "point"]
+    result = CandidateResult(tuple(trees))
+    assert parts.document.store_run(found(result, drive=desk.drive.id))
+    parts.window.actions_by_id["review-start"].trigger()
+    pane.zoom_by(3.0)
+    chosen = pane.viewport.scale
+    for _ in trees[1:]:
+        parts.window.actions_by_id["review-next"].trigger()
+        assert review.current is not None
+        assert pane.viewport.scale == chosen
 
 
 def assert_centred(parts: WindowParts, qtbot, feature: Feature) -> bool:

@@ -38,6 +38,7 @@ class ImageBar(QWidget):
         self._choice = ImageViewSettings(
             source, shared.map_changes, self._settings, self, language=language
         )
+        self._choice.let_shrink()  # a toolbar hides all of it where it finds no room
         self._low = self._percent(self.tr("Darker end of the contrast, percentile"))
         self._high = self._percent(self.tr("Brighter end of the contrast, percentile"))
         self._another = self._button("+", self.tr("Show another image beside this one"))

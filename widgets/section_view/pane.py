@@ -50,6 +50,9 @@ _START_BELOW_M, _START_ABOVE_M = 1.5, 3.5
 _GROUND_SHARE = 0.7
 """The ground lies so far down in the window: what stands on it is seen."""
 
+_EDGE_PX = 24.0
+"""What is nearer to the upper or lower edge is hardly seen; the title stands there as well."""
+
 _MORE_PX = 1.0
 """Points of a section are so much larger than in 3D, where they overlap."""
 
@@ -391,7 +394,8 @@ class SectionPane(PlaneView):
         if standing.through is not None:
             position = projection.to_plane(np.array([standing.through]))
             x, y = self.viewport.to_screen(position)[0].tolist()
-            inside = LEFT_PX <= x <= self.width() and 0 <= y <= self.height() - BOTTOM_PX
+            is_across = LEFT_PX <= x <= self.width()
+            inside = is_across and _EDGE_PX <= y <= self.height() - BOTTOM_PX - _EDGE_PX
             if np.isfinite(x) and not inside:
                 self.set_viewport(self.viewport.centred_on(*position[0].tolist()))
 

@@ -35,14 +35,14 @@ from widgets.panels.feature_words import (
 from widgets.panels.geometry_facts import facts_of
 from widgets.parts.elided_label import ElidedLabel
 
-_MOST_ROWS = 12
+_MOST_ROWS = 20
 
 _PHOTO_PX = 120
 """Of a picture's longer side: on a screen of 768 rows the first facts are seen below it."""
 
-_WIDEST_TITLE_PX = 150
-"""Longer names are written in two lines, so that the value beside them is seen whole in a narrow
-panel."""
+_WIDEST_TITLE_PX = 124
+"""Longer names are written in two lines, so that the value beside them, a coordinate of seven
+digits, is seen whole in a narrow panel."""
 
 
 def _without_photo(feature: Feature) -> dict[str, AttributeValue]:
