@@ -125,11 +125,13 @@ def change_points(path: Path, change: Callable[[NDArray[np.void]], None]) -> Non
     path.write_bytes(data)
 
 
-def change_descriptor(path: Path, *, samples: int, compression: int = 0, bits: int = 8) -> None:
+def change_descriptor(
+    path: Path, *, samples: int, compression: int = 0, bits: int = 8, spacing_ps: int = 1000
+) -> None:
     """Let the file's only descriptor say something else."""
     data = bytearray(path.read_bytes())
     at = data.index(struct.pack("<16sH", b"LASF_Spec", 100)) + 18 + 2 + 32
-    data[at : at + 6] = struct.pack("<BBI", bits, compression, samples)
+    data[at : at + 10] = struct.pack("<BBII", bits, compression, samples, spacing_ps)
     path.write_bytes(data)
 
 

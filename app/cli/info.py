@@ -15,7 +15,11 @@ from processing.formats.points.packet_counts import count_packets
 from processing.formats.points.point_files import PointFileInfo, read_info, read_sample
 from processing.project.project import Project, is_project
 from processing.recording.drive import Drive
-from processing.recording.waveform_facts import WaveformFacts, waveform_facts
+from processing.recording.waveform_facts import (
+    WaveformFacts,
+    remarks_on_lacking,
+    waveform_facts,
+)
 from processing.recording.waveform_packets.descriptors import WaveformDescriptor
 
 _SAMPLE_POINTS = 2_000
@@ -127,17 +131,18 @@ def _of_delivered(info: PointFileInfo) -> dict[str, object] | bool:
     counted = count_packets(info) if waveforms.is_readable else None
     if counted is not None:
         readable = {number: one for number, one in readable.items() if number in counted.used}
+    lacking = {} if counted is None else counted.lacking
+    language = system_language()
     return {
         "pulses": 0 if counted is None else counted.packets,
         "points_with": 0 if counted is None else counted.points,
-        "points_without": {}
-        if counted is None
-        else {why.name.lower(): points for why, points in counted.lacking.items()},
+        "points_without": {why.name.lower(): points for why, points in lacking.items()},
         **_of_descriptors(tuple(readable.values())),
         "descriptors_delivered": len(waveforms.descriptors),
         "packets": str(waveforms.path),
         "packets_inside": waveforms.path == info.path,
-        "reason": waveforms.reason.in_language(system_language()),
+        "reason": waveforms.reason.in_language(language),
+        "remarks": [remark.in_language(language) for remark in remarks_on_lacking(lacking)],
     }
 
 

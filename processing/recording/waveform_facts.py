@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -46,12 +47,7 @@ class WaveformFacts:
     def remarks(self) -> tuple[Text, ...]:
         """What is to be told of waveforms that points should have and have not."""
         unread = [_NO_WAVEFORMS.filled(reason=file.reason) for file in self.files if file.reason.en]
-        bad = [
-            _LACKING.filled(points=points, reason=WHY_NO_PACKET[why])
-            for why, points in self.lacking.items()
-            if why is not NoPacket.NONE_GIVEN
-        ]
-        return (*unread, *bad)
+        return (*unread, *remarks_on_lacking(self.lacking))
 
 
 _NO_WAVEFORMS = Text("No waveforms: {reason}", "波形なし: {reason}")
@@ -59,6 +55,15 @@ _LACKING = Text(
     "{points:,} points are used without their waveform: {reason}",
     "{points:,}点は波形なしで使用します（{reason}）",
 )
+
+
+def remarks_on_lacking(lacking: Mapping[NoPacket, int]) -> tuple[Text, ...]:
+    """A line for each reason why points have no waveform, but that none was delivered."""
+    return tuple(
+        _LACKING.filled(points=points, reason=WHY_NO_PACKET[why])
+        for why, points in lacking.items()
+        if why is not NoPacket.NONE_GIVEN
+    )
 
 
 def waveform_facts(drive: Drive) -> WaveformFacts | None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +22,7 @@ from processing.methods.waveforms.system_pulse import (
     system_pulse,
 )
 from processing.recording.drive import Drive
+from processing.recording.waveform_facts import waveform_facts
 from processing.recording.waveforms import PulseBlock, Waveforms, waveforms_of
 
 _LEARNT_FROM = 8_000
@@ -154,6 +156,21 @@ def _placed(block: PulseBlock, rows: Integers, echoes: Echoes) -> EchoPoints:
 
 
 def _without(drive: Drive) -> Unsuitable:
+    """What stands against it: what is wrong with the packets there are, or that there are none."""
+    facts = waveform_facts(drive)
+    if facts is not None and facts.remarks:
+        delivered = [Path(file.delivered) for file in facts.files] or [*drive.delivered_files]
+        files = ", ".join(path.name for path in delivered)
+        return Unsuitable(
+            Text("None of the waveforms can be read.", "読める波形が1つもありません。"),
+            Text("{files}: {remark}", "{files}: {remark}").filled(
+                files=files, remark=facts.remarks[0]
+            ),
+            Text(
+                "Ask for the waveforms as they were recorded; the points can be used without.",
+                "記録時のままの波形を納品元に依頼してください。点は波形なしで使えます。",
+            ),
+        )
     return Unsuitable(
         Text(
             "There are no waveforms with rays in this recording.",

@@ -25,6 +25,9 @@ with the sign that the file gives it.
 MOST_SAMPLES = 65_536
 """Longer packets are taken for damage: at 1 ns apart these are 9.8 km of range."""
 
+MOST_SPACING_PS = 100_000
+"""Samples farther apart are taken for damage: 15 m of range lie between two."""
+
 _BITS = (8, 16, 32)
 _FILE_BIT = 48
 
@@ -67,9 +70,8 @@ class WaveformDescriptor:
     @property
     def is_readable(self) -> bool:
         """Whether its samples can be samples of a waveform at all."""
-        return (
-            self.bits in _BITS and 0 < self.samples <= MOST_SAMPLES and self.spacing_ps > 0
-        )  # fmt: skip
+        has_samples = self.bits in _BITS and 0 < self.samples <= MOST_SAMPLES
+        return has_samples and 0 < self.spacing_ps <= MOST_SPACING_PS
 
 
 class NoPacket(IntEnum):
@@ -91,8 +93,8 @@ WHY_NO_PACKET: Mapping[NoPacket, Text] = {
         "descriptor that the file does not have", "ファイルに存在しない記述子"
     ),
     NoPacket.BAD_DESCRIPTOR: Text(
-        "descriptor with no samples, with millions, or of unknown coding",
-        "記述子のサンプル数が0または過大、もしくは符号化が不明",
+        "descriptor with no samples, with millions, too far apart, or of unknown coding",
+        "記述子のサンプル数が0または過大、間隔が過大、もしくは符号化が不明",
     ),
     NoPacket.OTHER_SIZE: Text(
         "packet of another size than its descriptor says", "パケットの大きさが記述子と不一致"

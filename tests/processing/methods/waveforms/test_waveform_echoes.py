@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
 from processing.core.errors import Unsuitable
+from processing.core.monitor import SilentMonitor
 from processing.methods.waveforms.decomposition import Digitiser, Echoes, decompose
+from processing.methods.waveforms.drive_echoes import echoes_of
 from processing.methods.waveforms.system_pulse import (
     RecordNoise,
     SystemPulse,
@@ -15,6 +19,7 @@ from processing.methods.waveforms.system_pulse import (
     own_pulse,
     system_pulse,
 )
+from tests.waveform_flight import change_descriptor, import_flight, write_flight
 
 SIGMA_NS, NOISE, BASELINE, SAMPLES = 1.7, 1.2, 9.0, 100
 TIMES = np.arange(-12, 12, 0.25)
@@ -109,3 +114,25 @@ def test_too_little_to_learn_a_pulse_from_is_told() -> None:
         own_pulse(waves([]), np.full(200, SAMPLES, np.int32), RecordNoise(BASELINE, NOISE), 255.0)
     with pytest.raises(Unsuitable):
         system_pulse(np.arange(9.0), np.arange(9.0))
+
+
+@pytest.mark.parametrize(
+    ("said", "why"),
+    [
+        ({"samples": 0}, "descriptor with no samples"),
+        ({"samples": 5_000_000}, "descriptor with no samples"),
+        ({"samples": 80, "bits": 12}, "unknown coding"),
+        ({"samples": 80, "spacing_ps": 7_000_000}, "too far apart"),
+    ],
+)
+def test_packets_that_no_waveform_can_be_in_are_refused_with_file_and_reason(
+    said: dict[str, int], why: str, tmp_path: Path
+) -> None:
+    flight = write_flight(tmp_path / "flight.las")
+    change_descriptor(flight.path, **said)
+    drive = import_flight(flight.path, tmp_path / "drive")
+    with pytest.raises(Unsuitable) as refused:
+        list(echoes_of(drive, None, SilentMonitor()))
+    assert why in refused.value.where.en
+    assert "flight.las" in refused.value.where.en
+    assert "記述子" in refused.value.where.ja
