@@ -28,7 +28,7 @@ class PointStyle:
         Points whose class is noise are not there: they are neither drawn nor picked.
     """
 
-    attribute: str = "intensity"
+    attribute: str = "toned"
     low_percent: float = 2.0
     high_percent: float = 98.0
     point_size_px: float = 2.0

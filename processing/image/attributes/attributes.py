@@ -232,10 +232,11 @@ thousand has, wherever they lie, is met by some forty of them."""
 
 def _varies(drive: Drive, attribute: str) -> bool:
     """Whether a column as delivered holds more than one value; others are taken to."""
-    if attribute not in ("intensity", "color") or not drive.columns.has(attribute):
+    column = "intensity" if attribute == "toned" else attribute
+    if column not in ("intensity", "color") or not drive.columns.has(column):
         return True
     try:
-        return _varies_in(drive.folder, attribute, drive.count)
+        return _varies_in(drive.folder, column, drive.count)
     except UserError:  # said where its points are shown
         return True
 

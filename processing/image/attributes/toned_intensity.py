@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.core.arrays import Floats
+from processing.core.kernels import kernel
 from processing.recording.drive import Drive
 
 _PIECES, _PIECE_POINTS = 128, 1024
@@ -180,14 +181,66 @@ def _curve_of(folder: Path, count: int, *, has_trajectory: bool, has_normals: bo
 
 def _lifted(drive: Drive, points: NDArray[np.int64]) -> Floats:
     """Intensities, those that differ from what lies around them made to differ more."""
-    column = drive.columns["intensity"]
-    values = np.asarray(column[points], np.float64)
-    steps = [step for step in range(-_AROUND, _AROUND + 1, _STEP) if step]
-    around = np.stack([column[np.clip(points + step, 0, drive.count - 1)] for step in steps])
-    # The median, not the mean: beside paint asphalt stays as it is.
-    usual = np.median(around.astype(np.float32), axis=0)
-    share = values / np.maximum(usual, 1.0)
-    return np.asarray(values * np.clip(share, 1 / _MOST_TIMES, _MOST_TIMES) ** _LIFT)
+    column, flat = np.asarray(drive.columns["intensity"]), np.ascontiguousarray(points).ravel()
+    lifted = np.empty(flat.size)
+    lifted_kernel(column, flat, _COMPARED, lifted)
+    return lifted.reshape(np.shape(points))
+
+
+def _comparisons(count: int) -> NDArray[np.int64]:
+    """(k, 2) which of so many values, a power of two, are put in order one after the other.
+
+    Batcher's odd-even merge sort (Knuth, The Art of Computer Programming 3, 5.2.2, algorithm M):
+    the same comparisons whatever the values are, so that many points are sorted at a time.
+    """
+    pairs = []
+    merged = count // 2
+    while merged:
+        high, rest, gap = count // 2, 0, merged
+        while True:
+            pairs += [(i, i + gap) for i in range(count - gap) if i & merged == rest]
+            if high == merged:
+                break
+            gap, high, rest = high - merged, high // 2, merged
+        merged //= 2
+    return np.array(pairs)
+
+
+_COMPARED = _comparisons(2 * (_AROUND // _STEP))
+_AT_ONCE = 64
+
+
+@kernel
+def lifted_kernel(
+    column: NDArray[np.generic],
+    points: NDArray[np.int64],
+    compared: NDArray[np.int64],
+    lifted: Floats,
+) -> None:
+    """Write values of points, (n,) each, lifted off the median of those before and behind.
+
+    The median, not the mean: beside paint asphalt stays as it is. ``compared``: as
+    :func:`_comparisons` gives them.
+    """
+    half = _AROUND // _STEP
+    around = np.empty((2 * half, _AT_ONCE), np.float32)
+    last = len(column) - 1
+    for first in range(0, points.size, _AT_ONCE):
+        count = min(_AT_ONCE, points.size - first)
+        for place in range(2 * half):
+            step = _STEP * (place - half + (place >= half))
+            for one in range(count):
+                around[place, one] = column[min(max(points[first + one] + step, 0), last)]
+        for k in range(len(compared)):
+            low, high = around[compared[k, 0]], around[compared[k, 1]]
+            for one in range(_AT_ONCE):
+                less, more = low[one], high[one]
+                low[one], high[one] = (less, more) if less < more else (more, less)
+        for one in range(count):
+            usual = max((around[half - 1, one] + around[half, one]) / 2, 1.0)
+            value = float(column[points[first + one]])
+            share = min(max(value / usual, 1 / _MOST_TIMES), _MOST_TIMES)
+            lifted[first + one] = value * share**_LIFT
 
 
 def _seen(drive: Drive, points: NDArray[np.int64]) -> _Seen:
@@ -204,7 +257,7 @@ def _seen(drive: Drive, points: NDArray[np.int64]) -> _Seen:
         return _Seen()
     flat = np.asarray(points).ravel()
     away = drive.xyz(flat).reshape(*np.shape(points), 3) - seen_from
-    ranges = np.asarray(np.linalg.norm(away, axis=-1))
+    ranges = np.sqrt(np.einsum("...k,...k", away, away))
     if not drive.columns.has("normal"):
         return _Seen(ranges)
     normals = np.asarray(drive.columns["normal"][flat], np.float64).reshape(away.shape)

@@ -18,7 +18,7 @@ def _drive(folder: Path, *, has_intensity: bool) -> Drive:
     return drive
 
 
-def test_a_cloud_without_intensity_is_shown_by_height_and_the_next_one_by_intensity_again(
+def test_a_cloud_without_intensity_is_shown_by_height_and_the_next_one_by_toned_intensity_again(
     tmp_path: Path,
 ) -> None:
     settings = ViewSettings()
@@ -27,7 +27,7 @@ def test_a_cloud_without_intensity_is_shown_by_height_and_the_next_one_by_intens
     assert settings.look.attribute == "height"
     settings.show_image("", settings.image_kind)  # the project is closed
     first.show([_drive(tmp_path / "full", has_intensity=True)])
-    assert settings.look.attribute == "intensity"
+    assert settings.look.attribute == "toned"
 
 
 def test_what_a_hand_chose_stays(tmp_path: Path) -> None:

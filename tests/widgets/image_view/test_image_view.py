@@ -278,8 +278,8 @@ def test_an_attribute_that_the_points_lack_gives_way_to_one_that_they_have(
     user: ImageViewUser,
 ) -> None:
     (point,) = user.points_across(1)
-    with user.qtbot.waitSignal(user.view.sharpened, raising=False, timeout=2_000):
-        user.view.repaint()
+    with user.qtbot.waitSignal(user.view.sharpened, timeout=30_000):
+        user.map.shared.view_settings.change_look(attribute="intensity")
     before = QColor(user.view.grab().toImage().pixel(user.spot(point)))
     with user.qtbot.waitSignal(user.view.sharpened, timeout=30_000):
         user.map.shared.view_settings.change_look(attribute="segment")

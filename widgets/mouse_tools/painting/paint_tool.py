@@ -168,7 +168,7 @@ class PaintTool(MouseTool):
         self.settle()
         self._stroke = Stroke(self._shared.selection.points)
         settings = self._shared.view_settings
-        if settings.look.attribute == "intensity":
+        if settings.look.attribute in ("intensity", "toned"):
             settings.change_look(attribute="label")
 
     def _show_stroke(self, points: PaintedPoints) -> None:

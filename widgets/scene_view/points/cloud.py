@@ -35,7 +35,7 @@ from widgets.shared.view_settings import PointStyle
 REST_MS = 200
 _LEAST_MARK_MS, _FRAMES_BETWEEN_MARKS = 20, 3.0
 _POINTS_PER_PORTION = 150_000
-_GREYS = frozenset({PointStyle().attribute, "toned"})
+_GREYS = frozenset({"intensity", "toned"})
 _LIFTED: Final = np.asarray(255 * (np.arange(256) / 255) ** 0.55, np.uint8)
 """Greys of intensity, as they are drawn: against the dark behind them asphalt would be black."""
 

@@ -25,7 +25,7 @@ from widgets.section_view.picture.section_waveforms import SectionWaveform, wave
 from widgets.section_view.picture.settings import SectionSettings
 from widgets.shared.view_settings import PointStyle
 
-_AT_ONCE = frozenset({"intensity", "height", "class", "label", "segment"})
+_AT_ONCE = frozenset({"intensity", "toned", "height", "class", "label", "segment"})
 """Attributes that are read, not computed from neighbours or images."""
 
 _PLAIN = "intensity"
