@@ -15,18 +15,22 @@ from processing.core.parameters import file, least_confidence
 from processing.core.text import Text
 from processing.methods.road.diagnostics import Diagnostic
 from processing.methods.road.requested_position import RequestedPosition
-from processing.methods.road.signs.asked_signs import asked_signs, is_near
+from processing.methods.road.signs.asked_signs import (
+    asked_signs,
+    doubtful_numbers,
+    is_about,
+    sought_about,
+    with_given_shapes,
+)
 from processing.methods.road.signs.image_positions import sighted_positions
 from processing.methods.road.signs.initial_positions import (
-    FARTHEST_M,
     InitialPosition,
     SignPixel,
     misplaced,
     read_positions,
 )
-from processing.methods.road.signs.road_signs import RoadSign, road_signs
+from processing.methods.road.signs.road_signs import RoadSign, SoughtShapes, any_shape, road_signs
 from processing.methods.road.signs.sign_diagnostics import sign_diagnostics
-from processing.methods.road.signs.sign_shapes import SignShape, looked_for
 from processing.recording.drive import Drive
 from processing.scoring.scorers import SIGN_SCORER
 from processing.tools.tool import (
@@ -45,8 +49,8 @@ _ONE_POST_M = 0.8
 _FOUND = 0.9
 """Of the progress: the rest is for pictures out of camera images."""
 
-_CUT_OUT_M = 3.0
-"""About a position, plates are looked at (Takahashi 2022, 8.3)."""
+_FIRST = 0.6
+"""Of the same: what is left is for plates that aren't as was given of them."""
 
 
 @dataclass(frozen=True)
@@ -119,12 +123,19 @@ def _by_positions(
     elsewhere = {*missed.outside, *missed.swapped, *missed.degrees}
     here = [one for one in positions if one.line not in elsewhere]
 
-    def shapes_at(place: Floats) -> Sequence[SignShape]:
-        return looked_for() if is_near(place, here, _CUT_OUT_M + FARTHEST_M) else ()
+    def shapes_at(place: Floats) -> SoughtShapes | None:
+        return any_shape(place) if is_about(place, here) else None
 
-    found = road_signs(drives, PartMonitor(monitor, 0.0, _FOUND), shapes_at)
-    signs, without = asked_signs(found, here)
-    nothing = tuple(one.line for one in without)
+    def given_shapes_at(place: Floats) -> SoughtShapes | None:
+        return sought_about(place, here, doubtful)
+
+    found = asked_signs(road_signs(drives, PartMonitor(monitor, 0.0, _FIRST), shapes_at), here)
+    doubtful = doubtful_numbers(found, here)
+    if doubtful:
+        again = road_signs(drives, PartMonitor(monitor, _FIRST, _FOUND), given_shapes_at)
+        found = with_given_shapes(found, again, here, doubtful)
+    signs = [found[number] for number in sorted(found)]
+    nothing = tuple(one.line for number, one in enumerate(here) if number not in found)
     whole = replace(missed, nothing=nothing, unknown=sighted.unknown, unmet=sighted.unmet)
     note = _joined(whole.note(), _unsure_facing(signs))
     return _with_pictures(signs, drives, note, PartMonitor(monitor, _FOUND, 1.0))
