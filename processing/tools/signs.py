@@ -7,12 +7,15 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from processing.cameras.cut_outs import Face, cut_outs
 from processing.core.arrays import Floats
 from processing.core.monitor import Monitor, PartMonitor
 from processing.core.parameters import file, least_confidence
 from processing.core.text import Text
+from processing.image.attributes.plate_points import PlatePlace, colours_on, has_colours
+from processing.map.plate_colours import ground_colour
 from processing.methods.road.diagnostics import Diagnostic
 from processing.methods.road.requested_position import RequestedPosition
 from processing.methods.road.signs.asked_signs import (
@@ -147,7 +150,8 @@ def _with_pictures(
     """Signs as candidates, each with its picture where camera images show its face."""
     candidates = _candidates(signs)
     if not any(drive.images for drive in drives):
-        return CandidateResult(candidates, note)
+        seen = [_point_colours(one, drives) for one in signs]
+        return CandidateResult(_coloured(candidates, seen), note)
     faces = [
         Face(one.plate.outline - one.plate.centre + one.centre, one.plate.normal) for one in signs
     ]
@@ -161,7 +165,38 @@ def _with_pictures(
             "読み込めないカメラ画像が{count}枚あり、写っている標識の写真はありません。",
         ).filled(count=cut.unread)
         note = _joined(note, unread)
-    return CandidateResult(tuple(pictured), note)
+    return CandidateResult(_coloured(pictured, cut.insides), note)
+
+
+def _coloured(
+    candidates: Sequence[Candidate], seen: Sequence[NDArray[np.uint8] | None]
+) -> tuple[Candidate, ...]:
+    """Candidates with the colour of the plate's ground, where what is seen of its face tells it."""
+    told = [None if one is None else ground_colour(one) for one in seen]
+    return tuple(
+        one if colour is None else replace(one, attributes={**one.attributes, "colour": colour})
+        for one, colour in zip(candidates, told, strict=True)
+    )
+
+
+def _point_colours(sign: RoadSign, drives: Sequence[Drive]) -> NDArray[np.uint8] | None:
+    """Colours of the points on a sign's face; None of its back, or where points have none."""
+    drive, plate = drives[sign.drive], sign.plate
+    if not plate.evidence.front_seen or not has_colours(drive):
+        return None
+    return colours_on(drive, sign.point, _place_of(sign))
+
+
+def _place_of(sign: RoadSign) -> PlatePlace:
+    shape, normal = sign.plate.shape, sign.plate.normal
+    return PlatePlace(
+        sign.centre,
+        float(np.degrees(np.arctan2(normal[0], normal[1]))),
+        float(np.degrees(np.arcsin(np.clip(normal[2], -1, 1)))),
+        wide_m=shape.wide_m,
+        high_m=shape.high_m,
+        turns=sign.plate.evidence.turns,
+    )
 
 
 def _note(drives: Sequence[Drive], found: Sequence[RoadSign], signs: Sequence[RoadSign]) -> Text:
