@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 from processing.cameras.depth import DepthPicture
@@ -63,11 +64,14 @@ class CutOuts:
     ----------
     pictures : tuple of (h, w, 3) uint8 or None
         Red, green, blue, in the order of the faces; None where no image shows one.
+    insides : tuple of (n, 3) uint8 or None
+        The pixels of each face alone, without what is around it.
     unread : int
         Images that would have been cut but can't be read.
     """
 
     pictures: tuple[NDArray[np.uint8] | None, ...]
+    insides: tuple[NDArray[np.uint8] | None, ...] = ()
     unread: int = 0
 
 
@@ -97,6 +101,7 @@ def cut_outs(faces: Sequence[Face], drives: Sequence[Drive], monitor: Monitor) -
             chosen.setdefault(image, []).append(number)
         monitor.report(0.8 * (number + 1) / len(faces))
     pictures: list[NDArray[np.uint8] | None] = [None] * len(faces)
+    insides: list[NDArray[np.uint8] | None] = [None] * len(faces)
     unread = 0
     for image, numbers in chosen.items():
         monitor.check()
@@ -106,8 +111,9 @@ def cut_outs(faces: Sequence[Face], drives: Sequence[Drive], monitor: Monitor) -
             unread += 1
             continue
         for number in numbers:
-            pictures[number] = _cut(pixels, finder.cameras[image], faces[number])
-    return CutOuts(tuple(pictures), unread)
+            picture, inside = _cut(pixels, finder.cameras[image], faces[number])
+            pictures[number], insides[number] = picture, inside
+    return CutOuts(tuple(pictures), tuple(insides), unread)
 
 
 def _best_image(
@@ -149,11 +155,17 @@ def _area(pixels: NDArray[np.float64]) -> float:
     return abs(float((pixels[:, 0] * ahead[:, 1] - ahead[:, 0] * pixels[:, 1]).sum())) / 2
 
 
-def _cut(image: ImagePixels, camera: Camera, face: Face) -> NDArray[np.uint8]:
+def _cut(
+    image: ImagePixels, camera: Camera, face: Face
+) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
+    """A face with its surroundings, and the pixels of the face alone."""
     places = camera.pixels_of(face.outline) / np.array(image.scale)
     low, high = places.min(axis=0), places.max(axis=0)
     margin = _MARGIN * float((high - low).max())
     height, width = image.pixels.shape[:2]
     first = np.clip(np.floor(low - margin), 0, None).astype(np.int64)
     last = np.minimum(np.ceil(high + margin).astype(np.int64) + 1, (width, height))
-    return image.pixels[first[1] : last[1], first[0] : last[0]].copy()
+    picture = image.pixels[first[1] : last[1], first[0] : last[0]].copy()
+    rows, columns = np.indices(picture.shape[:2])
+    outline = shapely.Polygon(places - first)
+    return picture, picture[shapely.contains_xy(outline, columns + 0.5, rows + 0.5)]

@@ -28,6 +28,15 @@ _TYPES = {
 }
 """What poles, curbs and gutters are, as files have it, and what it is called."""
 
+_COLOURS: dict[str, Text] = {
+    "blue": Text("Blue", "青"),
+    "green": Text("Green", "緑"),
+    "yellow": Text("Yellow", "黄"),
+    "red": Text("Red", "赤"),
+    "white": Text("White", "白"),
+}
+"""Grounds of signs, as the tool "signs" tells them (`plate_colours`)."""
+
 _MEASURED = {
     one.id: one
     for one in (
@@ -38,6 +47,10 @@ _MEASURED = {
         AttributeField("width_m", Text("Width of the plate", "板の幅"), "number", "m"),
         AttributeField("plate_high_m", Text("Height of the plate", "板の高さ"), "number", "m"),
         AttributeField("lower_edge_m", Text("Lower edge", "下端高"), "number", "m"),
+        AttributeField(
+            "colour", Text("Colour of the plate", "板の色"), "choice",
+            choices=tuple(_COLOURS), choice_names=tuple(_COLOURS.values()),
+        ),
         AttributeField("tilt_deg", Text("Tilt (up: +)", "上下の傾き（上向き+）"), "number", "°"),
         AttributeField("roll_deg", Text("Roll", "板面内の傾き"), "number", "°"),
         AttributeField("supplementary", Text("Supplementary plate", "補助標識"), "text"),

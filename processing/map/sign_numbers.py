@@ -8,17 +8,19 @@ be typed.
 from __future__ import annotations
 
 import csv
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cache
 from typing import Literal, cast
 
 from processing.core.text import Text
 from processing.map.catalogue import Catalogue, FeatureKind, Geometry
+from processing.map.plate_colours import SignColour
 from resources import path_of
 
 SignClass = Literal["guide", "warning", "regulation", "instruction", "supplement"]
-SignColour = Literal["blue", "green", "yellow", "red", "white"]
+RimColour = Literal["red", "black", "white", "blue"]
 
 FIELD = "sign_number"
 """Attribute that holds the number."""
@@ -33,6 +35,19 @@ _CODES: Mapping[SignClass, str] = {
 }
 """Codes of road signs (公共測量標準図式, 2242-2244). Instruction signs share the code of regulatory
 ones; supplementary plates go with the sign above them and have none."""
+
+_LARGEST_M: Mapping[str, float] = {
+    "circle": 1.2,
+    "square": 1.8,
+    "rectangle": 1.8,
+    "triangle": 1.6,
+    "pentagon": 1.2,
+    "diamond": 1.2,
+}
+"""Diameter or side at the largest scale, 2.0 (Takahashi 2022, Table 8-1; 別表第二)."""
+
+_SIZE_WITHIN = 1.1
+"""Sizes are measured within a tenth."""
 
 _UNCONFIRMED = "sign"
 """Kind of a sign whose number nobody has confirmed: shape alone doesn't tell its class."""
@@ -52,6 +67,8 @@ class SignNumber:
         Of its plate, as the tool ``signs`` names them.
     colour : str
         Of the plate's ground, of its face for signs with a rim.
+    rim : str or None
+        Colour of the rim; None where it has the ground's.
     name : Text
         The Japanese one is the order's.
     """
@@ -60,6 +77,7 @@ class SignNumber:
     sign_class: SignClass
     shapes: tuple[str, ...]
     colour: SignColour
+    rim: RimColour | None
     name: Text
 
 
@@ -73,13 +91,78 @@ def sign_numbers() -> tuple[SignNumber, ...]:
             cast("SignClass", row["class"]),
             tuple(row["shapes"].split()),
             cast("SignColour", row["colour"]),
+            cast("RimColour", row["rim"]) if row["rim"] else None,
             Text(row["en"], row["ja"]),
         )
         for row in csv.DictReader(lines)
     )
 
 
-def numbers_for(shape: str, *, is_supplement: bool) -> Sequence[SignNumber]:
+@dataclass(frozen=True)
+class PlateLook:
+    """What is known of a plate whose number is asked for.
+
+    Attributes
+    ----------
+    shape : str
+        Empty where it isn't known: any.
+    is_supplement : bool
+        Whether it hangs below another sign, as only supplementary plates do; a rectangle that
+        hangs alone may be any rectangular sign.
+    size_m : float
+        Diameter or side; NaN where it isn't known.
+    colour : SignColour or None
+        Of the ground; None where it isn't known.
+    """
+
+    shape: str = ""
+    is_supplement: bool = False
+    size_m: float = math.nan
+    colour: SignColour | None = None
+
+
+@dataclass(frozen=True)
+class OfferedNumbers:
+    """Signs that a plate may be, each by number.
+
+    Attributes
+    ----------
+    likely : tuple of SignNumber
+        Of its shape, size and colour.
+    unlikely : tuple of SignNumber
+        Of its shape alone: colours fade, and sizes are measured.
+    others : tuple of SignNumber
+        Of other shapes.
+    """
+
+    likely: tuple[SignNumber, ...]
+    unlikely: tuple[SignNumber, ...] = ()
+    others: tuple[SignNumber, ...] = ()
+
+
+def offered_numbers(look: PlateLook) -> OfferedNumbers:
+    """All signs, those first that look like a plate; all are likely where no shape is known."""
+    if not look.shape:
+        return OfferedNumbers(sign_numbers())
+    of_shape = numbers_for(look.shape, is_supplement=look.is_supplement)
+    others = tuple(one for one in sign_numbers() if one not in of_shape)
+    likely = tuple(one for one in of_shape if _is_of_size(one, look) and _is_of_colour(one, look))
+    if not likely:
+        return OfferedNumbers(of_shape, others=others)
+    return OfferedNumbers(likely, tuple(one for one in of_shape if one not in likely), others)
+
+
+def _is_of_size(sign: SignNumber, look: PlateLook) -> bool:
+    """Only guide signs are of any size; others have a largest one (別表第二: at most doubled)."""
+    largest = math.inf if sign.sign_class == "guide" else _LARGEST_M[look.shape]
+    return math.isnan(look.size_m) or look.size_m <= largest * _SIZE_WITHIN
+
+
+def _is_of_colour(sign: SignNumber, look: PlateLook) -> bool:
+    return look.colour is None or sign.colour == look.colour
+
+
+def numbers_for(shape: str, *, is_supplement: bool) -> tuple[SignNumber, ...]:
     """The signs whose plates have a shape, by number.
 
     Parameters

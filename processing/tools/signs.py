@@ -7,26 +7,33 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from processing.cameras.cut_outs import Face, cut_outs
 from processing.core.arrays import Floats
 from processing.core.monitor import Monitor, PartMonitor
 from processing.core.parameters import file, least_confidence
 from processing.core.text import Text
+from processing.image.attributes.plate_points import PlatePlace, colours_on, has_colours
+from processing.map.plate_colours import ground_colour
 from processing.methods.road.diagnostics import Diagnostic
 from processing.methods.road.requested_position import RequestedPosition
-from processing.methods.road.signs.asked_signs import asked_signs, is_near
+from processing.methods.road.signs.asked_signs import (
+    asked_signs,
+    doubtful_numbers,
+    is_about,
+    sought_about,
+    with_given_shapes,
+)
 from processing.methods.road.signs.image_positions import sighted_positions
 from processing.methods.road.signs.initial_positions import (
-    FARTHEST_M,
     InitialPosition,
     SignPixel,
     misplaced,
     read_positions,
 )
-from processing.methods.road.signs.road_signs import RoadSign, road_signs
+from processing.methods.road.signs.road_signs import RoadSign, SoughtShapes, any_shape, road_signs
 from processing.methods.road.signs.sign_diagnostics import sign_diagnostics
-from processing.methods.road.signs.sign_shapes import SignShape, looked_for
 from processing.recording.drive import Drive
 from processing.scoring.scorers import SIGN_SCORER
 from processing.tools.tool import (
@@ -45,8 +52,8 @@ _ONE_POST_M = 0.8
 _FOUND = 0.9
 """Of the progress: the rest is for pictures out of camera images."""
 
-_CUT_OUT_M = 3.0
-"""About a position, plates are looked at (Takahashi 2022, 8.3)."""
+_FIRST = 0.6
+"""Of the same: what is left is for plates that aren't as was given of them."""
 
 
 @dataclass(frozen=True)
@@ -119,12 +126,19 @@ def _by_positions(
     elsewhere = {*missed.outside, *missed.swapped, *missed.degrees}
     here = [one for one in positions if one.line not in elsewhere]
 
-    def shapes_at(place: Floats) -> Sequence[SignShape]:
-        return looked_for() if is_near(place, here, _CUT_OUT_M + FARTHEST_M) else ()
+    def shapes_at(place: Floats) -> SoughtShapes | None:
+        return any_shape(place) if is_about(place, here) else None
 
-    found = road_signs(drives, PartMonitor(monitor, 0.0, _FOUND), shapes_at)
-    signs, without = asked_signs(found, here)
-    nothing = tuple(one.line for one in without)
+    def given_shapes_at(place: Floats) -> SoughtShapes | None:
+        return sought_about(place, here, doubtful)
+
+    found = asked_signs(road_signs(drives, PartMonitor(monitor, 0.0, _FIRST), shapes_at), here)
+    doubtful = doubtful_numbers(found, here)
+    if doubtful:
+        again = road_signs(drives, PartMonitor(monitor, _FIRST, _FOUND), given_shapes_at)
+        found = with_given_shapes(found, again, here, doubtful)
+    signs = [found[number] for number in sorted(found)]
+    nothing = tuple(one.line for number, one in enumerate(here) if number not in found)
     whole = replace(missed, nothing=nothing, unknown=sighted.unknown, unmet=sighted.unmet)
     note = _joined(whole.note(), _unsure_facing(signs))
     return _with_pictures(signs, drives, note, PartMonitor(monitor, _FOUND, 1.0))
@@ -136,7 +150,8 @@ def _with_pictures(
     """Signs as candidates, each with its picture where camera images show its face."""
     candidates = _candidates(signs)
     if not any(drive.images for drive in drives):
-        return CandidateResult(candidates, note)
+        seen = [_point_colours(one, drives) for one in signs]
+        return CandidateResult(_coloured(candidates, seen), note)
     faces = [
         Face(one.plate.outline - one.plate.centre + one.centre, one.plate.normal) for one in signs
     ]
@@ -150,7 +165,38 @@ def _with_pictures(
             "読み込めないカメラ画像が{count}枚あり、写っている標識の写真はありません。",
         ).filled(count=cut.unread)
         note = _joined(note, unread)
-    return CandidateResult(tuple(pictured), note)
+    return CandidateResult(_coloured(pictured, cut.insides), note)
+
+
+def _coloured(
+    candidates: Sequence[Candidate], seen: Sequence[NDArray[np.uint8] | None]
+) -> tuple[Candidate, ...]:
+    """Candidates with the colour of the plate's ground, where what is seen of its face tells it."""
+    told = [None if one is None else ground_colour(one) for one in seen]
+    return tuple(
+        one if colour is None else replace(one, attributes={**one.attributes, "colour": colour})
+        for one, colour in zip(candidates, told, strict=True)
+    )
+
+
+def _point_colours(sign: RoadSign, drives: Sequence[Drive]) -> NDArray[np.uint8] | None:
+    """Colours of the points on a sign's face; None of its back, or where points have none."""
+    drive, plate = drives[sign.drive], sign.plate
+    if not plate.evidence.front_seen or not has_colours(drive):
+        return None
+    return colours_on(drive, sign.point, _place_of(sign))
+
+
+def _place_of(sign: RoadSign) -> PlatePlace:
+    shape, normal = sign.plate.shape, sign.plate.normal
+    return PlatePlace(
+        sign.centre,
+        float(np.degrees(np.arctan2(normal[0], normal[1]))),
+        float(np.degrees(np.arcsin(np.clip(normal[2], -1, 1)))),
+        wide_m=shape.wide_m,
+        high_m=shape.high_m,
+        turns=sign.plate.evidence.turns,
+    )
 
 
 def _note(drives: Sequence[Drive], found: Sequence[RoadSign], signs: Sequence[RoadSign]) -> Text:

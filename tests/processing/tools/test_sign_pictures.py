@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from processing.cameras.cut_outs import Face, cut_outs
 from processing.core.monitor import SilentMonitor
+from processing.image.attributes.plate_points import PlatePlace, picture_of
 from processing.laboratory.simulate.roadside.sign_plates import axes_of, outline
 from processing.recording.camera_images.camera import Camera
 from processing.recording.camera_images.image_list import CameraImage, ImageList
@@ -108,8 +109,35 @@ def test_a_sign_gets_the_picture_of_its_own_face_whole_and_with_its_surroundings
         assert not rim.any()
 
 
+def test_the_colour_of_the_face_is_told_and_nothing_of_what_is_around_it(
+    pictured: Drive, tmp_path: Path
+) -> None:
+    assert at_plate(found_on(pictured, tmp_path), CIRCLE).attributes["colour"] == "green"
+
+
 def test_a_face_that_no_camera_looks_at_has_no_picture(pictured: Drive, tmp_path: Path) -> None:
-    assert at_plate(found_on(pictured, tmp_path), FROM_BEHIND).picture is None
+    found = at_plate(found_on(pictured, tmp_path), FROM_BEHIND)
+    assert found.picture is None
+    assert "colour" not in found.attributes
+
+
+def test_without_a_camera_the_plate_is_painted_of_its_points(plain: tuple[Drive, ...]) -> None:
+    found = at_plate(found_on(plain[0], plain[0].folder.parent / "points"), CIRCLE)
+    told = {name: float(str(found.attributes[name])) for name in ("facing_deg", "tilt_deg")}
+    plate = PlatePlace(found.xyz[0], **told, wide_m=0.6, high_m=0.6, turns=20)
+    picture = picture_of(plain[0], int(found.points[0]), plate)
+    assert picture is not None
+    middle = picture.shape[0] // 2
+    is_bright = picture.min(axis=2) > 150
+    within = slice(middle - 20, middle + 20)
+    assert is_bright[within, within].mean() > 0.8  # a few points are of the back
+    assert not is_bright[:5, :5].any()
+
+
+def test_a_place_where_nothing_was_measured_has_no_picture(plain: tuple[Drive, ...]) -> None:
+    high_up = ORIGIN + np.array([0.0, 0.0, 40.0])
+    plate = PlatePlace(high_up, 90.0, 0.0, wide_m=0.6, high_m=0.6, turns=20)
+    assert picture_of(plain[0], 0, plate) is None
 
 
 def test_a_face_behind_a_thing_that_was_measured_has_no_picture(pictured: Drive) -> None:

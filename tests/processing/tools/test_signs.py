@@ -312,6 +312,15 @@ def test_given_positions_give_their_signs_and_name_the_others(
         assert sum(f"{line}" in one.split(":")[1] for one in sentences) == 1
 
 
+def test_a_given_shape_that_the_points_speak_against_is_not_taken(
+    drives: tuple[Drive, ...], tmp_path: Path
+) -> None:
+    x, y, z = CIRCLE.centroid + ORIGIN
+    text = f"easting_m,northing_m,height_m,shape,size_m\n{x:.2f},{y:.2f},{z:.2f},triangle,1.2\n"
+    (found,) = asked(drives, tmp_path / "positions.csv", text).candidates
+    assert (found.attributes["shape"], found.attributes["size_m"]) == ("circle", 0.6)
+
+
 @pytest.mark.parametrize(
     ("text", "line"),
     [("x,y\n1,2\n", "line 1"), ("easting_m,northing_m\n1,2\n3,much\n", "line 3"),

@@ -22,7 +22,9 @@ from widgets.panels.attributes.attribute_field import (
 from widgets.panels.attributes.occluded_row import OccludedRow
 from widgets.panels.attributes.photo_row import PhotoRow
 from widgets.panels.attributes.shared_values import common_fields, common_value
-from widgets.panels.attributes.sign_numbers import SignNumberMenu, plate_picture
+from widgets.panels.attributes.sign_numbers import SignNumberMenu
+from widgets.panels.attributes.sign_plates import plate_picture
+from widgets.panels.attributes.sign_points import picture_of_sign
 from widgets.panels.feature_changes import kinds_for
 from widgets.panels.feature_words import STATUS_NAMES, name_of_kind, words_of_value
 from widgets.panels.geometry_facts import facts_of
@@ -215,7 +217,8 @@ class AttributeForm(QWidget):
         """Legal numbers of signs are chosen among the plates of that shape, with their pictures."""
 
         def ask() -> None:
-            menu = SignNumberMenu(self._features, self._language, editor.widget)
+            photo = picture_of_sign(self._features, self._source)
+            menu = SignNumberMenu(self._features, self._language, editor.widget, photo=photo)
             menu.number_chosen.connect(editor.take)
             menu.aboutToHide.connect(menu.deleteLater)
             # Beside the field: below it a long list would cover the picture of the sign.

@@ -6,23 +6,31 @@ import math
 from collections.abc import Mapping, Sequence
 from itertools import groupby
 
-from PySide6.QtCore import QPointF, QRectF, Qt, Signal
-from PySide6.QtGui import QAction, QColor, QIcon, QPainter, QPen, QPixmap, QPolygonF
-from PySide6.QtWidgets import QMenu, QWidget
+from PySide6.QtCore import QMargins, Qt, Signal
+from PySide6.QtGui import QAction, QPainter, QPaintEvent, QPixmap
+from PySide6.QtWidgets import (
+    QMenu,
+    QWidget,
+    QWidgetAction,
+)
+from typing_extensions import override
 
 from processing.core.text import Language, Text
 from processing.map.catalogue import Catalogue, FeatureKind
 from processing.map.feature import AttributeValue, Feature
+from processing.map.plate_colours import SIGN_COLOURS
 from processing.map.sign_numbers import (
     FIELD,
+    PlateLook,
     SignClass,
     SignNumber,
     is_kind_of_signs,
     kind_of_sign,
-    numbers_for,
+    offered_numbers,
     sign_numbers,
 )
 from widgets.panels.attributes.shared_values import common_value
+from widgets.panels.attributes.sign_plates import PICTURE_PX, sign_picture
 
 _CLASS_FIELD = "sign_class"
 _CLASS_NAMES: Mapping[SignClass, Text] = {
@@ -33,29 +41,54 @@ _CLASS_NAMES: Mapping[SignClass, Text] = {
     "supplement": Text("Supplementary plates", "補助標識"),
 }
 
-# Of the order's safety colours (標識令, 別表第二, 備考), as screens show them.
-_GROUNDS = {
-    "blue": QColor("#0068b7"),
-    "green": QColor("#00913a"),
-    "yellow": QColor("#ffd800"),
-    "red": QColor("#d7000f"),
-    "white": QColor("#ffffff"),
-}
-_RIM = QColor("#2b2f36")
-_PICTURE_PX = 24
+_MORE = Text("Other colours and sizes", "他の色・寸法")
+_OTHERS = Text("Other shapes", "他の形")
 _FLAT = 30
 """So many entries fit a menu of a small screen; more are listed by the classes of signs."""
 
+_LARGE_PICTURES = f"""
+QMenu {{ icon-size: {PICTURE_PX}px; }}
+QMenu::item {{ padding: 2px 24px 2px 8px; }}
+QMenu::item:selected {{ background: palette(highlight); color: palette(highlighted-text); }}
+"""
+"""Pictures are as large as they were painted only where items have a rule of their own."""
+
+_PICTURE_PX = 150
+"""Side of the picture of the sign itself, above the candidates."""
+
+
+class _Photo(QWidget):
+    """A picture in its own colours though it can't be chosen."""
+
+    def __init__(self, photo: QPixmap, parent: QWidget) -> None:
+        super().__init__(parent)
+        self.setObjectName("photo")
+        aspect, mode = (
+            Qt.AspectRatioMode.KeepAspectRatio,
+            Qt.TransformationMode.SmoothTransformation,
+        )
+        self._photo = photo.scaled(_PICTURE_PX, _PICTURE_PX, aspect, mode)
+        self.setMinimumSize(self._photo.size().grownBy(QMargins(4, 4, 4, 4)))
+
+    @override
+    def paintEvent(self, event: QPaintEvent) -> None:
+        place = self._photo.rect()
+        place.moveCenter(self.rect().center())
+        with QPainter(self) as painter:
+            painter.drawPixmap(place.topLeft(), self._photo)
+
 
 class SignNumberMenu(QMenu):
-    """The signs that plates of the chosen features' shape may be.
+    """The signs that plates of the chosen features may be, those that look like them first.
 
     Parameters
     ----------
     features : tuple of Feature
-        Their shape, and whether they hang below others, say what is offered; all signs where
-        shapes differ or aren't known.
+        Their shape, size and colour, and whether they hang below others, say what is offered; all
+        signs where shapes differ or aren't known.
     language : Language
+    photo : QPixmap or None
+        What the sign looks like, shown above what is offered.
 
     Signals
     -------
@@ -65,33 +98,67 @@ class SignNumberMenu(QMenu):
     number_chosen = Signal(str)
 
     def __init__(
-        self, features: tuple[Feature, ...], language: Language, parent: QWidget | None = None
+        self,
+        features: tuple[Feature, ...],
+        language: Language,
+        parent: QWidget | None = None,
+        *,
+        photo: QPixmap | None = None,
     ) -> None:
         super().__init__(parent)
         self._language = language
-        shape = common_value(features, lambda one: one.attributes.get("shape"))
-        below = common_value(features, lambda one: one.attributes.get("supplementary"))
-        known = shape if isinstance(shape, str) else ""
-        offered = numbers_for(known, is_supplement=below is True) if known else sign_numbers()
-        groups = [
-            (sign_class, [*group])
-            for sign_class, group in groupby(offered, lambda one: one.sign_class)
-        ]
-        for sign_class, group in groups:
-            title = _CLASS_NAMES[sign_class].in_language(language)
-            menu = self if len(offered) <= _FLAT else self.addMenu(title)
-            if menu is self:
-                menu.addSection(title)
-            self._fill(menu, group, known)
+        self.setStyleSheet(_LARGE_PICTURES)
+        look = look_of(features)
+        offered = offered_numbers(look)
+        if photo is not None and not photo.isNull():
+            self._show_photo(photo)
+        self._fill(self, offered.likely, look.shape)
+        for title, signs in ((_MORE, offered.unlikely), (_OTHERS, offered.others)):
+            if signs:
+                self._fill(self._menu(self, title), signs, look.shape)
 
-    def _fill(self, menu: QMenu, group: Sequence[SignNumber], shape: str) -> None:
-        for one in group:
-            picture = plate_picture(shape or one.shapes[0], one.colour)
+    def _show_photo(self, photo: QPixmap) -> None:
+        row = QWidgetAction(self)
+        row.setDefaultWidget(_Photo(photo, self))
+        row.setEnabled(False)  # keys begin at the first candidate
+        self.addAction(row)
+        self.addSeparator()
+
+    def _menu(self, above: QMenu, title: Text) -> QMenu:
+        return above.addMenu(title.in_language(self._language))
+
+    def _fill(self, menu: QMenu, signs: Sequence[SignNumber], shape: str) -> None:
+        """Signs by their classes, in menus of their own where they are many."""
+        for sign_class, group in groupby(signs, lambda one: one.sign_class):
+            title = _CLASS_NAMES[sign_class]
+            if len(signs) > _FLAT:
+                self._add_signs(self._menu(menu, title), [*group], shape)
+            else:
+                menu.addSection(title.in_language(self._language))
+                self._add_signs(menu, [*group], shape)
+
+    def _add_signs(self, menu: QMenu, signs: Sequence[SignNumber], shape: str) -> None:
+        for one in signs:
+            picture = sign_picture(one, shape if shape in one.shapes else one.shapes[0])
             words = f"{one.number}  {one.name.in_language(self._language)}"
             action = QAction(picture, words.replace("&", "&&"), menu)
             action.setIconVisibleInMenu(True)
             action.triggered.connect(lambda _=False, n=one.number: self.number_chosen.emit(n))
             menu.addAction(action)
+
+
+def look_of(features: tuple[Feature, ...]) -> PlateLook:
+    """What the chosen features have in common of what tells legal signs apart."""
+    shape, below, size, colour = (
+        common_value(features, lambda one, id_=id_: one.attributes.get(id_))  # type: ignore[misc]
+        for id_ in ("shape", "supplementary", "size_m", "colour")
+    )
+    return PlateLook(
+        shape if isinstance(shape, str) else "",
+        is_supplement=below is True,
+        size_m=float(size) if isinstance(size, int | float) else math.nan,
+        colour=next((one for one in SIGN_COLOURS if one == colour), None),
+    )
 
 
 def implied_values(
@@ -121,43 +188,3 @@ def implied_kind(
 def _sign_of(id_: str, value: AttributeValue) -> SignNumber | None:
     """The sign that a number written into an attribute means."""
     return next((one for one in sign_numbers() if id_ == FIELD and one.number == value), None)
-
-
-def plate_picture(shape: str, colour: str) -> QIcon:
-    """A plate in its colour; the same in rows that are chosen, where the style would tint it."""
-    picture = QPixmap(_PICTURE_PX, _PICTURE_PX)
-    picture.fill(Qt.GlobalColor.transparent)
-    with QPainter(picture) as painter:
-        painter.setRenderHint(QPainter.RenderHint.Antialiasing, on=True)
-        painter.setPen(QPen(_RIM, 1.5))
-        painter.setBrush(_GROUNDS[colour])
-        inner = QRectF(2, 2, _PICTURE_PX - 4, _PICTURE_PX - 4)
-        if shape == "circle":
-            painter.drawEllipse(inner)
-        elif shape == "rectangle":
-            painter.drawRect(inner.adjusted(0, 5, 0, -5))
-        else:
-            painter.drawPolygon(_outline(shape, inner))
-    icon = QIcon(picture)
-    icon.addPixmap(picture, QIcon.Mode.Selected)
-    icon.addPixmap(picture, QIcon.Mode.Active)
-    return icon
-
-
-def _outline(shape: str, inner: QRectF) -> QPolygonF:
-    """Corners of a plate; of a square where the shape has no own."""
-    left, right, top, bottom = inner.left(), inner.right(), inner.top(), inner.bottom()
-    middle = inner.center()
-    eaves = top + inner.height() / 3
-    corners = {
-        "triangle": [
-            (left, top),
-            (right, top),
-            (middle.x(), top + inner.width() * math.sqrt(3) / 2),
-        ],
-        "diamond": [(middle.x(), top), (right, middle.y()), (middle.x(), bottom),
-                    (left, middle.y())],
-        "pentagon": [(middle.x(), top), (right, eaves), (right, bottom), (left, bottom),
-                     (left, eaves)],
-    }.get(shape, [(left, top), (right, top), (right, bottom), (left, bottom)])  # fmt: skip
-    return QPolygonF([QPointF(x, y) for x, y in corners])

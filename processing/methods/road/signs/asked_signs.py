@@ -3,14 +3,21 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from processing.core.arrays import Floats
 from processing.methods.road.signs.initial_positions import FARTHEST_M, InitialPosition
-from processing.methods.road.signs.road_signs import RoadSign
+from processing.methods.road.signs.road_signs import RoadSign, SoughtShapes
+from processing.methods.road.signs.sign_shapes import (
+    RECTANGLE,
+    SignShape,
+    looked_for,
+    shape_of,
+    standard_shapes,
+)
 
 _OFF_M = 1.0
 """Standard deviation of a given position, of easting and of northing: errors are anywhere up to 2 m
@@ -38,10 +45,17 @@ _LEAST_CHANCE = 0.2
 """Of what is taken for an asked sign, with that word: what is less likely is rather nothing."""
 
 
+_CUT_OUT_M = 3.0
+"""About a position, plates are looked at (Takahashi 2022, 8.3)."""
+
+_SAME_PLATE_M = 0.15
+"""Between the middles of outlines that are laid on one plate: less than half of the smallest."""
+
+
 def asked_signs(
     signs: Sequence[RoadSign], positions: Sequence[InitialPosition]
-) -> tuple[tuple[RoadSign, ...], tuple[InitialPosition, ...]]:
-    """The plate of each position, and the positions that have none.
+) -> dict[int, RoadSign]:
+    """The plate of each position, by the position's number; those that have none are not in it.
 
     Each plate is of one position at most; all are assigned together, so that two signs on one post
     with a position each get one each.
@@ -54,13 +68,98 @@ def asked_signs(
     from scipy.optimize import linear_sum_assignment  # a fifth of a second to load
 
     rows, columns = linear_sum_assignment(np.where(np.isfinite(costs), costs, 1e6))
-    found: dict[int, RoadSign] = {
+    return {
         int(row): replace(likely[column], confidence=_with_word(likely[column].confidence))
         for row, column in zip(rows, columns, strict=True)
         if np.isfinite(costs[row, column])
     }
-    missed = tuple(one for row, one in enumerate(positions) if row not in found)
-    return tuple(found[row] for row in sorted(found)), missed
+
+
+def doubtful_numbers(
+    found: Mapping[int, RoadSign], positions: Sequence[InitialPosition]
+) -> tuple[int, ...]:
+    """The positions whose given shape or size isn't that of the plate found, or that have none."""
+    return tuple(
+        number
+        for number, one in enumerate(positions)
+        if one.shape and (number not in found or not _is_as_given(found[number], one))
+    )
+
+
+def with_given_shapes(
+    found: Mapping[int, RoadSign],
+    again: Sequence[RoadSign],
+    positions: Sequence[InitialPosition],
+    doubtful: Sequence[int],
+) -> dict[int, RoadSign]:
+    """The plates of positions, the doubtful ones replaced by those that are as was given.
+
+    What points speak against clearly is not taken on somebody's word.
+
+    Parameters
+    ----------
+    again : sequence of RoadSign
+        What is found where nothing but the given shapes is looked for (:func:`sought_about`).
+    """
+    sure = {number: one for number, one in found.items() if number not in doubtful}
+    free = [
+        one
+        for one in again
+        if all(np.linalg.norm(one.centre - own.centre) > _SAME_PLATE_M for own in sure.values())
+    ]
+    asked = [positions[number] for number in doubtful]
+    better = {
+        doubtful[row]: one
+        for row, one in asked_signs(free, asked).items()
+        if _is_as_given(one, asked[row]) and _is_allowed(one, found.get(doubtful[row]))
+    }
+    return {**found, **better}
+
+
+def sought_about(
+    place: Floats, positions: Sequence[InitialPosition], doubtful: Sequence[int]
+) -> SoughtShapes | None:
+    """What plates about a place look like by what is given of the positions about it.
+
+    None where no doubtful position is near.
+    """
+    if not is_about(place, [positions[number] for number in doubtful]):
+        return None
+    near = [one for one in positions if is_about(place, [one])]
+    if not all(one.shape for one in near):
+        return SoughtShapes(looked_for())
+    shapes = dict.fromkeys(shape for one in near for shape in _given_shapes(one))
+    return SoughtShapes(tuple(shapes), any(one.shape == RECTANGLE for one in near))
+
+
+def _is_allowed(given: RoadSign, free: RoadSign | None) -> bool:
+    """Whether the points say no more against a given shape than somebody's word is worth."""
+    if free is None:
+        return True
+    one, other = given.plate.evidence, free.plate.evidence
+    return (one.cost - other.cost) * max(one.open_ends, other.open_ends) <= _OTHER_SHAPE
+
+
+def _given_shapes(position: InitialPosition) -> tuple[SignShape, ...]:
+    """The templates of what is given; none of a rectangle, whose sides follow from the points."""
+    if position.shape == RECTANGLE:
+        return ()
+    of_shape = tuple(one for one in standard_shapes() if one.shape == position.shape)
+    if math.isnan(position.size_m):
+        return of_shape
+    of_size = tuple(one for one in of_shape if _is_size(one, position))
+    return of_size or (shape_of(position.shape, position.size_m),)
+
+
+def _is_as_given(sign: RoadSign, position: InitialPosition) -> bool:
+    shape = sign.plate.shape
+    if position.shape and position.shape != shape.shape:
+        return False
+    return math.isnan(position.size_m) or _is_size(shape, position)
+
+
+def _is_size(shape: SignShape, position: InitialPosition) -> bool:
+    return abs(shape.size_m / position.size_m - 1) <= _SIZE_SHARE
 
 
 def _with_word(chance: float) -> float:
@@ -84,14 +183,15 @@ def _cost(sign: RoadSign, position: InitialPosition) -> float:
         cost += _SUPPLEMENT
     if position.shape and position.shape != shape.shape:
         cost += _OTHER_SHAPE
-    if not math.isnan(position.size_m) and abs(shape.size_m / position.size_m - 1) > _SIZE_SHARE:
+    if not math.isnan(position.size_m) and not _is_size(shape, position):
         cost += _OTHER_SHAPE
     return cost
 
 
-def is_near(middle: Floats, positions: Sequence[InitialPosition], reach_m: float) -> bool:
-    """Whether a position lies so near to a place in plan."""
+def is_about(place: Floats, positions: Sequence[InitialPosition]) -> bool:
+    """Whether plates about a place (m, project CRS) may be those of a position."""
+    reach_m = _CUT_OUT_M + FARTHEST_M
     return any(
-        math.hypot(middle[0] - one.easting_m, middle[1] - one.northing_m) <= reach_m
+        math.hypot(place[0] - one.easting_m, place[1] - one.northing_m) <= reach_m
         for one in positions
     )

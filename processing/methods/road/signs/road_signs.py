@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -86,13 +87,28 @@ class RoadSign:
     post: PostForm | None = None
 
 
-ShapesAt = Callable[[Floats], Sequence[SignShape]]
-"""The shapes that plates about a place (m, project CRS) may have; none: nobody asks for them."""
+class SoughtShapes(NamedTuple):
+    """What plates may look like.
+
+    Attributes
+    ----------
+    shapes : tuple of SignShape
+        All but rectangles.
+    with_rectangles : bool
+        Whether rectangles of any size are looked for, too.
+    """
+
+    shapes: tuple[SignShape, ...]
+    with_rectangles: bool = True
 
 
-def any_shape(_place: Floats) -> Sequence[SignShape]:
+ShapesAt = Callable[[Floats], SoughtShapes | None]
+"""What plates about a place (m, project CRS) may look like; None: nobody asks for them."""
+
+
+def any_shape(_place: Floats) -> SoughtShapes:
     """All shapes, wherever a plate is."""
-    return looked_for()
+    return SoughtShapes(looked_for())
 
 
 def road_signs(
@@ -103,7 +119,7 @@ def road_signs(
     Parameters
     ----------
     shapes_at : callable
-        What is looked for at a place; rectangles are looked for wherever anything is.
+        What is looked for at a place.
 
     Notes
     -----
@@ -124,11 +140,13 @@ def road_signs(
 
     def of_group(group: PlateGroup) -> list[RoadSign]:
         monitor.check()
-        shapes = shapes_at(group.middle + plan.origin)
-        if not shapes:
+        sought = shapes_at(group.middle + plan.origin)
+        if sought is None:
             return []
         lines = lines_of(pieces, group)
-        fit = fit_plates(lines, empty_lines(pieces, group, lines), shapes, monitor)
+        empty = empty_lines(pieces, group, lines)
+        rectangles = sought.with_rectangles
+        fit = fit_plates(lines, empty, sought.shapes, monitor, with_rectangles=rectangles)
         return _signs(plates_of(pieces, group, lines, fit), pieces, (plan, ground), ways)
 
     found: list[RoadSign] = []

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from PySide6.QtCore import Qt
-from PySide6.QtGui import QAction
-from PySide6.QtWidgets import QApplication, QLineEdit, QMenu
+from PySide6.QtCore import QPoint, QSize, Qt
+from PySide6.QtGui import QAction, QColor, QPixmap
+from PySide6.QtWidgets import QApplication, QLineEdit, QMenu, QWidget
 from pytestqt.qtbot import QtBot
 
 from processing.core.text import Text
@@ -17,13 +17,14 @@ from processing.map.catalogue import Catalogue, Geometry
 from processing.map.catalogue_file import read_catalogue
 from processing.map.change import Change
 from processing.map.feature import AttributeValue, Feature, Vertex
-from processing.map.sign_numbers import numbers_for, sign_numbers
+from processing.map.sign_numbers import PlateLook, numbers_for, offered_numbers, sign_numbers
 from processing.project.photos import photo_folder, photo_name, write_photos
 from resources import path_of
 from tests.widgets.builders import OpenMap
 from widgets.panels.attributes.attribute_panel import AttributePanel
 from widgets.panels.attributes.photo_row import PhotoRow
 from widgets.panels.attributes.sign_numbers import SignNumberMenu, implied_kind
+from widgets.panels.attributes.sign_plates import sign_picture
 
 
 class MapOfSigns(OpenMap):
@@ -44,12 +45,24 @@ def entries(menu: QMenu) -> list[QAction]:
     found = []
     for one in menu.actions():
         below = one.menu()
-        found += entries(below) if isinstance(below, QMenu) else [] if one.isSeparator() else [one]
+        is_entry = not one.isSeparator() and bool(one.text())
+        found += entries(below) if isinstance(below, QMenu) else [one] if is_entry else []
     return found
 
 
 def numbers_in(menu: QMenu) -> list[str]:
     return [one.text().split()[0] for one in entries(menu)]
+
+
+def first_numbers_in(menu: QMenu) -> list[str]:
+    """Those that look like the sign, without what else may be chosen."""
+    more = {"Other colours and sizes", "Other shapes", "他の色・寸法", "他の形"}
+    left = [one for one in menu.actions() if one.text() in more]
+    for one in left:
+        menu.removeAction(one)
+    first = numbers_in(menu)
+    menu.addActions(left)
+    return first
 
 
 def test_each_number_is_listed_once_with_names_and_a_plate() -> None:
@@ -78,9 +91,78 @@ def test_the_signs_of_a_plates_shape_are_offered(
 ) -> None:
     menu = SignNumberMenu((sign("a", shape=shape),), "ja")
     qtbot.addWidget(menu)
-    assert offered in numbers_in(menu)
-    assert left_out not in numbers_in(menu)
+    assert offered in first_numbers_in(menu)
+    assert left_out not in first_numbers_in(menu)
+    assert len(numbers_in(menu)) == len(sign_numbers())
     assert not any(one.icon().isNull() for one in entries(menu))
+
+
+@pytest.mark.parametrize(
+    ("colour", "first", "later"), [("blue", "316", "323"), ("white", "323", "316")]
+)
+def test_signs_of_the_plates_colour_come_first_and_others_stay(
+    qtbot: QtBot, colour: str, first: str, later: str
+) -> None:
+    menu = SignNumberMenu((sign("a", shape="circle", colour=colour),), "en")
+    qtbot.addWidget(menu)
+    assert first in first_numbers_in(menu)
+    assert later not in first_numbers_in(menu)
+    assert later in numbers_in(menu)
+
+
+def test_only_guide_signs_are_larger_than_the_order_lets_others_be() -> None:
+    small = offered_numbers(PlateLook("rectangle", size_m=0.9))
+    large = offered_numbers(PlateLook("rectangle", size_m=2.4))
+    assert {one.sign_class for one in small.likely} == {"guide", "regulation", "instruction"}
+    assert {one.sign_class for one in large.likely} == {"guide"}
+    assert {one.number for one in (*large.likely, *large.unlikely, *large.others)} == {
+        one.number for one in sign_numbers()
+    }
+
+
+def test_a_colour_that_no_sign_of_the_shape_has_leaves_all_of_the_shape() -> None:
+    offered = offered_numbers(PlateLook("diamond", colour="blue"))
+    assert offered.likely == numbers_for("diamond", is_supplement=False)
+    assert not offered.unlikely
+
+
+def colours_of(number: str, shape: str) -> set[str]:
+    """What a sign's picture is painted with, the mixtures at edges left out."""
+    chosen = next(one for one in sign_numbers() if one.number == number)
+    picture = sign_picture(chosen, shape).pixmap(QSize(40, 40), 2.0).toImage()
+    pixels = [
+        picture.pixelColor(x, y) for x in range(picture.width()) for y in range(picture.height())
+    ]
+    names = [one.name() for one in pixels if one.alpha() == 255]
+    return {one for one in names if names.count(one) > 20}
+
+
+@pytest.mark.parametrize(
+    ("number", "shape", "painted"),
+    [("330", "triangle", {"#d7000f", "#ffffff"}), ("316", "circle", {"#0068b7", "#d7000f"}),
+     ("323", "circle", {"#ffffff", "#d7000f", "#0068b7"}),
+     ("303", "circle", {"#d7000f", "#ffffff"}),
+     ("208", "diamond", {"#ffd800", "#111111"}), ("317", "circle", {"#0068b7", "#ffffff"})],
+)  # fmt: skip
+def test_pictures_show_ground_rim_and_symbol_or_the_number(
+    qtbot: QtBot, number: str, shape: str, painted: set[str]
+) -> None:
+    assert qtbot is not None
+    assert painted <= colours_of(number, shape)
+
+
+def test_the_picture_of_the_sign_stands_above_what_is_offered(qtbot: QtBot) -> None:
+    photo = QPixmap(30, 30)
+    photo.fill(QColor("#d7000f"))
+    menu = SignNumberMenu((sign("a", shape="triangle"),), "ja", photo=photo)
+    qtbot.addWidget(menu)
+    menu.popup(QPoint(0, 0))
+    shown = menu.findChild(QWidget, "photo")
+    assert isinstance(shown, QWidget)
+    middle = shown.grab().toImage().pixelColor(shown.width() // 2, shown.height() // 2)
+    assert middle.name() == "#d7000f"
+    qtbot.keyClick(menu, Qt.Key.Key_Down)
+    assert menu.activeAction().text().startswith("118")
 
 
 def test_signs_of_several_shapes_are_offered_every_number(qtbot: QtBot) -> None:
