@@ -153,6 +153,6 @@ def test_a_reflector_tells_delineators_and_without_one_their_height(
 
 def test_a_conical_post_of_five_metres_is_a_lamp_and_a_straight_one_a_sign() -> None:
     plate = _about(_plate(0.6, (4.4, 5.0), 0.05, 1e6))
-    straight = _shaft(0.0965, 5.2)
+    straight = _shaft(0.0891, 5.2)
     assert _type_of(straight, plate) == "sign_pole"
     assert _type_of(replace(straight, taper=0.011), plate) == "street_light"
