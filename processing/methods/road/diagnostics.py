@@ -47,9 +47,12 @@ class Diagnostic:
     is_taken : bool
     outline : (n, 3) float64 or None
         Ring of what was laid on the points there, m, project CRS; its first place isn't repeated.
+    points : (n, 3) float64 or None
+        The measured points that it rests on, m, project CRS.
     """
 
     xyz: NDArray[np.float64]
     outcomes: tuple[DiagnosticTest, ...]
     is_taken: bool
     outline: NDArray[np.float64] | None = None
+    points: NDArray[np.float64] | None = None

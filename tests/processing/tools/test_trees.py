@@ -311,6 +311,11 @@ def test_the_circles_of_a_trunk_are_told_where_they_are(
         assert one.outcomes[0].value == pytest.approx(OLD_DIAMETER_M, abs=0.1)
         assert math.dist(one.xyz[:2], place[:2]) < 0.03
         assert 0.2 < one.xyz[2] - place[2] < 2.8
+        assert one.points is not None
+        beside = np.hypot(*(one.points - place)[:, :2].T)
+        assert len(beside) >= 3
+        assert beside == pytest.approx(OLD_DIAMETER_M / 2, abs=0.06)
+        assert np.abs(one.points[:, 2] - one.xyz[2]).max() <= 0.051
         assert one.outline is not None
         assert np.ptp(one.outline, axis=0)[:2] == pytest.approx(
             [one.outcomes[0].value] * 2, rel=0.02

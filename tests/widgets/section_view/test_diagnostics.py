@@ -123,6 +123,32 @@ def test_the_outline_that_was_laid_on_a_plate_is_drawn_about_its_mark(
     user.view.close()
 
 
+def test_the_points_that_a_trunk_stands_on_are_drawn_in_its_colour(
+    qtbot: QtBot, tmp_path: Path
+) -> None:
+    user = shown(qtbot, OpenMap((imported_drive(tmp_path / "street"),)))
+    picture, viewport = user.pane.picture, user.pane.viewport
+    assert picture is not None
+    cut = picture.request.cut
+    middle = np.array([2.0, cut.middle[2] + 2.0, 0.0])
+    points = middle + np.array([[-0.6, 0.3, 0.0], [0.6, 0.3, 0.1], [0.0, 0.7, -0.1]])
+    looked_at = Diagnostic(
+        cut.to_space(middle[None])[0], (), is_taken=True, points=cut.to_space(points)
+    )
+    one = ShownDiagnostic("trees", looked_at, middle, points=points)
+    reported = replace(
+        picture, diagnostics=FoundDiagnostics((SectionDiagnostics("street", (), (one,)),))
+    )
+    image = QImage(int(viewport.width), int(viewport.height), QImage.Format.Format_RGBA8888)
+    image.fill(0)
+    painter = QPainter(image)
+    DiagnosticMarks("en").paint(painter, reported, viewport)
+    painter.end()
+    for spot in viewport.to_screen(SectionProjection(cut).on_plane(points)).round().astype(int):
+        assert image.pixelColor(*spot.tolist()).name() == "#3ddc97"
+    user.view.close()
+
+
 def test_what_is_known_is_drawn_while_other_tools_are_asked(qtbot: QtBot, tmp_path: Path) -> None:
     user = shown(qtbot, OpenMap((imported_drive(tmp_path / "street"),)))
     picture, viewport = user.pane.picture, user.pane.viewport

@@ -30,7 +30,7 @@ _LIMIT = Text("limit {limit}", "基準 {limit}")
 _LINE, _LINE_EDGE = QColor("#56b4e9"), QColor(16, 18, 22, 170)
 _YES, _NO = QColor("#3ddc97"), QColor("#ff8c69")
 _PLATE, _WORDS, _FAINT = QColor(16, 18, 22, 225), QColor("#eef2f6"), QColor("#b9c0c9")
-_MARK_PX, _NEAR_PX = 6.0, 14.0
+_MARK_PX, _NEAR_PX, _POINT_PX = 6.0, 14.0, 3.0
 _MARGIN_PX, _GAP_PX, _SAMPLE_PX = 8.0, 14.0, 26.0
 _TOP_PX = 34.0
 
@@ -85,6 +85,10 @@ class DiagnosticMarks:
                 painter.drawPolyline(QPolygonF([QPointF(x, y) for x, y in spots.tolist()]))
         for shown in sorted(_diagnostics_of(picture), key=lambda shown: shown.diagnostic.is_taken):
             x, y = viewport.to_screen(projection.on_plane(shown.section[None]))[0].tolist()
+            if len(shown.points):
+                painter.setPen(QPen(_YES if shown.diagnostic.is_taken else _NO, _POINT_PX))
+                spots = viewport.to_screen(projection.on_plane(shown.points))
+                painter.drawPoints([QPointF(*spot) for spot in spots.tolist()])
             if len(shown.outline):
                 ring = viewport.to_screen(projection.on_plane(shown.outline)).tolist()
                 _paint_outline(painter, ring, is_taken=shown.diagnostic.is_taken)

@@ -31,12 +31,15 @@ class ShownDiagnostic:
         Offset, height, distance from the plane, m.
     outline : (n, 3) float64
         The same of the ring that was laid on the points; none: empty.
+    points : (n, 3) float64
+        The same of the measured points that it rests on.
     """
 
     tool: str
     diagnostic: Diagnostic
     section: Floats
     outline: Floats = field(default_factory=lambda: np.empty((0, 3)))
+    points: Floats = field(default_factory=lambda: np.empty((0, 3)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -118,9 +121,11 @@ def _looked_at(
 
 
 def _shown(tool: str, diagnostic: Diagnostic, cut: Cut) -> ShownDiagnostic:
-    ring = np.empty((0, 3)) if diagnostic.outline is None else diagnostic.outline
+    nowhere = np.empty((0, 3))
+    ring = nowhere if diagnostic.outline is None else diagnostic.outline
+    points = nowhere if diagnostic.points is None else diagnostic.points
     section = cut.to_section(diagnostic.xyz.reshape(1, 3))[0]
-    return ShownDiagnostic(tool, diagnostic, section, cut.to_section(ring))
+    return ShownDiagnostic(tool, diagnostic, section, cut.to_section(ring), cut.to_section(points))
 
 
 def _lines(scanlines: Scanlines, cut: Cut) -> tuple[Floats, ...]:

@@ -459,7 +459,9 @@ def type_of(shaft: Shaft, carried: Carried, *, is_reflecting: bool) -> str:
         return "utility_pole"
     if high > ARMS_FROM_M and carried.arm_m >= _LEAST_ARM_M:
         return _of_arm(carried)
-    if high > _TALL_M:
+    # Posts that grow thinner upwards are made for lamps, those of signs are straight pipes.
+    is_conical = high > ARMS_FROM_M and shaft.taper > _CONCRETE_TAPER
+    if high > _TALL_M or is_conical:
         return "street_light" if diameter < _UTILITY_M else "utility_pole"
     return plate if has_plate else "other"
 

@@ -105,6 +105,7 @@ def _circles(points: Floats, shaft: Floats, ground: Floats, *, is_shaft: bool) -
     for low in np.arange(float(shaft[LOW]), float(shaft[TOP]), _SLICE_M).tolist():
         is_here = (points[:, 2] >= low) & (points[:, 2] < low + _SLICE_M)
         on = off[is_here & (np.abs(off) < BESIDE_M / 2) & (np.abs(off) < 4 * tolerance)]
+        surface = ground + points[is_here & (np.abs(off) < tolerance)]
         if on.size < _FEWEST:
             continue
         swell = float(np.median(on))
@@ -118,7 +119,8 @@ def _circles(points: Floats, shaft: Floats, ground: Floats, *, is_shaft: bool) -
             DiagnosticTest(_BESIDE, others / max(number, 1), 1.0, "", others < number),
         )
         is_taken = is_shaft and all(one.is_met for one in tests[:3])
-        found.append(Diagnostic(ground + _middle(shaft, low + _SLICE_M / 2), tests, is_taken))
+        place = ground + _middle(shaft, low + _SLICE_M / 2)
+        found.append(Diagnostic(place, tests, is_taken, points=surface if is_taken else None))
     return found
 
 

@@ -20,7 +20,12 @@ from processing.core.worked_ahead import in_order
 from processing.methods.road.objects.column_points import ColumnPoints
 from processing.methods.road.objects.columns import FoundColumns
 from processing.methods.road.objects.foot import foot_height, ground_seen
-from processing.methods.road.trees.drive_shifts import JoinedPoints, without_shifts
+from processing.methods.road.trees.drive_shifts import (
+    JoinedPoints,
+    agreed_shifts,
+    laid_by,
+    without_shifts,
+)
 from processing.methods.road.trees.rises import followed
 from processing.methods.road.trees.stems import BREAST_M, stems_of
 from processing.methods.road.trees.trunks import CLUMP_M, Trunk, leave_together, trunks_of
@@ -28,6 +33,10 @@ from processing.methods.road.trees.trunks import CLUMP_M, Trunk, leave_together,
 _NEIGHBOURS, _MOST = list(range(1, 21)), 0.5
 """Nearest columns that are asked whether drives lie apart, and how many have to say so: positions
 drift over minutes, so columns of a street agree."""
+
+_BESIDE = 9
+"""Of them those nearest, a row of trees on one side: heads that are mounted otherwise than told lie
+apart along the street, forwards on one side of it and backwards on the other."""
 
 _SAME_M = 0.1
 """Axes nearer than this are of one stem that two columns show: what each misses of it moves it by a
@@ -173,7 +182,7 @@ def _drives_joined(
     """The trunks by points of all drives laid onto each other, where these lie apart.
 
     Bark that is not round looks like a shift too: drives lie apart where most columns that are
-    near say so.
+    near say so, by centimetres, or agree how far they do, by less.
     """
 
     def laid_together(one: ColumnTrunk) -> JoinedPoints:
@@ -190,9 +199,13 @@ def _drives_joined(
     joined: list[ColumnTrunk] = []
     for place, one, shifted in zip(places, trunks, moved, strict=True):
         monitor.check()
-        points = shifted.points
         near = np.asarray(tree.query(place, k=_NEIGHBOURS)[1])
-        if points is not None and is_apart[near[near < len(told)]].mean() > _MOST:
+        near = near[near < len(told)]
+        points = shifted.points if is_apart[near].mean() > _MOST else None
+        agreed = agreed_shifts(shifted, [moved[told[number]] for number in near[:_BESIDE]])
+        if points is None and agreed:
+            points = laid_by(one.about, gathered.drives[one.lines], agreed)
+        if points is not None:
             anew = _trunks_in(points, most_diameter_m)
             joined.append(one._replace(about=points, trunk=_nearest(anew, one.trunk)))
         else:

@@ -6,6 +6,8 @@ circle through both is then too thick, too thin, or none.
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -22,19 +24,70 @@ _NEARER = 1.15
 brings some nearer, since bark isn't quite round."""
 
 
+_AGREE, _SURELY, _LEAST_ERROR_M = 3, 3.0, 0.001
+"""Stems that have to agree on how drives lie apart; over how many standard errors they have to; and
+the least such error: three that agree by chance within a millimetre are no surer."""
+
+_SPREAD, _MEDIAN = 1.4826, 1.2533
+"""Standard deviation over the median distance from the median, and of a median over that of a
+mean; of what is distributed normally."""
+
+
 class JoinedPoints(NamedTuple):
     """Points with those of each drive laid onto the others'.
 
     Attributes
     ----------
-    is_told : bool
-        Whether two drives and more have points on the stem.
+    shifts : dict of int to (2,) float64
+        How far each drive lies aside of the one with the most points there, m east and north; empty
+        where fewer than two drives have points on the stem.
     points : (n, 3) float64 or None
-        None where drives lie on each other as they are.
+        None where these points alone don't show that drives lie apart.
     """
 
-    is_told: bool
+    shifts: dict[int, Floats]
     points: Floats | None
+
+    @property
+    def is_told(self) -> bool:
+        """Whether two drives and more have points on the stem."""
+        return len(self.shifts) > 1
+
+
+def agreed_shifts(own: JoinedPoints, near: Sequence[JoinedPoints]) -> dict[int, Floats]:
+    """How far drives lie aside where a stem and those near it agree; empty where they don't.
+
+    One trunk doesn't tell a shift of a centimetre from bark that isn't round; several do, since
+    bark is out of round in another direction on each.
+
+    Parameters
+    ----------
+    own : JoinedPoints
+        Of the stem.
+    near : sequence of JoinedPoints
+        Of the nearest ones, itself included.
+    """
+    first = next((drive for drive, shift in own.shifts.items() if not shift.any()), None)
+    agreed: dict[int, Floats] = {}
+    for drive in own.shifts:
+        both = [one.shifts for one in near if {drive, first} <= one.shifts.keys()]
+        if first is None or drive == first or len(both) < _AGREE:
+            continue
+        apart = np.array([one[drive] - one[first] for one in both])
+        middle: Floats = np.median(apart, axis=0)
+        spread = _SPREAD * np.median(np.abs(apart - middle), axis=0)
+        error = float(np.hypot(*spread)) * _MEDIAN / math.sqrt(len(both))
+        if np.hypot(*middle) > _SURELY * max(error, _LEAST_ERROR_M):
+            agreed[drive] = middle
+    return agreed
+
+
+def laid_by(points: Floats, drives: Integers, shifts: Mapping[int, Floats]) -> Floats:
+    """Points with those of some drives moved back by how far they lie aside: (n, 3) float64."""
+    moved: Floats = points.copy()
+    for drive, shift in shifts.items():
+        moved[drives == drive, :2] -= shift
+    return moved
 
 
 def without_shifts(points: Floats, drives: Integers, stem: FittedStem) -> JoinedPoints:
@@ -51,25 +104,26 @@ def without_shifts(points: Floats, drives: Integers, stem: FittedStem) -> Joined
     """
     known, group = np.unique(drives, return_inverse=True)
     if known.size < 2:
-        return JoinedPoints(is_told=False, points=None)
+        return JoinedPoints({}, None)
     about = _points_on(points, stem)
     counts = np.bincount(group[about], minlength=known.size)
     first = int(counts.argmax())
     is_told = counts >= _FEWEST
     is_told[first] = False
     if not is_told.any() or counts[first] < _FEWEST:
-        return JoinedPoints(is_told=False, points=None)
+        return JoinedPoints({}, None)
     local = points[about] - (0.0, 0.0, BREAST_M)
     start, shifts = stem.body, np.zeros((known.size, 2))
     unmoved = np.full(known.size, -1, np.int64)
     numbers = np.where(is_told, np.cumsum(is_told) - 1, -1)
     before = apart_kernel(local, (group[about], unmoved), SHAPE_M, start.copy(), shifts)
     after = apart_kernel(local, (group[about], numbers), SHAPE_M, start.copy(), shifts)
-    if after < _NEARER * before or np.hypot(*shifts.T).max() > CAPTURED_M:
-        return JoinedPoints(is_told=True, points=None)
-    moved: Floats = points.copy()
-    moved[:, :2] -= shifts[group]
-    return JoinedPoints(is_told=True, points=moved)
+    if np.hypot(*shifts.T).max() > CAPTURED_M:
+        return JoinedPoints({}, None)
+    is_told[first] = True
+    told = {int(known[one]): shifts[one] for one in np.flatnonzero(is_told)}
+    is_clear = after >= _NEARER * before
+    return JoinedPoints(told, laid_by(points, drives, told) if is_clear else None)
 
 
 def _points_on(points: Floats, stem: FittedStem) -> Integers:

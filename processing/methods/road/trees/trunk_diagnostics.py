@@ -2,16 +2,24 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
-from processing.core.arrays import Floats
+from processing.core.arrays import Floats, Integers
 from processing.core.text import Text
 from processing.methods.road.asked_points import points_beside
 from processing.methods.road.diagnostics import Diagnostic, DiagnosticTest
 from processing.methods.road.objects.foot import foot_height
 from processing.methods.road.requested_position import RequestedPosition
 from processing.methods.road.trees.circle_kernels import ARC, EAST, INLIERS, NORTH, RADIUS
-from processing.methods.road.trees.stems import BREAST_M, FittedStem, slab_circles, stems_of
+from processing.methods.road.trees.stems import (
+    BREAST_M,
+    STEP_M,
+    FittedStem,
+    slab_circles,
+    stems_of,
+)
 from processing.methods.road.trees.trunks import Trunk, trunk_of
 
 _TRUNK_M = 0.9
@@ -47,14 +55,29 @@ def trunk_diagnostics(asked: RequestedPosition, most_diameter_m: float) -> tuple
         return ()
     foot = foot_height(local, np.zeros(2), float(np.quantile(local[:, 2], _LOWEST_SHARE)))
     points = local - (0.0, 0.0, foot)
+    ground = asked.xyz + np.array([0.0, 0.0, foot])
     trunk = trunk_of(stems_of(points, most_diameter_m))
     slabs = slab_circles(points, most_diameter_m)
     found: list[Diagnostic] = []
     for height, circles in zip(slabs.heights.tolist(), slabs.circles, strict=True):
         for circle in circles[circles[:, RADIUS] > 0]:
-            place = asked.xyz + np.array([circle[EAST], circle[NORTH], foot + height])
-            found.append(_diagnostic_of(circle, height, place, trunk, most_diameter_m))
+            place = ground + np.array([circle[EAST], circle[NORTH], height])
+            one = _diagnostic_of(circle, height, place, trunk, most_diameter_m)
+            if one.is_taken:
+                on = points[_points_on(circle, height, points, trunk)]
+                one = replace(one, points=on + ground)
+            found.append(one)
     return tuple(found)
+
+
+def _points_on(circle: Floats, height_m: float, points: Floats, trunk: Trunk | None) -> Integers:
+    """Which points of a slab the stem stands on that is nearest to a circle."""
+    stems = trunk.stems if trunk else ()
+    if not stems:
+        return np.empty(0, np.int64)
+    lines = min(stems, key=lambda stem: _off(circle, height_m, stem)).lines
+    on: Integers = lines[np.abs(points[lines, 2] - height_m) <= STEP_M / 2]
+    return on
 
 
 def _diagnostic_of(

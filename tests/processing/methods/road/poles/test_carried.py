@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -147,3 +149,10 @@ def test_a_reflector_tells_delineators_and_without_one_their_height(
     shaft = _shaft(diameter_m, top_m)
     assert asks_for_brightness(shaft)
     assert type_of(shaft, carried_of(_about(NOTHING), shaft), is_reflecting=shines) == expected
+
+
+def test_a_conical_post_of_five_metres_is_a_lamp_and_a_straight_one_a_sign() -> None:
+    plate = _about(_plate(0.6, (4.4, 5.0), 0.05, 1e6))
+    straight = _shaft(0.0891, 5.2)
+    assert _type_of(straight, plate) == "sign_pole"
+    assert _type_of(replace(straight, taper=0.011), plate) == "street_light"

@@ -7,7 +7,12 @@ import pytest
 
 from processing.core.arrays import Floats
 from processing.methods.road.objects.foot import ground_seen
-from processing.methods.road.trees.drive_shifts import without_shifts
+from processing.methods.road.trees.drive_shifts import (
+    JoinedPoints,
+    agreed_shifts,
+    laid_by,
+    without_shifts,
+)
 from processing.methods.road.trees.stems import stems_of
 from processing.methods.road.trees.trunks import trunk_of
 
@@ -53,6 +58,34 @@ def test_one_drive_tells_nothing() -> None:
     points = seen(0.3, (0.0, 0.0), 0.0, 1)
     told = without_shifts(points, np.zeros(len(points), np.int64), stems_of(points, MOST_M)[0])
     assert not told.is_told
+
+
+def told(*shifts: tuple[float, float]) -> list[JoinedPoints]:
+    """What stems tell of the second of two drives."""
+    return [JoinedPoints({0: np.zeros(2), 1: np.array(one)}, None) for one in shifts]
+
+
+def test_a_centimetre_between_heads_counts_where_trunks_agree_on_it() -> None:
+    near = told((0.013, 0.005), (0.011, 0.006), (0.014, 0.008), (0.012, 0.005))
+    agreed = agreed_shifts(near[0], near)
+    assert agreed[1] == pytest.approx([0.0125, 0.0055])
+    points = np.vstack([seen(0.12, (0.0, 0.0), -55.0, 5), seen(0.12, (0.0125, 0.0055), 55.0, 6)])
+    drives = np.repeat([0, 1], len(points) // 2)
+    apart = abs(diameter_of(points) - 0.12)
+    together = abs(diameter_of(laid_by(points, drives, agreed)) - 0.12)
+    assert together < 0.002 < apart
+
+
+def test_bark_that_is_not_round_is_no_shift_between_heads() -> None:
+    near = told((0.006, -0.003), (-0.004, 0.005), (0.002, 0.004), (-0.005, -0.004))
+    assert not agreed_shifts(near[0], near)
+    assert not agreed_shifts(near[0], near[:2])
+
+
+def test_how_drives_lie_apart_is_told_from_whichever_has_the_most_points() -> None:
+    other = JoinedPoints({1: np.zeros(2), 0: np.array([-0.012, -0.006])}, None)
+    near = [other, *told((0.012, 0.006), (0.013, 0.006), (0.012, 0.007))]
+    assert agreed_shifts(other, near)[0] == pytest.approx([-0.012, -0.006], abs=0.001)
 
 
 def about(heights: Floats, within_m: float) -> Floats:
