@@ -239,7 +239,7 @@ def test_what_the_tool_ground_found_is_seen_at_once_with_its_line(corrector, sur
     user, document, site = corrector, corrector.document, corrector.site
     assert document.undo()
     assert not user.classes().any()
-    user.shared.view_settings.change_look(attribute="intensity")
+    user.shared.view_settings.change_look(attribute="toned")
     user.until(lambda: user.pane.picture is not None)
     assert user.pane.picture.ground == ()
     drive = document.drives()[0]
