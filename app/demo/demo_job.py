@@ -28,8 +28,10 @@ from processing.recording.drive import Drive
 from processing.recording.kinds import ImageKind
 from processing.tools.features import FEATURES
 from processing.tools.registry import point_tools
+from processing.tools.waveform_classify import WAVEFORM_CLASSIFY
 from resources import path_of
 from widgets.shared.cursor import PickedPosition
+from widgets.shared.view_settings import PointStyle
 
 _FORMATS = ("dxf", "csv", "gpkg", "geojson")
 """A drawing and its ledgers. What needs a route, the grid of map sheets or facts of a work is no
@@ -37,6 +39,8 @@ part of a first look."""
 
 _LONGEST_WAIT_MS = 300_000
 _SETTLE_MS = 1_500
+_MOST_WAITS, _RESTED = 8, 2
+"""Rests between looks at the window, and so many in a row in which 3D had nothing to draw."""
 _NEAR_M = 0.3
 
 
@@ -75,6 +79,11 @@ def do_demo_job(parts: WindowParts, out: Path) -> int:
         parts.window.close()
     print_lines(*job.made)
     return 0
+
+
+_LEFT_OUT = (FEATURES.id, WAVEFORM_CLASSIFY.id)
+"""Half of the time for numbers that few look at; and classes of flights, which say nothing of a
+street."""
 
 
 class _DemoJob:
@@ -135,15 +144,15 @@ class _DemoJob:
     def run_tools(self) -> None:
         for drive in self._document.drives():
             for tool in point_tools().values():
-                if tool.id == FEATURES.id:  # half of the time, for numbers that few look at
-                    continue
-                self._run(tool.id, drive.id, tool.parameters())
+                if tool.id not in _LEFT_OUT:
+                    self._run(tool.id, drive.id, tool.parameters())
 
     def show_and_shoot(self) -> None:
         """Show a piece of the street with the drawing and keep the window's picture."""
         first = self._document.drives()[0]
         settings = self._document.shared.view_settings
         settings.show_image(first.id, ImageKind.TRAJECTORY_CENTER)
+        settings.change_look(attribute=PointStyle().attribute)
         self._parts.image_view.show_one_to_one()
         feature = next(f for f in self._document.features() if len(f.vertices) > 2)
         vertex = feature.vertices[len(feature.vertices) // 2]
@@ -155,7 +164,7 @@ class _DemoJob:
         self._shoot("window.png")
         settings.change_look(attribute="height")
         self._shoot("window-height.png")
-        settings.change_look(attribute="intensity")
+        settings.change_look(attribute=PointStyle().attribute)
         self._document.shared.selection.clear()
 
     def export(self) -> None:
@@ -222,9 +231,13 @@ class _DemoJob:
 
     def _shoot(self, name: str) -> None:
         """Let tiles load and views settle, then keep what the window shows."""
-        loop = QEventLoop()
-        QTimer.singleShot(_SETTLE_MS, loop.quit)
-        loop.exec()
+        loop, rested = QEventLoop(), 0
+        for _ in range(_MOST_WAITS):
+            QTimer.singleShot(_SETTLE_MS, loop.quit)
+            loop.exec()
+            rested = rested + 1 if self._parts.scene_view.is_settled else 0
+            if rested == _RESTED:
+                break
         path = self._out / name
         picture = QGuiApplication.primaryScreen().grabWindow(self._parts.window.winId())
         if not picture.save(str(path)):
