@@ -181,7 +181,8 @@ def _curve_of(folder: Path, count: int, *, has_trajectory: bool, has_normals: bo
 
 def _lifted(drive: Drive, points: NDArray[np.int64]) -> Floats:
     """Intensities, those that differ from what lies around them made to differ more."""
-    column, flat = np.asarray(drive.columns["intensity"]), np.ascontiguousarray(points).ravel()
+    # A copy can be written; compiled code for arrays that can't be would be other code.
+    column, flat = np.asarray(drive.columns["intensity"]), np.array(points, np.int64).ravel()
     lifted = np.empty(flat.size)
     lifted_kernel(column, flat, _COMPARED, lifted)
     return lifted.reshape(np.shape(points))
@@ -264,3 +265,10 @@ def _seen(drive: Drive, points: NDArray[np.int64]) -> _Seen:
     long = np.linalg.norm(normals, axis=-1) * np.maximum(ranges, _NEAREST_M)
     cosines = np.abs((normals * away).sum(axis=-1)) / np.maximum(long, 1e-9)
     return _Seen(ranges, np.where((long > 0) & (cosines >= _MOST_ASKEW), cosines, np.nan))
+
+
+def warm_up() -> None:
+    """Compile the kernel, which the first picture of a recording asks for."""
+    column = np.zeros(1, np.uint16)
+    column.flags.writeable = False  # as mapped columns are
+    lifted_kernel(column, np.zeros(1, np.int64), _COMPARED, np.empty(1))
