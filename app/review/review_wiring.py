@@ -169,8 +169,8 @@ class _ReviewWiring(QObject):
         Between candidates of one geometry the operator's own zoom is kept.
         """
         panes = self._parts.section_view.panes
-        is_own = tuple(pane.viewport.scale for pane in panes) != self._section_scales
-        if feature.geometry is self._framed and is_own:
+        is_chosen = tuple(pane.viewport.scale for pane in panes) != self._section_scales
+        if feature.geometry is self._framed and is_chosen:
             return
         high_m = feature.attributes.get("height_m")
         for pane in panes:

@@ -151,6 +151,9 @@ ATTRIBUTES: Mapping[str, Attribute] = {
 SHOWS_LABELS = frozenset({"label", "class", "judged"})
 """Attributes that show what was painted, or found by a tool that classifies."""
 
+SHOWS_INTENSITY = frozenset({"intensity", "toned"})
+"""Attributes that show how bright points are, in greys."""
+
 
 def colours(
     drive: Drive, points: _Points, attribute: str, low_percent: float, high_percent: float
@@ -232,7 +235,7 @@ thousand has, wherever they lie, is met by some forty of them."""
 
 def _varies(drive: Drive, attribute: str) -> bool:
     """Whether a column as delivered holds more than one value; others are taken to."""
-    column = "intensity" if attribute == "toned" else attribute
+    column = "intensity" if attribute in SHOWS_INTENSITY else attribute
     if column not in ("intensity", "color") or not drive.columns.has(column):
         return True
     try:

@@ -12,6 +12,7 @@ from typing_extensions import override
 
 from processing.core.errors import UserError
 from processing.core.text import Text
+from processing.image.attributes.attributes import SHOWS_INTENSITY
 from processing.labels.label_column import labels_of
 from processing.labels.rules import PaintRule
 from processing.map.change import Change
@@ -168,7 +169,7 @@ class PaintTool(MouseTool):
         self.settle()
         self._stroke = Stroke(self._shared.selection.points)
         settings = self._shared.view_settings
-        if settings.look.attribute in ("intensity", "toned"):
+        if settings.look.attribute in SHOWS_INTENSITY:
             settings.change_look(attribute="label")
 
     def _show_stroke(self, points: PaintedPoints) -> None:

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QObject, QTimer, Signal
 
 from processing.core.arrays import Floats
+from processing.image.attributes.attributes import SHOWS_INTENSITY
 from processing.image.attributes.tile_cache import TileCache
 from processing.image.images_of_drives import image_of
 from processing.image.search.clip import Clip
@@ -35,7 +36,6 @@ from widgets.shared.view_settings import PointStyle
 REST_MS = 200
 _LEAST_MARK_MS, _FRAMES_BETWEEN_MARKS = 20, 3.0
 _POINTS_PER_PORTION = 150_000
-_GREYS = frozenset({"intensity", "toned"})
 _LIFTED: Final = np.asarray(255 * (np.arange(256) / 255) ** 0.55, np.uint8)
 """Greys of intensity, as they are drawn: against the dark behind them asphalt would be black."""
 
@@ -312,7 +312,7 @@ class PointCloudLayer(QObject):
         return self._scene_renderer.shade(is_on=self._is_shading_wanted and has_time)
 
     def _colours_of(self, tile: SceneTile) -> NDArray[np.uint8]:
-        plain = tile.request.attribute in _GREYS
+        plain = tile.request.attribute in SHOWS_INTENSITY
         colours = _LIFTED[tile.colours] if plain else tile.colours
         marked = self._marked.get(tile.id.drive_id)
         if marked is None or not marked.size:

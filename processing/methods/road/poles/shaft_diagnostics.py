@@ -105,9 +105,9 @@ def _circles(points: Floats, shaft: Floats, ground: Floats, *, is_shaft: bool) -
     for low in np.arange(float(shaft[LOW]), float(shaft[TOP]), _SLICE_M).tolist():
         is_here = (points[:, 2] >= low) & (points[:, 2] < low + _SLICE_M)
         on = off[is_here & (np.abs(off) < BESIDE_M / 2) & (np.abs(off) < 4 * tolerance)]
-        surface = ground + points[is_here & (np.abs(off) < tolerance)]
         if on.size < _FEWEST:
             continue
+        surface = ground + points[is_here & (np.abs(off) < tolerance)]
         swell = float(np.median(on))
         number = int(np.count_nonzero(np.abs(on) < tolerance))
         others = int(np.count_nonzero(is_here & (off >= tolerance) & (off < BESIDE_M)))
