@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.map.catalogue import Geometry
+from processing.map.own_points import OwnPoints, own_points
 
 AttributeValue = str | float | int | bool | None
 Position = tuple[float, float, float]
@@ -94,6 +95,9 @@ class Feature:
         Key of a :class:`processing.map.catalogue.FeatureKind`.
     geometry : Geometry
         How ``vertices`` are read: one vertex, an open line, a ring (its first vertex not repeated).
+    own_points : tuple of OwnPoints
+        The measured points that it consists of, as a tool found them: of a tree those of its trunk;
+        one for each drive that has some, none where nobody knows.
     """
 
     id: str
@@ -103,10 +107,11 @@ class Feature:
     attributes: Mapping[str, AttributeValue] = field(default_factory=dict)
     status: Status = Status.ACCEPTED
     provenance: Provenance = field(default_factory=Provenance)
+    own_points: tuple[OwnPoints, ...] = ()
 
     def with_vertices(self, vertices: tuple[Vertex, ...]) -> Feature:
-        """The same feature in another place."""
-        return dataclasses.replace(self, vertices=vertices)
+        """The same feature in another place; of which points it consists there, nobody knows."""
+        return dataclasses.replace(self, vertices=vertices, own_points=())
 
     def with_status(self, status: Status, *, unseen: bool = False) -> Feature:
         """The same feature, decided on by a person who looks at it or by its confidence alone."""
@@ -120,7 +125,7 @@ def with_points_at(feature: Feature, positions: Mapping[str, NDArray[np.int64]])
     Parameters
     ----------
     positions : mapping of str to (n,) int64
-        By drive: where each of its points is now. Vertices on other drives stay as they are.
+        By drive: where each of its points is now. What rests on other drives stays as it is.
 
     Returns
     -------
@@ -136,9 +141,18 @@ def with_points_at(feature: Feature, positions: Mapping[str, NDArray[np.int64]])
         return dataclasses.replace(vertex, measured=there)
 
     on = {vertex.measured.drive for vertex in feature.vertices if vertex.measured is not None}
-    if on.isdisjoint(positions):
+    if on.isdisjoint(positions) and positions.keys().isdisjoint(
+        one.drive for one in feature.own_points
+    ):
         return feature
-    return feature.with_vertices(tuple(map(moved, feature.vertices)))
+    own = tuple(
+        own_points(one.drive, there[one.numbers(there.size)])
+        if (there := positions.get(one.drive)) is not None
+        else one
+        for one in feature.own_points
+    )
+    vertices = tuple(map(moved, feature.vertices))
+    return dataclasses.replace(feature, vertices=vertices, own_points=own)
 
 
 def new_feature_id() -> str:

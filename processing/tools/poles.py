@@ -112,6 +112,8 @@ def _candidate(pole: StreetPole) -> Candidate:
         pole.confidence,
         attributes,
         pole.drives[:1],
+        own_points=pole.points,
+        own_drives=pole.drives,
     )
 
 

@@ -187,6 +187,10 @@ class Candidate:
         and into drawings, not into files of what was found.
     picture : (h, w, 3) uint8 or None
         What a camera image shows of it, red, green, blue; a project keeps it with the feature.
+    own_points : (k,) int64 or None
+        The measured points that it consists of, by their index in the drive; None: not told.
+    own_drives : (k,) int64 or None
+        Which drive each of them is of, as in ``drives``.
     """
 
     kind: str
@@ -198,6 +202,8 @@ class Candidate:
     drives: NDArray[np.int64] | None = None
     is_drawing: bool = False
     picture: NDArray[np.uint8] | None = None
+    own_points: NDArray[np.int64] | None = None
+    own_drives: NDArray[np.int64] | None = None
 
 
 @dataclass(frozen=True)

@@ -110,6 +110,8 @@ def _candidate(tree: StreetTree) -> Candidate:
         tree.confidence,
         attributes,
         tree.drives[:1],
+        own_points=tree.points,
+        own_drives=tree.drives,
     )
 
 

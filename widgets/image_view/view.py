@@ -18,6 +18,7 @@ from typing_extensions import override
 from processing.core.errors import UserError
 from processing.core.text import Language
 from processing.image.attributes.tile_cache import TileCache
+from widgets.feature_drawing.own_point_marks import OwnPointPlaces
 from widgets.image_view.features.feature_overlay import FeatureOverlay
 from widgets.image_view.features.feature_positions import FeaturePositions
 from widgets.image_view.features.position_search import PositionSearch
@@ -96,7 +97,9 @@ class ImageView(QWidget):
         self._images = TileImages(tiles)
         self._images.setParent(self)
         self._positions = FeaturePositions(source)
-        self._overlay = FeatureOverlay(self._positions, shared.view_settings)
+        self._overlay = FeatureOverlay(
+            self._positions, shared.view_settings, OwnPointPlaces(source)
+        )
         self._hits = HitFinder(self._overlay, shared.snap, shared.view_settings)
         self._gesture = Gesture(self._hits, shared.cursor)
         self._navigation = Navigation()

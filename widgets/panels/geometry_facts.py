@@ -17,17 +17,17 @@ _PERIMETER = Text("Perimeter", "周長")
 _AREA = Text("Area in plan", "水平面積")
 _RISE = Text("Height difference", "比高")
 _VERTICES = Text("Vertices", "頂点数")
+_OWN_POINTS = Text("Own points", "構成点数")
 _AXES = (Text.same("E"), Text.same("N"), Text.same("H"))
 
 
 def facts_of(feature: Feature, language: Language = "en") -> tuple[tuple[Text, str], ...]:
     """Names and values with units, in the order in which they are shown."""
+    locale = QLocale(language)
     if feature.geometry is Geometry.POINT:
         values = feature.vertices[0].xyz if feature.vertices else ()
-        return tuple(
-            (axis, f"{coordinate(value)} m") for axis, value in zip(_AXES, values, strict=False)
-        )
-    locale = QLocale(language)
+        places = [(ax, f"{coordinate(value)} m") for ax, value in zip(_AXES, values, strict=False)]
+        return (*places, *_own(feature, locale))
     is_area = feature.geometry is Geometry.AREA
     length = locale.toString(length_m(feature), "f", 3)
     facts = [(_PERIMETER if is_area else _LENGTH, f"{length} m")]
@@ -37,7 +37,13 @@ def facts_of(feature: Feature, language: Language = "en") -> tuple[tuple[Text, s
     rise_m = max(heights) - min(heights) if heights else 0.0
     facts.append((_RISE, f"{locale.toString(rise_m, 'f', 3)} m"))
     facts.append((_VERTICES, locale.toString(len(heights))))
-    return tuple(facts)
+    return (*facts, *_own(feature, locale))
+
+
+def _own(feature: Feature, locale: QLocale) -> tuple[tuple[Text, str], ...]:
+    """How many measured points it consists of, where that is known."""
+    count = sum(one.count for one in feature.own_points)
+    return ((_OWN_POINTS, locale.toString(count)),) if count else ()
 
 
 def length_m(feature: Feature) -> float:

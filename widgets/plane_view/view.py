@@ -20,6 +20,8 @@ from PySide6.QtWidgets import QMenu, QWidget
 from typing_extensions import override
 
 from processing.core.text import Language
+from widgets.feature_drawing.feature_style import colour_of_kind
+from widgets.feature_drawing.own_point_marks import OwnPointPlaces, paint_own_points
 from widgets.feature_drawing.screen_marks import paint_outline
 from widgets.mouse_tools.menu_request import MenuRequest
 from widgets.mouse_tools.mouse_tool import MouseTool
@@ -89,6 +91,7 @@ class PlaneView(QWidget):
         self._hits = PlaneHits(self)
         self._hits.selected = shared.selection.features
         self._mouse = PlaneMouse(self, self._hits, shared)
+        self._chosen = OwnPointPlaces(source)
         self._still = StillPicture()
         self._live = LivePainter()
         self.setMouseTracking(True)
@@ -273,6 +276,7 @@ class PlaneView(QWidget):
                     catalogue=catalogue,
                     selected=self._shared.selection.features,
                 )
+            self._paint_own_points(painter, projection)
             self.paint_frame(painter, self._viewport)
             content = LiveContent(
                 catalogue=catalogue,
@@ -286,6 +290,14 @@ class PlaneView(QWidget):
             outline = self._mouse.gesture.outline
             if outline is not None:
                 paint_outline(painter, outline)
+
+    def _paint_own_points(self, painter: QPainter, projection: PlaneProjection) -> None:
+        """The points that chosen features consist of, where they are shown."""
+        catalogue = self._source.catalogue()
+        for feature in self._chosen.features(self._shared.selection.features):
+            if self._shared.view_settings.shows(feature):
+                spots = self._viewport.to_screen(projection.to_plane(self._chosen.xyz(feature)))
+                paint_own_points(painter, spots, colour_of_kind(catalogue, feature.kind))
 
     @override
     def resizeEvent(self, event: QResizeEvent) -> None:

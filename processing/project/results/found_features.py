@@ -22,6 +22,7 @@ from processing.map.feature import (
     Vertex,
     new_feature_id,
 )
+from processing.map.own_points import OwnPoints, own_points
 from processing.project.photos import FIELD as PHOTO
 from processing.project.photos import photo_name
 from processing.project.store.runs import Run, new_run_id
@@ -196,4 +197,18 @@ def _feature(candidate: Candidate, run: Run, drives: Sequence[str], photo: str) 
         attributes={**candidate.attributes, **({PHOTO: photo} if photo else {})},
         status=Status.CANDIDATE,
         provenance=Provenance(run.tool, run.version, run.parameters, confidence, run.id),
+        own_points=_own_points(candidate, drives),
+    )
+
+
+def _own_points(candidate: Candidate, drives: Sequence[str]) -> tuple[OwnPoints, ...]:
+    """Those of a candidate, for each drive that has some."""
+    points, numbers = candidate.own_points, candidate.own_drives
+    if points is None:
+        return ()
+    of = np.zeros(len(points), np.int64) if numbers is None else numbers
+    return tuple(
+        own_points(drive, points[of == number])
+        for number, drive in enumerate(drives)
+        if (of == number).any()
     )

@@ -12,6 +12,7 @@ from processing.map.catalogue import Geometry
 from processing.map.change import Change, ListedDrive, Replacement, SystemChange
 from processing.map.feature import Feature, PointReference, Position, Provenance, Status, Vertex
 from processing.map.filed_labels import LABEL_STEPS, filed_of_plain, filed_to_plain
+from processing.map.own_points import OwnPoints
 from processing.map.step_files import STEP_FILES, step_files_of_plain, step_files_to_plain
 from processing.project.store.geometry_blob import blob_of, positions_of
 
@@ -20,6 +21,11 @@ COLUMNS = (
     "occluded",
 )  # fmt: skip
 """Columns of the table ``features``, in the order of rows."""
+
+_OWN = ""
+"""Beside the drives, whose ids are never empty, in what features rest on: their own points."""
+
+_OWN_POINTS = "own_points"
 
 FeatureRow = tuple[bytes, str, str, str, str, float, str, str, str, str]
 
@@ -42,7 +48,7 @@ def row_of(feature: Feature, layer: str, srs_id: int) -> FeatureRow:
         feature.provenance.confidence,
         _json(dict(feature.attributes)),
         _json(_plain_provenance(feature.provenance)),
-        _json(_references(feature.vertices)),
+        _json(_measured(feature)),
         _json(_occluded(feature.vertices)),
     )
 
@@ -58,18 +64,21 @@ def feature_of(row: tuple[Any, ...]) -> Feature:
     """
     blob, id_, kind, _, status, _, attributes, provenance, measured, occluded = row
     geometry, positions = positions_of(blob)
+    references = {} if measured == "{}" else _mapping(json_of(measured))
+    own = _own_points_from(references.pop(_OWN, {}))
     return Feature(
         id=id_,
         kind=kind,
         geometry=geometry,
         vertices=_vertices(
             positions,
-            {} if measured == "{}" else _mapping(json_of(measured)),
+            references,
             [] if occluded == "[]" else json_of(occluded),
         ),
         attributes={} if attributes == "{}" else _mapping(json_of(attributes)),
         status=Status(status),
         provenance=_provenance(provenance),
+        own_points=own,
     )
 
 
@@ -141,6 +150,7 @@ def _plain(feature: Feature) -> dict[str, object]:
         "attributes": dict(feature.attributes),
         "status": feature.status.value,
         "provenance": _plain_provenance(feature.provenance),
+        **({_OWN_POINTS: _plain_own_points(feature)} if feature.own_points else {}),
     }
 
 
@@ -155,6 +165,7 @@ def _from_plain(plain: dict[str, Any]) -> Feature:
         attributes=_mapping(plain["attributes"]),
         status=Status(plain["status"]),
         provenance=Provenance(**plain["provenance"]),
+        own_points=_own_points_from(plain.get(_OWN_POINTS, {})),
     )
 
 
@@ -173,6 +184,20 @@ def _plain_provenance(provenance: Provenance) -> dict[str, object]:
 def _provenance(text: str) -> Provenance:
     """Candidates of a run share theirs; a value that nobody changes may be shared."""
     return Provenance(**json_of(text))
+
+
+def _measured(feature: Feature) -> dict[str, object]:
+    """What the vertices rest on, by drive, and the feature's own points."""
+    own = {_OWN: _plain_own_points(feature)} if feature.own_points else {}
+    return {**_references(feature.vertices), **own}
+
+
+def _plain_own_points(feature: Feature) -> dict[str, str]:
+    return {one.drive: one.runs for one in feature.own_points}
+
+
+def _own_points_from(plain: Any) -> tuple[OwnPoints, ...]:
+    return tuple(OwnPoints(str(drive), str(runs)) for drive, runs in _mapping(plain).items())
 
 
 def _references(vertices: tuple[Vertex, ...]) -> dict[str, list[int | None]]:

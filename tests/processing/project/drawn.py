@@ -16,6 +16,7 @@ from processing.map.feature import (
     Status,
     Vertex,
 )
+from processing.map.own_points import own_points
 from processing.project.project import Project
 from processing.project.store.feature_rows import change_from_json
 from processing.project.store.reading_connection import connect
@@ -36,6 +37,13 @@ def curb(id: str, *, vertices: int = 2) -> Feature:
     provenance = Provenance("curbs", 3, {"step_m": 0.05, "both": True}, 0.75, "run-1")
     attributes: dict[str, AttributeValue] = {"height_m": 0.15, "note": "縁石"}
     return Feature(id, "curb_lower", Geometry.LINE, line, attributes, Status.CANDIDATE, provenance)
+
+
+def with_own_points(id: str, *points: tuple[str, list[int]]) -> Feature:
+    """A tree that consists of these points of drives."""
+    own = tuple(own_points(drive, numbers) for drive, numbers in points)
+    foot = (Vertex((-11000.1, -35000.2, 3.5)),)
+    return Feature(id, "street_tree", Geometry.POINT, foot, own_points=own)
 
 
 def new_project(folder: Path, *features: Feature) -> Path:

@@ -102,11 +102,15 @@ def street() -> tuple[TriangleShape, ...]:
 
 
 @pytest.fixture(scope="module")
-def told(tmp_path_factory: pytest.TempPathFactory) -> RunOutcome:
-    folder: Path = tmp_path_factory.mktemp("trees")
+def drives(tmp_path_factory: pytest.TempPathFactory) -> tuple[Drive, ...]:
     way = straight(LENGTH_M)
     driven = DrivenRecording(way, facing_along(way), street(), head=HEAD_45, pulses=3_000)
-    return told_by("trees", recorded(folder, driven), folder)
+    return recorded(tmp_path_factory.mktemp("drives"), driven)
+
+
+@pytest.fixture(scope="module")
+def told(drives: tuple[Drive, ...], tmp_path_factory: pytest.TempPathFactory) -> RunOutcome:
+    return told_by("trees", drives, tmp_path_factory.mktemp("trees"))
 
 
 def tree_at(told: RunOutcome, foot: Floats) -> Candidate:
@@ -151,6 +155,18 @@ def test_several_stems_count_seven_tenths_of_their_sum(told: RunOutcome) -> None
 def test_the_foot_lies_on_the_ground(told: RunOutcome) -> None:
     for foot in (STAKED, LEANING):
         assert tree_at(told, foot).xyz[0] == pytest.approx(foot + ORIGIN, abs=0.04)
+
+
+def test_own_points_of_a_tree_lie_on_its_trunk(told: RunOutcome, drives: tuple[Drive, ...]) -> None:
+    points = tree_at(told, STAKED).own_points
+    assert points is not None
+    away = drives[0].xyz(points) - ORIGIN - STAKED
+    assert len(points) > 300
+    radius_m = STAKED_DIAMETER_M / 2 - 0.005 * (away[:, 2] - 1.2)
+    off_m = np.abs(np.hypot(away[:, 0], away[:, 1]) - radius_m)
+    assert (off_m < 0.03).mean() > 0.95
+    assert away[:, 2].min() > 0.0
+    assert away[:, 2].max() < 4.5
 
 
 def test_height_crown_and_lean_are_those_of_the_tree(told: RunOutcome) -> None:

@@ -14,6 +14,7 @@ from processing.image.attributes.tile_cache import TileCache
 from processing.image.images_of_drives import image_of
 from processing.image.search.nearest import nearest_point
 from processing.map.catalogue import Geometry
+from processing.map.own_points import own_points
 from processing.recording.drive import Drive
 from processing.recording.kinds import ImageKind
 from tests.widgets.builders import OpenMap, position_on
@@ -297,6 +298,20 @@ def test_chosen_points_are_tinted(user: ImageViewUser) -> None:
     assert after.blue() - after.red() > before.blue() - before.red() + 40
     user.map.shared.selection.choose_points({})
     assert QColor(user.view.grab().toImage().pixel(user.spot(point))) == before
+
+
+def test_own_points_of_a_chosen_feature_are_dotted(user: ImageViewUser) -> None:
+    foot, of_trunk = user.points_across(2)
+    tree = user.map.add(
+        Geometry.POINT, user.drive, foot, own_points=(own_points(user.drive.id, [of_trunk]),)
+    )
+    before = QColor(user.view.grab().toImage().pixel(user.spot(of_trunk)))
+    user.map.shared.selection.choose_features(frozenset({tree.id}))
+    dot = QColor(user.view.grab().toImage().pixel(user.spot(of_trunk)))
+    assert dot.getRgb()[:3] == pytest.approx(QColor("#009e73").getRgb()[:3], abs=40)
+    assert dot != before
+    user.map.shared.selection.choose_features(frozenset())
+    assert QColor(user.view.grab().toImage().pixel(user.spot(of_trunk))) == before
 
 
 def test_a_drive_shown_again_is_painted_again(user: ImageViewUser, right_drive: Drive) -> None:

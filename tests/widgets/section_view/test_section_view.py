@@ -8,16 +8,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from PySide6.QtCore import QPoint, Qt
-from PySide6.QtGui import QPolygonF
+from PySide6.QtGui import QColor, QPolygonF
 from PySide6.QtWidgets import QApplication, QMenu
 from pytestqt.qtbot import QtBot
 
+from processing.map.catalogue import Geometry
 from processing.map.feature import Vertex
+from processing.map.own_points import own_points
 from processing.section.cut import Cut
 from tests.builders import START
 from tests.mouse_events import NO_KEYS, move_mouse
 from tests.street_scene import CURB_AT_M, CURB_HEIGHT_M
-from tests.widgets.builders import OpenMap
+from tests.widgets.builders import OpenMap, position_on
 from tests.widgets.section_view.conftest import (
     SectionViewUser,
     curb_line,
@@ -37,6 +39,18 @@ SHIFT = Qt.KeyboardModifier.ShiftModifier
 def cut_of(user: SectionViewUser) -> Cut:
     assert user.view.cut is not None
     return user.view.cut
+
+
+def test_own_points_of_a_chosen_feature_are_dotted(user: SectionViewUser) -> None:
+    picture = user.pane.picture
+    assert picture is not None
+    drive = user.map.all_drives[0]
+    foot, *_, of_it = picture.points[picture.drive_numbers == 0].tolist()
+    tree = user.map.add(Geometry.POINT, drive, foot, own_points=(own_points(drive.id, [of_it]),))
+    spot = user.spot(position_on(drive, of_it))
+    user.map.shared.selection.choose_features(frozenset({tree.id}))
+    dot = QColor(user.pane.grab().toImage().pixel(spot))
+    assert dot.getRgb()[:3] == pytest.approx(QColor("#009e73").getRgb()[:3], abs=40)
 
 
 # Where it stands.

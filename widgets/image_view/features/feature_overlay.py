@@ -10,7 +10,8 @@ from processing.core.arrays import Floats
 from processing.map.catalogue import Catalogue, Geometry
 from processing.map.feature import Position, Vertex
 from widgets.feature_drawing.crowded_marks import FEW
-from widgets.feature_drawing.feature_style import sketch_style, style_of
+from widgets.feature_drawing.feature_style import colour_of_kind, sketch_style, style_of
+from widgets.feature_drawing.own_point_marks import OwnPointPlaces, paint_own_points
 from widgets.feature_drawing.screen_marks import preview_pens
 from widgets.image_view.features.feature_positions import FeaturePositions
 from widgets.image_view.features.marks import MarkPainter
@@ -52,10 +53,14 @@ class FeatureOverlay:
     positions : FeaturePositions
     settings : ViewSettings
         What is shown.
+    chosen : OwnPointPlaces
     """
 
-    def __init__(self, positions: FeaturePositions, settings: ViewSettings) -> None:
+    def __init__(
+        self, positions: FeaturePositions, settings: ViewSettings, chosen: OwnPointPlaces
+    ) -> None:
         self._positions = positions
+        self._chosen = chosen
         self._settings = settings
         self._marks = MarkPainter()
         self.selected: frozenset[str] = frozenset()
@@ -74,6 +79,10 @@ class FeatureOverlay:
         """Paint features, without the one that is being edited."""
         replaced = "" if drawing is None else drawing.replaces
         shown = self.shown_in(viewport.span_with(_MARGIN_PX), replaced)
+        for feature in self._chosen.features(self.selected):
+            if feature.id != replaced and self._settings.shows(feature):
+                spots = viewport.to_screen(self._positions.own_places(feature))
+                paint_own_points(painter, spots, colour_of_kind(catalogue, feature.kind))
         is_smooth = len(shown) <= _MOST_SMOOTH
         painter.setRenderHint(QPainter.RenderHint.Antialiasing, is_smooth)
         for one in shown:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from processing.core.arrays import Floats
 from processing.image.search.nearest import NearestSearch, nearest_point, nearest_points
 from processing.map.feature import Feature, Vertex
+from widgets.feature_drawing.own_point_marks import points_in
 from widgets.image_view.features.picture_feature import PictureFeature, join_vertices
 from widgets.image_view.features.waiting_features import WaitingFeatures
 from widgets.image_view.orientation.oriented_image import OrientedImage, Span
@@ -56,6 +57,7 @@ class FeaturePositions:
         self._ids: list[str] = []
         self._searched: dict[tuple[str, Vertex], int] = {}
         self._batch: _Batch | None = None
+        self._own: dict[str, tuple[Feature, Floats]] = {}
 
     @property
     def is_searching(self) -> bool:
@@ -65,12 +67,14 @@ class FeaturePositions:
     def show(self, picture: OrientedImage | None) -> None:
         """Place everything in another picture."""
         self._picture, self._batch = picture, None
+        self._own.clear()
         self._position(self._features.values())
 
     def read_all(self) -> None:
         """Read all features anew, when another project is open."""
         self._batch = None
         self._points.clear()
+        self._own.clear()
         self._features = {feature.id: feature for feature in self._source.features()}
         self._placed.clear()
         self._position(self._features.values())
@@ -129,6 +133,17 @@ class FeaturePositions:
         for index in np.flatnonzero(points == _UNKNOWN):
             points[index] = self._point_for(picture, vertices[index])
         return _positions(picture, points)
+
+    def own_places(self, feature: Feature) -> Floats:
+        """(n, 2) places of the measured points that a chosen feature consists of, in this drive."""
+        picture = self._picture
+        if picture is None:
+            return np.empty((0, 2))
+        known = self._own.get(feature.id)
+        if known is None or known[0] is not feature:
+            known = feature, _positions(picture, points_in(picture.drive, (feature,)))
+            self._own[feature.id] = known
+        return known[1]
 
     def search(self, for_s: float, near: tuple[float, float]) -> bool:
         """Search nearest points for a while; says whether any feature got its place.

@@ -135,7 +135,7 @@ class AttributeForm(QWidget):
         if len(features) != 1:
             return (kinds,)
         (one,) = features
-        return kinds, len(one.vertices) == 0, self._others(one)
+        return kinds, len(one.vertices) == 0, bool(one.own_points), self._others(one)
 
     def _others(self, feature: Feature) -> dict[str, AttributeValue]:
         known = {field.id for field in self._fields}

@@ -13,12 +13,19 @@ from processing.image.search.clip import Clip
 from processing.map.catalogue import Catalogue
 from processing.map.feature import Feature, Status
 from processing.map.solids import thickness_of
-from widgets.feature_drawing.feature_shapes import FeatureShapes, FlatShapes, flatten_shapes
-from widgets.feature_drawing.feature_style import style_of
+from widgets.feature_drawing.feature_shapes import (
+    FeatureShape,
+    FeatureShapes,
+    FlatShapes,
+    flatten_shapes,
+)
+from widgets.feature_drawing.feature_style import colour_of_kind, style_of
+from widgets.feature_drawing.own_point_marks import OwnPointPlaces
 from widgets.shared.map_source import MapSource
 from widgets.shared.shared_state import SharedState
 
 if TYPE_CHECKING:  # importing it imports VTK, which is done after the view was shown
+    from widgets.scene_view.rendering.feature_actors import DottedPoints
     from widgets.scene_view.rendering.scene_renderer import SceneRenderer
 
 
@@ -52,6 +59,7 @@ class MapLayer(QObject):
         self._source = source
         self._shared = shared
         self._shapes = FeatureShapes(np.zeros(3), ())
+        self._chosen = OwnPointPlaces(source)
         self.flat: FlatShapes = flatten_shapes(())
         self.replaced = ""
         self._clip: Clip | None = None
@@ -101,7 +109,7 @@ class MapLayer(QObject):
             )
             for shape in seen
         ]
-        scene_renderer.features.show(styled, scene_renderer.scale)
+        scene_renderer.features.show(styled, scene_renderer.scale, self._own_points(seen))
         scene_renderer.solids.show(
             [
                 StyledSolid(one.shape, one.style, thickness_m)
@@ -115,6 +123,18 @@ class MapLayer(QObject):
         shapes = [self._shapes.get(id_) for id_ in ids]
         positions = [shape.local_xyz for shape in shapes if shape is not None]
         return np.concatenate(positions) if positions else None
+
+    def _own_points(self, seen: tuple[FeatureShape, ...]) -> tuple[DottedPoints, ...]:
+        """The points that chosen things consist of, of those that are drawn."""
+        from widgets.scene_view.rendering.feature_actors import DottedPoints
+
+        drawn, origin = {shape.feature.id for shape in seen}, self._source.origin()
+        catalogue = self._source.catalogue()
+        return tuple(
+            DottedPoints(self._chosen.xyz(one) - origin, colour_of_kind(catalogue, one.kind))
+            for one in self._chosen.features(self._shared.selection.features)
+            if one.id in drawn
+        )
 
     def _on_map_features_changed(self, ids: tuple[str, ...]) -> None:
         for id_ in ids:

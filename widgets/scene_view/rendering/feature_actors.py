@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from PySide6.QtGui import QColor
 from vtkmodules.vtkCommonDataModel import vtkPolyData
 from vtkmodules.vtkRenderingCore import vtkActor, vtkPolyDataMapper, vtkRenderer
 
@@ -23,6 +24,7 @@ from widgets.scene_view.rendering.vtk_arrays import as_vtk, cloud_of, lines_of
 _HALO_RGB = (12, 14, 18)
 _MARK_PX = 9.0
 _VERTEX_PX = 7.0
+_DOT_PX = 3.0
 _DASH_M, _GAP_M = 0.6, 0.4
 
 
@@ -32,6 +34,22 @@ class StyledShape:
 
     shape: FeatureShape
     style: FeatureStyle
+
+
+@dataclass(frozen=True, eq=False)
+class DottedPoints:
+    """Measured points of a chosen feature, and the colour of their dots.
+
+    Attributes
+    ----------
+    local_xyz : (n, 3) float64
+        Metres from the view's origin.
+    colour : str
+        ``#rrggbb``.
+    """
+
+    local_xyz: Floats
+    colour: str
 
 
 class FeatureActors:
@@ -48,15 +66,20 @@ class FeatureActors:
         self._actors: list[tuple[vtkRenderer, vtkActor]] = []
         self._dashes: dict[str, tuple[FeatureShape, Floats]] = {}
 
-    def show(self, styled: Sequence[StyledShape], scale: float) -> None:
+    def show(
+        self, styled: Sequence[StyledShape], scale: float, dotted: Sequence[DottedPoints] = ()
+    ) -> None:
         """Draw exactly these.
 
         Parameters
         ----------
         scale : float
             Device pixels per Qt pixel.
+        dotted : sequence of DottedPoints
+            Below lines and marks.
         """
         self.clear()
+        self._show_dots(dotted, _DOT_PX * scale)
         shown = {one.shape.feature.id for one in styled}
         self._dashes = {id_: made for id_, made in self._dashes.items() if id_ in shown}
         for width_px, halo_px in sorted({_widths(one.style) for one in styled}):
@@ -84,6 +107,15 @@ class FeatureActors:
         for renderer, actor in self._actors:
             renderer.RemoveActor(actor)
         self._actors.clear()
+
+    def _show_dots(self, dotted: Sequence[DottedPoints], size_px: float) -> None:
+        if not dotted:
+            return
+        positions = np.concatenate([one.local_xyz for one in dotted])
+        rgb = np.array([_rgb_of(one.colour) for one in dotted], np.uint8)
+        actor = _points_actor(positions, np.repeat(rgb, [len(one.local_xyz) for one in dotted], 0))
+        actor.GetProperty().SetPointSize(size_px)
+        self._add(self._halos, actor)
 
     def _show_marks(self, styled: Sequence[StyledShape], size_px: float, *, is_round: bool) -> None:
         if not styled:
@@ -173,6 +205,11 @@ def dash_segments(local_xyz: Floats, ends: NDArray[np.int64]) -> Floats:
 def _widths(style: FeatureStyle) -> tuple[float, float]:
     # Halos are told apart in quarters of a pixel: every pair of widths is an actor of its own.
     return style.width_px, round(style.halo_px * 4) / 4
+
+
+def _rgb_of(colour: str) -> tuple[int, int, int]:
+    named = QColor(colour)
+    return named.red(), named.green(), named.blue()
 
 
 def _rgb(style: FeatureStyle) -> Colours:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 from contextlib import closing
+from dataclasses import replace
 from pathlib import Path
 
 import ezdxf
@@ -20,10 +21,13 @@ from processing.formats.vectors.feature_files import write_feature_file
 from processing.map.catalogue import Geometry
 from processing.map.catalogue_file import read_catalogue
 from processing.map.feature import PointReference, Status
+from processing.map.own_points import own_points
 from processing.project.project import Project
+from processing.project.results.found_features import found_features
+from processing.tools.normals import NormalsParameters
 from processing.tools.tool import Candidate, CandidateResult
 from resources import path_of
-from tests.processing.project.candidates import found, found_lines
+from tests.processing.project.candidates import FINDER, STARTED, found, found_lines
 from tests.processing.project.drawn import new_project
 
 SIGN = Candidate("sign", "point", np.array([[1.0, 2.0, 3.0]]), np.array([-1]), 1.7, {})
@@ -57,6 +61,22 @@ def test_candidates_become_features_that_know_where_they_come_from() -> None:
     assert lid.attributes == {"type": "lid"}
     assert made.run.summary.en == "Curbs: 2 candidates"
     assert made.run.drives == ("right",)
+
+
+def test_candidates_keep_their_own_points_by_drive() -> None:
+    numbers, drives = np.array([8, 3, 4, 11]), np.array([1, 0, 0, 1])
+    tree = replace(SIGN, own_points=numbers, own_drives=drives)
+    made = found_features(
+        CandidateResult((tree, SIGN)),
+        FINDER,
+        NormalsParameters(),
+        ("left", "right"),
+        started=STARTED,
+        finished=STARTED,
+    )
+    with_points, without = made.change.added
+    assert with_points.own_points == (own_points("left", [3, 4]), own_points("right", [8, 11]))
+    assert without.own_points == ()
 
 
 @pytest.mark.parametrize(

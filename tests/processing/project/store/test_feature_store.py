@@ -19,7 +19,15 @@ from processing.map.feature import Feature, PointReference, Vertex
 from processing.project.project import Project
 from processing.project.store.geometry_blob import positions_of
 from processing.project.store.runs import Run, new_run_id
-from tests.processing.project.drawn import LABEL, curb, features_of, new_project, sign, tree_of
+from tests.processing.project.drawn import (
+    LABEL,
+    curb,
+    features_of,
+    new_project,
+    sign,
+    tree_of,
+    with_own_points,
+)
 
 
 @pytest.fixture
@@ -99,6 +107,18 @@ def test_measured_points_of_several_drives_come_back_each_at_its_vertex(tmp_path
         project.features.undo()
         project.features.redo()
         assert features_of(project) == {"l": line}
+
+
+def test_own_points_come_back_and_are_undone_with_their_feature(tmp_path):
+    tree = with_own_points("tree", ("left", [3, 4, 5, 90]), ("right", [2**40]))
+    folder = new_project(tmp_path / "a.zuka", tree)
+    with closing(Project.open(folder)) as project:
+        assert features_of(project) == {"tree": tree}
+        project.features.undo()
+        assert features_of(project) == {}
+        project.features.redo()
+    with closing(Project.open(folder, writing=False)) as project:
+        assert features_of(project) == {"tree": tree}
 
 
 def test_a_change_by_another_program_is_noticed_and_not_overwritten(folder):
