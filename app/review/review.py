@@ -113,6 +113,12 @@ class Review(QObject):
             position=self._queue.position(self._state.feature),
         )
 
+    @property
+    def is_outrun(self) -> bool:
+        """Whether nothing is left to judge, or a run of the queue has given way to another one."""
+        known = {one.provenance.run for one in self._document.features()}
+        return not self.progress.left or not known.issuperset(self._state.runs)
+
     def open(self, runs: Iterable[str], order: ReviewOrder) -> None:
         """Begin to judge the candidates of some runs; none: end the review."""
         if self._document.project is None:

@@ -53,6 +53,11 @@ def _start(parts: WindowParts) -> Action:
         parts.window.show_panel("review")
         if not review.is_open:
             review.open(sorted(runs), ReviewOrder.CONFIDENCE)
+        elif review.is_outrun:
+            for run in sorted(runs):
+                review.add(run)
+        if not any(view.hasFocus() for view in parts.views):
+            parts.review_panel.setFocus()  # its keys judge from now on, wherever the hand was
 
     return Action(
         "review-start",

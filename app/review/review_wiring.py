@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from PySide6.QtCore import QObject, Qt
 
 from app.review.review import Review
@@ -12,6 +14,7 @@ from app.window.project_dialogs import ProjectDialogs
 from app.window.window_parts import WindowParts
 from processing.map.catalogue import Geometry
 from processing.map.feature import Feature, Status
+from widgets.panels.geometry_facts import length_m
 from widgets.shared.cursor import PickedPosition
 
 QUEUE_ACTIONS = (*QUEUE_KEYS, "review-worst", "review-along", "review-end")
@@ -29,6 +32,10 @@ _LEAST_SECTION_SCALE = 200.0
 
 _ROOM = 2.4
 """Heights of a tree, a pole or a sign's post that a section holds about its place: all is seen."""
+
+
+_ROOM_ALONG = 1.2
+"""Lengths of a wire that a section along it is wide."""
 
 
 def connect_review(parts: WindowParts) -> None:
@@ -72,8 +79,9 @@ class _ReviewWiring(QObject):
         self._parts = parts
         self._edited = ""
         self._is_near = False
-        self._framed: Geometry | None = None
+        self._framed: tuple[Geometry, bool] | None = None
         self._section_scales: tuple[float, ...] = ()
+        self._hangs = False
 
     def keep_keys_to_views(self) -> None:
         """Enter and letters judge over the views and the queue only: in forms they are typed."""
@@ -90,12 +98,15 @@ class _ReviewWiring(QObject):
         if not self._is_near:
             self._is_near = True
             self._come_near()
+        self._turn_section(hangs="sag_m" in feature.attributes)
         self._come_near_in_section(feature)
         self._show_its_image(position)
+        camera, section = self._parts.camera_view, self._parts.section_view
         for view in self._parts.views:
-            if view is not self._parts.camera_view:
+            if view not in (camera, section):
                 view.center_on(position)
-        self._parts.camera_view.show_position(position)
+        section.show_position(position, asks_lines=feature.geometry is not Geometry.POINT)
+        camera.show_position(position)
 
     def _show_its_image(self, position: PickedPosition) -> None:
         """A candidate that the shown scanner didn't see is shown in the image of its own."""
@@ -113,6 +124,7 @@ class _ReviewWiring(QObject):
         self._allow_keys()
         if not review.is_open:
             self._is_near, self._framed = False, None
+            self._turn_section(hangs=False)
         current = review.current
         is_judged = current is None or current.status is not Status.CANDIDATE
         if self._edited and (current is None or is_judged or current.id != self._edited):
@@ -163,24 +175,37 @@ class _ReviewWiring(QObject):
         scene.zoom_by(max(scene.camera.distance_m / _FARTHEST_M, 1.0))
         map_view.zoom_by(max(_LEAST_MAP_SCALE / map_view.viewport.scale, 1.0))
 
-    def _come_near_in_section(self, feature: Feature) -> None:
-        """Lines are looked at from near; of trees, poles and signs all is seen.
+    def _turn_section(self, *, hangs: bool) -> None:
+        """What hangs is looked at along: across it, a few points are all there is.
 
-        Between candidates of one geometry the operator's own zoom is kept.
+        Whoever has the section along anyway keeps it.
+        """
+        section = self._parts.section_view
+        if hangs != self._hangs and (self._hangs or not section.settings.is_along):
+            section.use_settings(replace(section.settings, is_along=hangs))
+            self._hangs = hangs
+
+    def _come_near_in_section(self, feature: Feature) -> None:
+        """Lines are looked at from near; of trees, poles, signs and wires all is seen.
+
+        Between candidates that are framed alike the operator's own zoom is kept.
         """
         panes = self._parts.section_view.panes
         is_chosen = tuple(pane.viewport.scale for pane in panes) != self._section_scales
-        if feature.geometry is self._framed and is_chosen:
+        framed = feature.geometry, self._hangs
+        if framed == self._framed and is_chosen:
             return
         high_m = feature.attributes.get("height_m")
         for pane in panes:
             scale = pane.viewport.scale
-            if feature.geometry is not Geometry.POINT:
+            if self._hangs:
+                pane.zoom_by(pane.width() / (_ROOM_ALONG * length_m(feature)) / scale)
+            elif feature.geometry is not Geometry.POINT:
                 pane.zoom_by(max(_LEAST_SECTION_SCALE / scale, 1.0))
             elif isinstance(high_m, (int, float)) and high_m > 0:
                 shown_m = pane.height() / pane.viewport.scale_y
                 pane.zoom_by(min(shown_m / (_ROOM * high_m), _LEAST_SECTION_SCALE / scale))
-        self._framed = feature.geometry
+        self._framed = framed
         self._section_scales = tuple(pane.viewport.scale for pane in panes)
 
     def _allow_keys(self) -> None:

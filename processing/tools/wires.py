@@ -150,6 +150,8 @@ def _candidate(wire: StreetWire, least_m: float) -> Candidate:
         wire.confidence,
         attributes,
         wire.drives,
+        own_points=wire.own_points,
+        own_drives=wire.own_drives,
     )
 
 

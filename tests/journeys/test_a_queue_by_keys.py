@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+from contextlib import closing
 from dataclasses import replace
 
 import numpy as np
 import pytest
 from PySide6.QtCore import QPointF, Qt
+from PySide6.QtWidgets import QApplication
 
 from app.review.review import Review
 from app.window.window_parts import WindowParts
 from processing.laboratory.bench.street_candidates import street_candidates
 from processing.map.feature import Feature, Position, Status
 from processing.map.feature_middle import middle_of
+from processing.project.project import Project
 from processing.tools.tool import CandidateResult
 from tests.processing.project.candidates import found
 from widgets.shared.cursor import PickedPosition
@@ -63,6 +66,38 @@ def test_a_queue_of_fifty_is_judged_by_keys_alone(desk, qtbot):
         parts.window.actions_by_id["undo"].trigger()
     assert {one.status for one in parts.document.features()} == {Status.CANDIDATE}
     assert review.progress.left == COUNT
+
+
+def test_who_starts_a_review_from_a_form_judges_by_the_next_key(desk, qtbot):
+    parts, review = desk.parts, desk.parts.of(Review)
+    assert parts.document.store_run(found(street_candidates(desk.drive, 6), drive=desk.drive.id))
+    parts.layers_panel.setFocus()
+    parts.window.actions_by_id["review-start"].trigger()
+    first = review.current
+    qtbot.keyClick(QApplication.focusWidget(), Qt.Key.Key_Return)
+    assert parts.document.feature(first.id).status is Status.ACCEPTED
+    qtbot.keyClick(QApplication.focusWidget(), Qt.Key.Key_Delete)
+    assert (review.progress.accepted, review.progress.rejected) == (1, 1)
+
+
+def test_a_review_that_was_left_takes_up_what_came_in_place_of_its_candidates(desk):
+    parts, review = desk.parts, desk.parts.of(Review)
+    start = parts.window.actions_by_id["review-start"].trigger
+    drive = desk.drive.id
+    first = found(street_candidates(desk.drive, 6), drive=drive)
+    came = found(street_candidates(desk.drive, 8), drive=drive)
+    assert parts.document.store_run(first)
+    start()
+    folder = parts.document.project.folder
+    parts.document.close()
+    with closing(Project.open(folder)) as project:  # as a command line does it
+        gone = tuple(one for one in project.features.all() if one.provenance.run == first.run.id)
+        change = replace(came.change, removed=gone)
+        project.features.apply(came.run.summary, change, run=came.run)
+    assert parts.document.open(folder)
+    assert review.progress.left == 0
+    start()
+    assert review.progress.left == 8
 
 
 def test_keys_type_in_forms_and_draw_while_something_is_drawn(desk, qtbot):
@@ -118,6 +153,31 @@ def test_between_trees_the_section_keeps_the_zoom_that_was_chosen(desk):
         parts.window.actions_by_id["review-next"].trigger()
         assert review.current is not None
         assert pane.viewport.scale == chosen
+
+
+def test_wires_are_seen_along_and_what_stands_below_them_across_the_street(desk):
+    parts, review = desk.parts, desk.parts.of(Review)
+    section = parts.section_view
+    one = next(one for one in street_candidates(desk.drive, 24).candidates if len(one.xyz) == 1)
+    high = one.xyz[0] + [0.0, 0.0, 1.0]
+    along = np.array([[-3.0, 0.0, 0.2], [0.0, 0.0, 0.0], [3.0, 0.0, 0.2]])
+    unknown = np.full(3, -1, np.int64)
+    wire = replace(
+        one, geometry="line", kind="wire", xyz=high + along, points=unknown, confidence=0.2
+    )
+    wire = replace(wire, attributes={"sag_m": 0.2}, drives=None)
+    sign = replace(one, confidence=0.7, attributes={"height_m": 2.0})
+    result = CandidateResult((wire, sign))
+    assert parts.document.store_run(found(result, drive=desk.drive.id))
+    parts.window.actions_by_id["review-start"].trigger()
+    assert review.current.kind == "wire"
+    assert section.settings.is_along
+    assert section.standing.line.feature == review.current.id
+    (pane,) = section.panes
+    assert pane.width() / pane.viewport.scale == pytest.approx(1.2 * 6.0, rel=0.05)
+    parts.window.actions_by_id["review-next"].trigger()
+    assert not section.settings.is_along
+    assert section.standing.line.drive == desk.drive.id
 
 
 def assert_centred(parts: WindowParts, qtbot, feature: Feature) -> bool:

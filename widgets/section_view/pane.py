@@ -362,10 +362,17 @@ class SectionPane(PlaneView):
             return  # what is hidden is looked for when it is shown
         standing, look = self._standing, self._shared.view_settings.look
         request = SectionRequest(
-            standing, standing.cut, self._drives(), look, self._settings, self._parameters
+            standing, standing.cut, self._drives(), look, self._settings, self._asked_first()
         )
         self._asked = request
         self._feed.request(request)
+
+    def _asked_first(self) -> Mapping[str, object]:
+        """The tools' parameters, of those first that found what is chosen."""
+        chosen = map(self._source.feature, sorted(self._shared.selection.features))
+        tools = {one.provenance.tool for one in chosen if one is not None}
+        ids = sorted(self._parameters, key=lambda id_: id_ not in tools)
+        return {id_: self._parameters[id_] for id_ in ids}
 
     def _hover(self, mouse: QPointF | None) -> None:
         if self._diagnostics.hover(self._picture, self.viewport, mouse):

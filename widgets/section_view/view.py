@@ -221,10 +221,18 @@ class SectionView(QWidget):
             self._stand(self._standing)
         self.pinned_changed.emit(is_pinned)
 
-    def show_position(self, position: PickedPosition) -> None:
-        """Cut through a place, across the line under it or else across what is followed."""
+    def show_position(self, position: PickedPosition, *, asks_lines: bool = True) -> None:
+        """Cut through a place.
+
+        Parameters
+        ----------
+        asks_lines : bool
+            Across the line under it, where there is one, else across what is followed; False: a
+            sign below a wire is no place of the wire.
+        """
         self._live.stop()
-        standing = self._lines.under(position) or self._through(position)
+        line = self._lines.under(position) if asks_lines else None
+        standing = line or self._through(position)
         if standing is not None:
             self._stand(standing)
 

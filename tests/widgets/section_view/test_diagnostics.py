@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
+from threading import Event
 
 import numpy as np
+import pytest
 from numpy.typing import NDArray
 from PySide6.QtCore import QPointF
 from PySide6.QtGui import QImage, QPainter
@@ -14,8 +16,9 @@ from pytestqt.qtbot import QtBot
 from processing.core.text import Text
 from processing.methods.road.diagnostics import Diagnostic, DiagnosticTest
 from processing.recording.passes import passes_of
+from processing.tools.registry import TOOLS
 from tests.widgets.builders import OpenMap, imported_drive
-from tests.widgets.section_view.conftest import SectionViewUser, shown
+from tests.widgets.section_view.conftest import SectionViewUser, on_road, shown
 from widgets.section_view.picture.diagnostic_marks import DiagnosticMarks
 from widgets.section_view.picture.projection import SectionProjection
 from widgets.section_view.picture.section_diagnostics import (
@@ -25,6 +28,7 @@ from widgets.section_view.picture.section_diagnostics import (
 )
 from widgets.shared.cursor import PickedPosition
 
+WAIT_MS = 30_000
 BLUE = np.array([0x56, 0xB4, 0xE9])
 
 
@@ -38,6 +42,33 @@ def blue(user: SectionViewUser) -> NDArray[np.int64]:
 
 def _point(spot: NDArray[np.float64]) -> QPointF:
     return QPointF(*spot.tolist())
+
+
+def test_points_of_the_next_section_do_not_wait_for_a_tool_that_looks_long(
+    user: SectionViewUser, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    began, may_end = Event(), Event()
+
+    def look_long(_asked: object, _parameters: object) -> tuple[Diagnostic, ...]:
+        began.set()
+        may_end.wait(WAIT_MS / 1000)
+        return ()
+
+    slow = replace(TOOLS["curbs"], id="slow", diagnostics=look_long)
+    monkeypatch.setitem(TOOLS, "slow", slow)
+    view, pane = user.view, user.pane
+    view.use_tool_parameters({"slow": slow.parameters()})
+    view.use_settings(replace(view.settings, shows_diagnostics=True))
+    user.qtbot.waitUntil(began.is_set, timeout=WAIT_MS)
+    view.show_position(on_road(user, 7.0))
+    asked = pane.standing
+
+    def is_there() -> bool:
+        return pane.picture is not None and pane.picture.request.standing == asked
+
+    user.qtbot.waitUntil(is_there, timeout=WAIT_MS)
+    assert not may_end.is_set()
+    may_end.set()
 
 
 def test_the_scanline_is_drawn_over_its_points_until_it_is_turned_off(

@@ -103,13 +103,16 @@ class DiagnosticMarks:
             return
         diagnostics = _diagnostics_of(picture)
         entries = [(_SCANLINE if found.drives else _NO_SCANLINE, _Sign.LINE)]
+        if picture.request.standing.is_along and found.drives:
+            entries.clear()
         taken = {shown.diagnostic.is_taken for shown in diagnostics}
         entries += [(_TAKEN_POSITION, _Sign.TAKEN)] if True in taken else []
         entries += [(_LEFT_POSITION, _Sign.LEFT)] if False in taken else []
         if found.awaited:
             entries.append((_AWAITED.filled(tool=_name_of(found.awaited)), _Sign.NONE))
         words = [(text.in_language(self._language), sign) for text, sign in entries]
-        _paint_legend(painter, words)
+        if words:
+            _paint_legend(painter, words)
         if self._hovered is not None and self._hovered in diagnostics:
             self._paint_tests(painter, self._hovered, viewport)
 

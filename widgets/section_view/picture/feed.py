@@ -104,6 +104,9 @@ class SectionPicture:
 class SectionFeed(QObject):
     """Works out requests one after the other; the newest is the one that counts.
 
+    What tools look at takes them seconds. It is worked out in a thread of its own, so that the
+    points of the next section don't wait for it.
+
     Signals
     -------
     arrived(picture: SectionPicture)
@@ -118,24 +121,31 @@ class SectionFeed(QObject):
         super().__init__()
         self._changed = threading.Condition()
         self._next: SectionRequest | None = None
+        self._newest: SectionRequest | None = None
+        self._unexplained: SectionPicture | None = None
         self._is_closed = False
         self._ground = FoundGround()
-        self._worker = threading.Thread(target=self._work, name="section", daemon=True)
-        self._worker.start()
+        self._workers = [
+            threading.Thread(target=work, name=name, daemon=True)
+            for work, name in ((self._work, "section"), (self._explain, "section diagnostics"))
+        ]
+        for worker in self._workers:
+            worker.start()
 
     def request(self, request: SectionRequest) -> None:
         """Ask for what is to be seen now; replaces what was asked for and isn't begun."""
         with self._changed:
-            self._next = request
-            self._changed.notify()
+            self._next = self._newest = request
+            self._changed.notify_all()
 
     def close(self) -> None:
-        """Stop the worker and wait for it; nothing is told afterwards."""
+        """Stop the workers and wait for them; nothing is told afterwards."""
         with self._changed:
             self._is_closed = True
-            self._next = None
-            self._changed.notify()
-        self._worker.join()
+            self._next = self._newest = None
+            self._changed.notify_all()
+        for worker in self._workers:
+            worker.join()
 
     def _work(self) -> None:
         while True:
@@ -174,18 +184,33 @@ class SectionFeed(QObject):
         if request.settings.shows_waveforms:
             waveforms = waveforms_in(request.drives, parts, request.cut)
             picture = replace(picture, waveforms=waveforms)
-        if not request.settings.shows_diagnostics or request.standing.is_along:
+        if not request.settings.shows_diagnostics:
             self._report(picture)
             return
         self._report(replace(picture, is_final=False))
-        self._report_diagnostics(picture)
+        with self._changed:
+            self._unexplained = picture
+            self._changed.notify_all()
+
+    def _explain(self) -> None:
+        while True:
+            with self._changed:
+                while self._unexplained is None and not self._is_closed:
+                    self._changed.wait()
+                if self._is_closed:
+                    return
+                picture, self._unexplained = self._unexplained, None
+            if picture is not None:
+                self._report_diagnostics(picture)
 
     def _report_diagnostics(self, picture: SectionPicture) -> None:
         """Tell what tools look at, one after the other, until something else is asked for."""
         asked = picture.request
         found = diagnostics_at(asked.drives, asked.standing, asked.cut, asked.parameters)
-        while not self._is_outdated() and (known := next(found, None)) is not None:
-            self._report(replace(picture, diagnostics=known, is_final=not known.awaited))
+        while asked is self._newest and (known := next(found, None)) is not None:
+            with self._changed:  # told in the order of requests: the newest picture stays
+                if asked is self._newest:
+                    self._report(replace(picture, diagnostics=known, is_final=not known.awaited))
 
     def _report(self, picture: SectionPicture) -> None:
         if not self._is_closed:

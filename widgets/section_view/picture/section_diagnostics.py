@@ -79,21 +79,30 @@ def diagnostics_at(
     """What is to be shown in a section: the scanlines, then more with each tool that answers.
 
     Tools take seconds where much stands about; whoever has seen enough stops asking. Of drives
-    that lack revolutions or a trajectory there is nothing.
+    that lack revolutions or a trajectory there is nothing. A section along a line has no scanline,
+    and shows what was looked at in its slab.
 
     Parameters
     ----------
     parameters : mapping of str to object
-        Of the tools, by their ids, as they would run now.
+        Of the tools, by their ids, as they would run now; asked in this order.
     """
     position = np.array(cut.middle if standing.through is None else standing.through)
     asked = [one for drive in drives if (one := _asked_position(drive, position)) is not None]
-    found = [SectionDiagnostics(one.drive.info.name, _lines(one.scanlines, cut)) for one in asked]
-    tools = [one for one in TOOLS.values() if one.diagnostics is not None and one.id in parameters]
+    is_along = standing.is_along
+    found = [
+        SectionDiagnostics(one.drive.info.name, () if is_along else _lines(one.scanlines, cut))
+        for one in asked
+    ]
+    tools = [
+        TOOLS[id_] for id_ in parameters if id_ in TOOLS and TOOLS[id_].diagnostics is not None
+    ]
     for tool in tools:
         yield FoundDiagnostics(tuple(found), tool.id)
         for number, one in enumerate(asked):
             more = _looked_at(tool, one, cut, parameters[tool.id])
+            if is_along:
+                more = tuple(one for one in more if abs(one.section[2]) <= cut.width_m / 2)
             known = found[number]
             found[number] = replace(known, diagnostics=(*known.diagnostics, *more))
     yield FoundDiagnostics(tuple(found))

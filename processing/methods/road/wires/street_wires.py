@@ -70,6 +70,8 @@ class StreetWire:
     points, drives : (n,) int64
         Of each vertex the measured point nearest along the wire by its number in its drive, −1
         where none is near; and which drive it is of.
+    own_points, own_drives : (k,) int64
+        All measured points on it, in the order along it.
     """
 
     line: Floats
@@ -80,6 +82,8 @@ class StreetWire:
     confidence: float
     points: Integers
     drives: Integers
+    own_points: Integers
+    own_drives: Integers
 
 
 def street_wires(
@@ -113,6 +117,8 @@ def street_wires(
                 confidence=chance_of(facts_of(span, found.solid)),
                 points=np.where(rests >= 0, found.points[rests], -1),
                 drives=np.where(rests >= 0, found.drives[rests], 0),
+                own_points=found.points[span.lines],
+                own_drives=found.drives[span.lines],
             )
         )
     monitor.report(1.0)
