@@ -58,6 +58,7 @@ TABLES = {
     "removal": AccuracyTable("accuracy.filters.removal_study"),
     "street-ground": AccuracyTable("accuracy.filters.street_ground", "data"),
     "real-classes": AccuracyTable("accuracy.real_street_classes", "data"),
+    "real-things": AccuracyTable("accuracy.real_street_things", "data"),
     "aerial-classes": AccuracyTable("accuracy.aerial_classes", "data"),
     "landscapes": AccuracyTable("accuracy.filters.landscape_ground"),
     "volumes": AccuracyTable("accuracy.site_volumes", "sites"),
