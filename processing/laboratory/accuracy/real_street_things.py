@@ -59,7 +59,7 @@ TOOL_OF: Mapping[str, str] = {
 
 
 @dataclass(frozen=True)
-class LabelledThings:
+class ThingLabels:
     """What the labels of a data set mean.
 
     Attributes
@@ -77,7 +77,7 @@ class LabelledThings:
 
 
 DATA_SETS = (
-    LabelledThings(
+    ThingLabels(
         "street_oakland",
         {
             "trunks": (1302, 1303),
@@ -87,13 +87,11 @@ DATA_SETS = (
         },
         (1000, 1001, 1002, 1003, 1004, 1005),
     ),
-    LabelledThings(
-        "street_semantic_kitti", {"trunks": (16,), "poles": (18,), "signs": (19,)}, (0,)
-    ),
+    ThingLabels("street_semantic_kitti", {"trunks": (16,), "poles": (18,), "signs": (19,)}, (0,)),
 )
 
 
-class FoundThings(NamedTuple):
+class ThingScore(NamedTuple):
     """Things of one kind on one street.
 
     ``points``: how many labelled points each true one has; ``found``: which of them were found;
@@ -105,7 +103,7 @@ class FoundThings(NamedTuple):
     wrong: int
 
 
-class FoundWirePoints(NamedTuple):
+class WireScore(NamedTuple):
     """``labelled``, ``hit``: points of wires, and those on one found; ``wrong``, ``all``: steps."""
 
     labelled: int
@@ -139,31 +137,31 @@ def main(arguments: list[str]) -> int:
 
 
 @dataclass(frozen=True, eq=False)
-class LabelledStreet:
+class SearchedStreet:
     """A street with what it is labelled as and what was found on it.
 
     Attributes
     ----------
-    labels : LabelledThings
+    labels : ThingLabels
     xyz : (n, 3) float64
     label : (n,) int64
     candidates : mapping of str to tuple of Candidate
         By :data:`TOOL_OF`.
     """
 
-    labels: LabelledThings
+    labels: ThingLabels
     xyz: Floats
     label: Integers
     candidates: Mapping[str, tuple[Candidate, ...]]
 
 
-def _streets(data: Path, labels: LabelledThings) -> Iterator[LabelledStreet]:
+def _streets(data: Path, labels: ThingLabels) -> Iterator[SearchedStreet]:
     for cloud in sorted(data.glob(f"**/{labels.folder}/*.laz")):
         blocks = [block.xyz for block in read_result(cloud).blocks() if block.xyz is not None]
         with np.load(cloud.parent / "truth" / f"{cloud.stem}.npz") as truth:
             label = truth["label"].astype(np.int64)
         found = _candidates(cloud, labels.codes)
-        yield LabelledStreet(labels, np.concatenate(blocks), label, found)
+        yield SearchedStreet(labels, np.concatenate(blocks), label, found)
 
 
 def _candidates(cloud: Path, names: Iterable[str]) -> dict[str, tuple[Candidate, ...]]:
@@ -185,7 +183,7 @@ def _candidates(cloud: Path, names: Iterable[str]) -> dict[str, tuple[Candidate,
     return found
 
 
-def found_things(street: LabelledStreet, name: str) -> FoundThings:
+def found_things(street: SearchedStreet, name: str) -> ThingScore:
     """The things of a kind, one to one with what was found, the nearest first."""
     from scipy.spatial import cKDTree
 
@@ -205,7 +203,7 @@ def found_things(street: LabelledStreet, name: str) -> FoundThings:
     for near in tree.query_ball_point(feet[~used], _ABOUT_M):
         named = np.array(near, np.int64)[is_named[near]]
         wrong += named.size > len(near) / 2 and is_own[named].mean() < 1 / 2
-    return FoundThings(np.array([len(one) for one in things], np.int64), found, int(wrong))
+    return ThingScore(np.array([len(one) for one in things], np.int64), found, int(wrong))
 
 
 def _things(xyz: Floats, least_high_m: float) -> list[Floats]:
@@ -229,7 +227,7 @@ def _foot_of(thing: Floats) -> Floats:
     return np.asarray(np.median(low[:, :2], axis=0))
 
 
-def wire_points(street: LabelledStreet) -> FoundWirePoints:
+def wire_points(street: SearchedStreet) -> WireScore:
     """Labelled points of wires on found ones, and steps of found ones on something else."""
     from scipy.spatial import cKDTree
 
@@ -237,12 +235,12 @@ def wire_points(street: LabelledStreet) -> FoundWirePoints:
     steps = np.concatenate([np.empty((0, 3)), *map(_steps_along, street.candidates["wires"])])
     own = street.xyz[is_own]
     if not len(steps) or not len(own):
-        return FoundWirePoints(len(own), 0, len(steps), len(steps))
+        return WireScore(len(own), 0, len(steps), len(steps))
     hit = np.isfinite(cKDTree(steps).query(own, distance_upper_bound=_ON_WIRE_M)[0]).sum()
     is_open = is_own | np.isin(street.label, street.labels.unnamed)
     away, nearest = cKDTree(street.xyz).query(steps, distance_upper_bound=_ABOUT_M)
     wrong = (~is_open[np.asarray(nearest)[np.isfinite(away)]]).sum()
-    return FoundWirePoints(len(own), int(hit), int(wrong), len(steps))
+    return WireScore(len(own), int(hit), int(wrong), len(steps))
 
 
 def _steps_along(wire: Candidate) -> Floats:
@@ -252,7 +250,7 @@ def _steps_along(wire: Candidate) -> Floats:
     return np.column_stack([np.interp(at, lengths, axis) for axis in wire.xyz.T])
 
 
-def _cells(streets: Sequence[FoundThings]) -> list[str]:
+def _cells(streets: Sequence[ThingScore]) -> list[str]:
     points = np.concatenate([one.points for one in streets])
     found = np.concatenate([one.found for one in streets])
     wrong = sum(one.wrong for one in streets)
@@ -269,7 +267,7 @@ def _cells(streets: Sequence[FoundThings]) -> list[str]:
     ]
 
 
-def _wire_cells(streets: Sequence[FoundWirePoints]) -> list[str]:
+def _wire_cells(streets: Sequence[WireScore]) -> list[str]:
     labelled, hit, wrong, steps = (sum(part) for part in zip(*streets, strict=True))
     return [
         f"{labelled:,}",

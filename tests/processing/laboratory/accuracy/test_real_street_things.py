@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from processing.laboratory.accuracy.real_street_things import (
     DATA_SETS,
     HEADING,
-    FoundThings,
-    LabelledStreet,
+    SearchedStreet,
+    ThingScore,
     found_things,
     main,
     wire_points,
@@ -29,18 +29,18 @@ def upright(east: float, count: int, high_m: float = 4.0) -> NDArray[np.float64]
     return np.column_stack([np.full(count, east), np.zeros(count), np.linspace(0, high_m, count)])
 
 
-def street(things: dict[int, NDArray[np.float64]], **found: list[Candidate]) -> LabelledStreet:
+def street(things: dict[int, NDArray[np.float64]], **found: list[Candidate]) -> SearchedStreet:
     """A street of points by their labels."""
     label = np.repeat([*things], [len(one) for one in things.values()])
     candidates = {name: tuple(some) for name, some in found.items()}
-    return LabelledStreet(OAKLAND, np.concatenate([*things.values()]), label, candidates)
+    return SearchedStreet(OAKLAND, np.concatenate([*things.values()]), label, candidates)
 
 
 def pole_at(east: float) -> Candidate:
     return Candidate("pole", "point", np.array([[east, 0.0, 0.0]]), UNKNOWN, 0.9)
 
 
-def told(found: FoundThings) -> tuple[list[int], list[bool], int]:
+def told(found: ThingScore) -> tuple[list[int], list[bool], int]:
     return found.points.tolist(), found.found.tolist(), found.wrong
 
 
