@@ -123,8 +123,19 @@ class Trunk:
         # What bark hides of one stem it hides of all.
         bark = sum(math.hypot(_BARK_M, _BARK * one) for one in wide)
         within = 1.96 * share * math.sqrt(random + bark**2)
-        is_sure = len(wide) == 1 or min(wide) > _STAKE_M
-        return within if is_sure else math.hypot(within, share * min(wide))
+        unsure = [2 * one.radius_m for one in self.companions if self._may_hold(one)]
+        if len(wide) > 1 and min(wide) <= _STAKE_M:
+            unsure.append(share * min(wide))
+        return math.hypot(within, *unsure)
+
+    def _may_hold(self, companion: FittedStem) -> bool:
+        """Whether a stem's points may be those of a stake too, which touches it at the tape."""
+        return companion.low_m <= BREAST_M <= companion.high_m and any(
+            companion.radius_m < stem.radius_m
+            and float(np.hypot(*(stem.middle_at(BREAST_M) - companion.middle_at(BREAST_M))))
+            < stem.radius_m
+            for stem in self.stems
+        )
 
     @property
     def base(self) -> Floats:
