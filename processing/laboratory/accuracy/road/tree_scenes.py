@@ -47,11 +47,9 @@ _MOST_POINTS = 10_000
 _HEIGHTS = "hag"
 """Heights above the ground in files of lidR."""
 
-_UNSEEN_AVENUES, _UNSEEN_STREETS = range(794, 798), range(8175, 8179)
-AVENUES = range(740, 746), range(776, 780), range(790, _UNSEEN_AVENUES.stop)
-STREETS = range(760, 764), range(8131, 8137), range(8171, 8175), _UNSEEN_STREETS
-"""Seeds by which nothing was learnt. All but the unseen ones were looked at while the method was
-made or since."""
+AVENUES = range(740, 746), range(776, 780), range(790, 798)
+STREETS = range(760, 764), range(8131, 8137), range(8171, 8175), range(8175, 8179)
+"""Seeds by which nothing was learnt; all were looked at while the method was made or since."""
 
 
 @dataclass(frozen=True)
@@ -67,8 +65,6 @@ class TreeScene:
     truth : MappedFile
     labels : Path
         The folder of the true classes of its points.
-    was_looked_at : bool
-        Before it was scored.
     """
 
     name: str
@@ -76,7 +72,6 @@ class TreeScene:
     drives: tuple[Drive, ...]
     truth: MappedFile
     labels: Path
-    was_looked_at: bool = True
 
 
 @dataclass(frozen=True)
@@ -132,8 +127,7 @@ def own_scenes() -> Iterator[TreeScene]:
             simulate_street(one, folder, SilentMonitor())
             drives = import_files(folder, "trajectory*.csv", Path(position) / "drives")
             truth = read_mapped(folder / "truth" / "trees.geojson")
-            seen = one.seed not in (_UNSEEN_AVENUES if one.avenue else _UNSEEN_STREETS)
-            yield TreeScene(name_of(one), one.sensor, drives, truth, folder / "truth", seen)
+            yield TreeScene(name_of(one), one.sensor, drives, truth, folder / "truth")
 
 
 def name_of(request: StreetRequest) -> str:

@@ -58,8 +58,6 @@ def streets_table(streets: Sequence[ScoredTrees]) -> str:
             _row(f"*{group}*", [one for one in streets if one.scene.group == group])
             for group in groups
         ]
-    unseen = [one for one in streets if not one.scene.was_looked_at]
-    rows += [_row("*not looked at before*", unseen)] if unseen else []
     rows.append(_row(ALL, streets))
     rows += [
         ["thesis, one head", "97, 0, 5", "100.0 %", "95.1 %", "97.5 %", "2.6, 9.9",
