@@ -31,14 +31,15 @@ from processing.scoring.features.wires import wire_score
 
 _CRS = "EPSG:6677"
 _HEADING = "## Poles and wires"
-_FIRST_SEEDS = 8101, 8111, 8121, 8151
-"""Of four own streets each: the last ones nobody looked at."""
+_SEEDS = (*(range(first, first + 4) for first in (8101, 8111, 8121)), range(8151, 8157))
+_UNSEEN = range(8181, 8187)
+"""Of own streets: the last ones nobody looked at before they were scored."""
 
 _ABOUT = """`python -m processing.laboratory.accuracy.road.poles --samples FOLDER… \
 --markdown docs/accuracy.md`: poles with 20 points and more that the vehicle passed, one to one \
-within 0.5 m, posts of banners and bus stops of the type "other"; wires by length in space within \
-5 cm, where a point shows them. Nobody \
-looked at the own streets from 8151 on; the trajectories of worn ones drift by 2 cm, which their \
+within 0.5 m, posts of banners, shops and bus stops of the type "other"; wires by length in space \
+within 5 cm, where a point shows them. Nobody looked at the own streets 8181 to 8186 before they \
+were scored, once; the trajectories of worn ones drift by 2 cm, which their \
 wires, 10 m from the vehicle, show in full.
 """
 
@@ -49,24 +50,28 @@ class PoleRow(NamedTuple):
     street: str
     poles: FileScore
     wires: FileScore | None
+    was_looked_at: bool = True
 
 
 def fresh_streets() -> dict[str, StreetRequest]:
     """The own streets, by name."""
     requests = [
-        request
-        for first in _FIRST_SEEDS
-        for request in (
-            replace(options_of(0, first, 70.0), style="urban", sensor="vq250"),
-            replace(worn_options_of(1, first + 1, 70.0), style="urban", sensor="vq450"),
-            replace(options_of(2, first + 2, 70.0), style="rural", sensor="lynx"),
-            replace(options_of(3, first + 3, 70.0), style="urban", sensor="lynx", passes=1),
-        )
+        _request_of(number % 4, seed)
+        for seeds in (*_SEEDS, _UNSEEN)
+        for number, seed in enumerate(seeds)
     ]
     return {
         f"{one.style} {one.sensor} {one.seed}" + (" worn" if one.wear else ""): one
         for one in requests
     }
+
+
+def _request_of(kind: int, seed: int) -> StreetRequest:
+    """One of four kinds of streets."""
+    options = (worn_options_of if kind == 1 else options_of)(kind, seed, 70.0)
+    style = "rural" if kind == 2 else "urban"
+    sensor = ("vq250", "vq450", "lynx", "lynx")[kind]
+    return replace(options, style=style, sensor=sensor, passes=1 if kind == 3 else options.passes)
 
 
 def score_street(name: str, drives: Sequence[Drive], truth: Path) -> PoleRow:
@@ -83,15 +88,9 @@ def section_of(rows: Sequence[PoleRow]) -> str:
     heads = ["street", "poles found, false, missed", "F", "right type", "foot", "diameter",
              "wires found, false, missed", "F"]  # fmt: skip
     cells = [heads]
-    total: Counter[str] = Counter()
     for row in rows:
         kinds = row.poles.shares[0].share
         counts = row.poles.counts[0].counts
-        total["hits"] += counts.hits
-        total["false"] += counts.false_alarms
-        total["missed"] += counts.misses
-        total["right"] += int(kinds.hits)
-        total["typed"] += int(kinds.of)
         cells.append(
             [
                 row.street,
@@ -102,10 +101,30 @@ def section_of(rows: Sequence[PoleRow]) -> str:
                 *_wires(row.wires),
             ]
         )
+    unseen = [row for row in rows if not row.was_looked_at]
+    cells += [_sum_of("not looked at before", unseen)] if unseen else []
+    cells.append(_sum_of("all", rows))
+    return f"{_ABOUT}\n{markdown_table(cells)}\n"
+
+
+def _sum_of(label: str, rows: Sequence[PoleRow]) -> list[str]:
+    total: Counter[str] = Counter()
+    for row in rows:
+        kinds, counts = row.poles.shares[0].share, row.poles.counts[0].counts
+        total["hits"] += counts.hits
+        total["false"] += counts.false_alarms
+        total["missed"] += counts.misses
+        total["right"] += int(kinds.hits)
+        total["typed"] += int(kinds.of)
     asked = [total[one] for one in ("hits", "false", "missed")]
     told = ", ".join(map(str, asked))
-    cells.append(["all", told, _f(*asked), f"{total['right']} of {total['typed']}"] + [""] * 4)
-    return f"{_ABOUT}\n{markdown_table(cells)}\n"
+    types = f"{total['right']} of {total['typed']}"
+    wires = [row.wires.counts[0].counts for row in rows if row.wires is not None]
+    metres = [
+        sum(getattr(one, name) for one in wires) / 10 for name in ("hits", "false_alarms", "misses")
+    ]
+    found = ", ".join(f"{one:.0f} m" for one in metres)
+    return [label, told, _f(*asked), types, "", "", found, _f(*metres)]
 
 
 def _wires(score: FileScore | None) -> list[str]:
@@ -143,7 +162,8 @@ def _own() -> Iterator[PoleRow]:
             folder = Path(position) / "street"
             simulate_street(request, folder, SilentMonitor())
             drives = _imported(folder, Path(position) / "drives")
-            yield score_street(name, drives, folder / "truth")
+            row = score_street(name, drives, folder / "truth")
+            yield row._replace(was_looked_at=request.seed not in _UNSEEN)
 
 
 def _given(folder: Path) -> PoleRow:

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from processing.core.arrays import Floats
+from processing.core.arrays import Floats, Integers
 from processing.core.kernels import kernel
 
 _RINGS_M = (0.03, 0.15, 0.3, 0.5, 0.9)
@@ -35,6 +35,10 @@ _LAYER_M, _HIGHEST_M = 0.1, 3.0
 _MIRRORED = 0.05
 """Of the points of the fullest layer: windows and wet roads mirror few beams, and the ground beside
 a hedge, which hides some of it, holds more."""
+
+_EMPTY, _FEW = 3, 0.2
+"""Layers that hold hardly anything between the ground and what it mirrors, where that is more: a
+hedge and a trunk fill them; and share of the ground's points that lie below them."""
 
 _LEAST_RISE_M = 0.5
 """What lies less below the ground isn't looked for: gutters and tree pits have such steps."""
@@ -67,15 +71,26 @@ def ground_seen(points: Floats, coarse_m: float) -> float:
     filled = np.flatnonzero(counts > _MIRRORED * counts.max(initial=0))
     if not filled.size:
         return coarse_m
-    seen = lowest + (float(filled[0]) + 0.5) * _LAYER_M
-    if seen <= coarse_m + _LEAST_RISE_M:
+    first = _above_images(counts, filled)
+    seen = lowest + (float(first) + 0.5) * _LAYER_M
+    if first == filled[0] and seen <= coarse_m + _LEAST_RISE_M:
         return coarse_m
     cells = np.floor(points[is_asked, :2] / _PLAN_CELL_M).astype(np.int64)
     places = np.unique(np.column_stack([layer[is_asked], cells]), axis=0)
     room = np.bincount(places[:, 0], minlength=layers)
-    above = room[filled[0] + 2 : filled[0] + 2 + _STANDING]
-    is_ground = above.size > 0 and room[filled[0]] > _WIDER * above.max()
+    above = room[first + 2 : first + 2 + _STANDING]
+    is_ground = above.size > 0 and room[first] > _WIDER * above.max()
     return seen if is_ground else coarse_m
+
+
+def _above_images(counts: Integers, filled: Integers) -> int:
+    """The lowest of the filled layers that isn't far below one that holds many times as much."""
+    gaps = np.flatnonzero(np.diff(filled) > _EMPTY)
+    if gaps.size:
+        upper = int(filled[gaps[0] + 1])
+        if counts[:upper].sum() < _FEW * counts[upper : upper + 2].sum():
+            return upper
+    return int(filled[0])
 
 
 def foot_height(points: Floats, axis: Floats, coarse_m: float, radius_m: float = 0.0) -> float:

@@ -76,7 +76,8 @@ _LAMP_TALL_M, _SIGNAL_TALL_M, _SIGNAL_LONG_M = 0.34, 0.56, 2.0
 
 _TALL_M, _TALL_DIAMETER_M = 5.3, 0.105
 """Posts of signs and mirrors are lower and thinner: 60.5 to 101.6 mm (道路標識設置基準), with two
-mirrors one above the other 4.5 m high."""
+mirrors one above the other 4.5 m high. The slimmest ones, to 89.1 mm, are no lamps' however high
+leaves let them seem."""
 
 _WIRED_M, _CONCRETE_TAPER = 6.5, 0.003
 """Utility poles are higher: their lowest wire hangs 5 m over the road. Metres of radius lost in a
@@ -118,6 +119,11 @@ _CANE_M, _SIGN_POST_M = 0.035, 0.095
 (89.1 mm): what thicker posts of 101.6 mm and more carry are signs if they shine, else boards of
 shops."""
 
+_BOARD, _BOARD_M = 0.5, 0.6
+"""Share of the patches beside a post that are smooth where most are, and width, of a board that it
+holds above people: a shop's, if it doesn't shine. Arms are pipes there, and what hangs at their
+ends is farther out."""
+
 _SHORT_M = 1.35
 """Bollards and delineators are lower: 0.65 to 0.85 m (車止め), up to 1.2 m (視線誘導標設置基準)."""
 
@@ -130,6 +136,10 @@ more)."""
 
 _THINNEST_BOLLARD_M = 0.05
 """No bollard is thinner: 60.5 mm, less what a scanner is off."""
+
+_GOES_ON = 0.5
+"""Share of the metre over the top that something fills, beyond which a plate or a cloth hides what
+goes on there: bollards and delineators end free."""
 
 _UTILITY_M, _UTILITY_HIGH_M = 0.2, 7.5
 """Diameter 1.2 m above the ground and height of a utility pole whose wires weren't seen: poles of
@@ -429,16 +439,18 @@ def asks_for_brightness(shaft: Shaft) -> bool:
     return is_short(shaft) or 2 * shaft.radius_at(_BREAST_M) > _SIGN_POST_M
 
 
-def type_of(shaft: Shaft, carried: Carried, *, is_reflecting: bool) -> str:
+def type_of(shaft: Shaft, carried: Carried, *, over: float, is_reflecting: bool) -> str:
     """The contract's name of a pole's type.
 
     Parameters
     ----------
+    over : float
+        Share of the metre above its top that something fills near its axis.
     is_reflecting : bool
         Whether it has a reflector or a face that shines, where that is asked.
     """
     diameter, high = 2 * shaft.radius_at(min(_BREAST_M, shaft.top_m / 2)), shaft.top_m
-    if is_short(shaft):
+    if is_short(shaft) and over <= _GOES_ON:
         if is_reflecting:
             return "delineator" if diameter < _REFLECTOR_POST_M else "bollard"
         is_high = high > _REFLECTOR_HIGH_M and diameter < _THIN_POST_M
@@ -449,14 +461,13 @@ def type_of(shaft: Shaft, carried: Carried, *, is_reflecting: bool) -> str:
     if diameter < _CANE_M or carried.plate_low_m < _LOW_PLATE_M or is_board:
         plate = "other" if plate == "sign_pole" or diameter < _CANE_M else plate
     is_straight = high < ARMS_FROM_M or shaft.taper < _CONCRETE_TAPER / 2
-    if high < _TALL_M and diameter < _TALL_DIAMETER_M and has_plate and is_straight:
+    is_slim = diameter < (_TALL_DIAMETER_M if high < _TALL_M else _SIGN_POST_M)
+    if is_slim and has_plate and is_straight:
         return plate
-    if high > _WIRED_M and carried.wires >= _WIRED_CELLS:
+    if _is_for_wires(shaft, carried, diameter):
         return "utility_pole"
-    if diameter > _CONCRETE_M and high > ARMS_FROM_M and shaft.taper > _CONCRETE_TAPER:
-        return "utility_pole"
-    if diameter > _UTILITY_M and high > _UTILITY_HIGH_M and shaft.taper > _CONCRETE_TAPER:
-        return "utility_pole"
+    if is_board and has_plate and is_straight and high < _WIRED_M and _is_high_board(carried):
+        return "other"
     if high > ARMS_FROM_M and carried.arm_m >= _LEAST_ARM_M:
         return _of_arm(carried)
     # Posts that grow thinner upwards are made for lamps, those of signs are straight pipes.
@@ -464,6 +475,22 @@ def type_of(shaft: Shaft, carried: Carried, *, is_reflecting: bool) -> str:
     if high > _TALL_M or is_conical:
         return "street_light" if diameter < _UTILITY_M else "utility_pole"
     return plate if has_plate else "other"
+
+
+def _is_for_wires(shaft: Shaft, carried: Carried, diameter_m: float) -> bool:
+    """Whether several wires leave it on both sides, or it is of concrete."""
+    high = shaft.top_m
+    if high > _WIRED_M and carried.wires >= _WIRED_CELLS:
+        return True
+    is_thick = diameter_m > _CONCRETE_M and high > ARMS_FROM_M
+    is_tall = diameter_m > _UTILITY_M and high > _UTILITY_HIGH_M
+    return (is_thick or is_tall) and shaft.taper > _CONCRETE_TAPER
+
+
+def _is_high_board(carried: Carried) -> bool:
+    """Whether what a post holds is wide and smooth and hangs above people."""
+    is_wide = carried.smooth >= _BOARD and carried.plate_m > _BOARD_M
+    return is_wide and carried.plate_low_m > ARMS_FROM_M
 
 
 def _of_arm(carried: Carried) -> str:

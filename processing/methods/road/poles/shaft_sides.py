@@ -60,12 +60,25 @@ def seen_sides(drives: Sequence[Drive], shaft: Shaft, origin: Floats) -> SeenSid
     beside = shaft.local[:, :2] - up[:, None] * shaft.lean
     radii = shaft.radius_m - shaft.taper * up
     return SeenSides(
-        _square(beside, radii), _behind(towards_vehicle(drives, shaft, origin), beside)
+        square_share(beside, radii), _behind(towards_vehicle(drives, shaft, origin), beside)
     )
 
 
-def _square(beside: Floats, radii: Floats) -> float:
-    """Amplitude of the fourth harmonic of a section's radius, sure of, over a square's."""
+def square_share(beside: Floats, radii: Floats) -> float:
+    """How far a section goes in and out four times about its axis, over what a square does.
+
+    Parameters
+    ----------
+    beside : (n, 2) float64
+        Points about the axis, m.
+    radii : (n,) float64
+        Of the circle at their heights.
+
+    Returns
+    -------
+    float
+        0 to 1: the amplitude of the radius' fourth harmonic less what noise alone makes.
+    """
     if len(beside) < _FEWEST:
         return 0.0
     turn = np.arctan2(beside[:, 1], beside[:, 0])

@@ -137,7 +137,7 @@ def street_poles(drives: Sequence[Drive], monitor: Monitor) -> tuple[StreetPole,
     shafts, around = shafts + hidden, around.followed_by(about_hidden)
     shafts = with_whole_sides(shafts, around, monitor)
     fellows = fellows_of(shafts)
-    sure: list[tuple[float, int, Carried]] = []
+    sure: list[tuple[float, int, tuple[Carried, float]]] = []
     for number, shaft in enumerate(shafts):
         monitor.check()
         if most_chance_of(shaft, _NOTHING, usual_m) < _LEAST_CHANCE:
@@ -151,17 +151,17 @@ def street_poles(drives: Sequence[Drive], monitor: Monitor) -> tuple[StreetPole,
         facts = facts_of(shaft, beside, carried, sides, usual_m)
         chance = chance_of(facts, is_low=is_low(shaft))
         if chance >= _LEAST_CHANCE:
-            sure.append((chance, number, carried))
+            sure.append((chance, number, (carried, beside.over)))
     asked = [number for chance, number, _ in sure if chance >= _LIKELY]
     images = mirror_images(drives, plan, shafts, asked, PartMonitor(monitor, 0.9, 1.0))
     sure = [one for one in sure if one[1] not in images]
     reflectors = ReflectorSearch(drives, shafts, around, plan.origin)
     poles: list[StreetPole] = []
-    for chance, number, carried in sorted(sure, key=lambda one: (-one[0], one[1])):
+    for chance, number, (carried, over) in sorted(sure, key=lambda one: (-one[0], one[1])):
         shaft = shafts[number]
         if all(np.hypot(*(shaft.foot - one.shaft.foot)[:2]) >= _APART_M for one in poles):
             is_reflecting = asks_for_brightness(shaft) and reflectors.is_reflecting(number, shaft)
-            kind = type_of(shaft, carried, is_reflecting=is_reflecting)
+            kind = type_of(shaft, carried, over=over, is_reflecting=is_reflecting)
             poles.append(_pole(shaft, (carried, kind), chance, plan.origin))
     monitor.report(1.0)
     return tuple(poles)

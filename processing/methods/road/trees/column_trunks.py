@@ -6,7 +6,9 @@ leave the ground together and part upwards, which posts beside a tree don't.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -27,7 +29,7 @@ from processing.methods.road.trees.drive_shifts import (
     without_shifts,
 )
 from processing.methods.road.trees.rises import followed
-from processing.methods.road.trees.stems import BREAST_M, stems_of
+from processing.methods.road.trees.stems import BREAST_M, FittedStem, stems_of
 from processing.methods.road.trees.trunks import CLUMP_M, Trunk, leave_together, trunks_of
 
 _NEIGHBOURS, _MOST = list(range(1, 21)), 0.5
@@ -150,27 +152,74 @@ def _clumps_joined(
         monitor.check()
         members = [trunks[number] for number in np.flatnonzero(clumps == clump).tolist()]
         whole = _whole(members, gathered, most_diameter_m) if len(members) > 1 else None
-        joined += members if whole is None else [whole]
+        joined += members if whole is None else [whole, *_beside(whole, members)]
     return joined
 
 
+def _beside(whole: ColumnTrunk, members: Sequence[ColumnTrunk]) -> list[ColumnTrunk]:
+    """Columns whose thickest stem is none of the whole tree's: a pole among its stems."""
+    axes = [whole.middle + stem.middle_at(BREAST_M) for stem in whole.trunk.stems]
+    return [
+        one
+        for one in members
+        if min(
+            float(np.hypot(*(one.middle + one.trunk.stems[0].middle_at(BREAST_M) - axis)))
+            for axis in axes
+        )
+        >= _SAME_M
+    ]
+
+
 def _is_one_tree(one: ColumnTrunk, other: ColumnTrunk) -> bool:
-    """Whether some of their stems leave the ground together and move apart."""
+    """Whether some of their stems leave the ground together and move apart.
+
+    What stands beside a stem counts on one side: of a pole's column it may be a tree's.
+    """
     beside = other.middle - one.middle
-    return any(leave_together(a, b, beside) for a in one.trunk.stems for b in other.trunk.stems)
+    mine, others = one.trunk, other.trunk
+    return any(
+        leave_together(a, b, beside)
+        for a, b in (
+            *itertools.product(mine.stems, (*others.stems, *others.companions)),
+            *itertools.product(mine.companions, others.stems),
+        )
+    )
 
 
 def _whole(
     members: Sequence[ColumnTrunk], gathered: ColumnPoints, most_diameter_m: float
 ) -> ColumnTrunk | None:
-    """The trunk of several columns together; None where that shows fewer stems than they do."""
+    """The trunk of several columns together; None where that shows no more stems than one does.
+
+    Circles of all their points may tell stems that are none, or pass by one that a column tells, so
+    the columns' own stems are asked by themselves too.
+    """
     lines = np.concatenate([one.lines for one in members])
     middle = np.mean([one.middle + one.trunk.base for one in members], axis=0)
     ground = min(one.coarse_m for one in members)
-    trunks = _trunks_about(gathered, lines, (middle, ground), most_diameter_m)
+    local = gathered.local[lines]
+    coarse = ground_seen(local, ground)
+    height = foot_height(local, middle, coarse)
+    about = local - (*middle, height)
+    trunks = (*_trunks_in(about, most_diameter_m), *trunks_of(_own_stems(members, middle, height)))
     most = max(len(one.trunk.stems) for one in members)
-    whole = max(trunks, key=lambda one: len(one.trunk.stems), default=None)
-    return whole if whole is not None and len(whole.trunk.stems) > most else None
+    whole = max(trunks, key=lambda one: len(one.stems), default=None)
+    if whole is None or len(whole.stems) <= most:
+        return None
+    return ColumnTrunk(lines, middle, coarse, height, about, whole)
+
+
+def _own_stems(members: Sequence[ColumnTrunk], middle: Floats, height_m: float) -> list[FittedStem]:
+    """The stems of columns about a common foot, those with the most points first."""
+    stems: list[FittedStem] = []
+    start = 0
+    for one in members:
+        for stem in (*one.trunk.stems, *one.trunk.companions):
+            lifted = stem.about(height_m - one.height_m)
+            base, lines = lifted.base + one.middle - middle, stem.lines + start
+            stems.append(replace(lifted, base=base, lines=lines))
+        start += one.lines.size
+    return sorted(stems, key=lambda stem: -stem.lines.size)
 
 
 def _drives_joined(

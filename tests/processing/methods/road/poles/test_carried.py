@@ -61,7 +61,7 @@ def _about(*heads: Floats, beyond: Floats = NOTHING) -> ShaftNeighbourhood:
 
 
 def _type_of(shaft: Shaft, about: ShaftNeighbourhood, *, shines: bool = False) -> str:
-    return type_of(shaft, carried_of(about, shaft), is_reflecting=shines)
+    return type_of(shaft, carried_of(about, shaft), over=0.0, is_reflecting=shines)
 
 
 def test_a_mirror_is_told_though_another_head_sees_the_back_of_its_dish() -> None:
@@ -69,7 +69,7 @@ def test_a_mirror_is_told_though_another_head_sees_the_back_of_its_dish() -> Non
     back = _plate(0.6, (2.1, 2.7), 0.03, 1e6)
     shaft = _shaft(0.0763, 2.8)
     carried = carried_of(_about(glass, back), shaft)
-    assert type_of(shaft, carried, is_reflecting=False) == "mirror_pole"
+    assert type_of(shaft, carried, over=0.0, is_reflecting=False) == "mirror_pole"
     assert carried.mirror_deg == pytest.approx(180.0, abs=10.0)
 
 
@@ -102,6 +102,15 @@ def test_what_a_thick_post_carries_is_a_sign_if_it_shines() -> None:
     assert not asks_for_brightness(_shaft(0.0763, 2.8))
 
 
+def test_the_board_of_a_shop_high_on_its_own_post_is_no_arm_and_no_lamp() -> None:
+    shaft, board = _shaft(0.16, 5.4), _plate(1.6, (4.2, 5.4), 0.1, 1e6)
+    assert _type_of(shaft, _about(board)) == "other"
+    assert _type_of(shaft, _about(board), shines=True) != "other"
+    plate = _plate(0.6, (2.4, 3.0), 0.05, 1e6)
+    assert _type_of(_shaft(0.16, 5.4), _about(plate)) == "street_light"
+    assert _type_of(_shaft(0.0763, 5.5), _about(plate)) == "sign_pole"
+
+
 def test_an_arm_leads_on_where_its_end_is_nearer_to_a_neighbour() -> None:
     """A signal's arm above the road, beside a tree or another pole."""
     reach = np.arange(0.12, 3.4, 0.01)
@@ -115,7 +124,7 @@ def test_an_arm_leads_on_where_its_end_is_nearer_to_a_neighbour() -> None:
     assert carried_of(_about(own), shaft).arm_m < 2.0
     whole = carried_of(_about(own, beyond=beyond), shaft)
     assert whole.arm_m == pytest.approx(3.3, abs=0.3)
-    assert type_of(shaft, whole, is_reflecting=False) == "signal_pole"
+    assert type_of(shaft, whole, over=0.0, is_reflecting=False) == "signal_pole"
 
 
 def test_patches_of_leaves_are_rough_and_those_of_balls_too_small_for_mirrors() -> None:
@@ -148,7 +157,9 @@ def test_a_reflector_tells_delineators_and_without_one_their_height(
 ) -> None:
     shaft = _shaft(diameter_m, top_m)
     assert asks_for_brightness(shaft)
-    assert type_of(shaft, carried_of(_about(NOTHING), shaft), is_reflecting=shines) == expected
+    assert _type_of(shaft, _about(NOTHING), shines=shines) == expected
+    hidden = carried_of(_about(NOTHING), shaft)
+    assert type_of(shaft, hidden, over=0.9, is_reflecting=shines) == "other"
 
 
 def test_a_conical_post_of_five_metres_is_a_lamp_and_a_straight_one_a_sign() -> None:

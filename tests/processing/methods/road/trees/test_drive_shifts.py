@@ -106,6 +106,16 @@ def test_a_few_mirrored_points_below_the_road_are_no_ground() -> None:
     assert ground_seen(about(behind, 0.9), 0.0) == 0.0
 
 
+def test_what_a_wet_road_mirrors_far_below_it_is_no_ground_though_it_is_a_tenth_of_it() -> None:
+    random = np.random.default_rng(6)
+    ground, trunk = random.normal(0.62, 0.005, 600), random.uniform(0.6, 3.5, 2_000)
+    mirrored = about(random.uniform(0.0, 0.1, 60), 0.9)
+    street = np.vstack([about(ground, 0.9), about(trunk, 0.15)])
+    assert ground_seen(np.vstack([street, mirrored]), 0.0) == pytest.approx(0.62, abs=0.06)
+    shrub = about(random.uniform(0.1, 0.6, 900), 0.9)
+    assert ground_seen(np.vstack([street, mirrored, shrub]), 0.0) == 0.0
+
+
 def test_a_trunk_whose_foot_a_wall_hides_does_not_end_where_it_is_seen_first() -> None:
     trunk = about(np.random.default_rng(3).uniform(1.1, 3.8, 400), 0.2)
     assert ground_seen(trunk, 0.0) == 0.0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -104,6 +105,15 @@ def test_a_circle_among_leaves_does_not_replace_the_slender_stem_below_it() -> N
     radius = 0.12 + random.normal(0.0, 0.006, 60)
     twigs = np.column_stack([radius * np.cos(turn), radius * np.sin(turn) + 0.1, up])
     assert trunk_in(stem, twigs).diameter_m == pytest.approx(0.06, abs=0.008)
+
+
+def test_a_stake_in_the_outline_of_a_trunk_leaves_its_diameter_open() -> None:
+    trunk = trunk_in(bark(0.14, 0.1, 4.0))
+    (stem,) = trunk.stems
+    stake = replace(stem, radius_m=0.03, base=stem.base + 0.02, high_m=2.0)
+    beside, low = replace(stake, base=stem.base + 0.1), replace(stake, high_m=1.0)
+    assert Trunk((stem,), (stake,)).diameter_within_m > 0.06
+    assert Trunk((stem,), (beside, low)).diameter_within_m == trunk.diameter_within_m < 0.02
 
 
 def test_of_a_trunk_that_forks_below_the_tape_each_stem_counts() -> None:
