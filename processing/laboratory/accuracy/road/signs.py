@@ -274,11 +274,12 @@ def _lines_table(by_lines: dict[int, list[bool]]) -> str:
 
 
 def fast_options_of(number: int, seed: int, length_m: float) -> StreetRequest:
-    """The usual streets in turn, every third an expressway at 80 or 100 km/h."""
+    """The usual streets in turn, every third an expressway at 80 or 100 km/h without a stop."""
     options = options_of(number, seed, length_m)
     if number % 3 != 2:  # the last of three
         return options
-    return replace(options, style="highway", speed_km_h=_FAST_KM_H[number // 3 % 2])
+    speed = _FAST_KM_H[number // 3 % 2]
+    return replace(options, style="highway", speed_km_h=speed, stops=False)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

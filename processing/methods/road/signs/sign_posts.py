@@ -49,6 +49,10 @@ _BEAM_M = (0.15, 1.2)
 _FEWEST_ON_BEAM = 4
 """Beside the edges of a plate over the road, where the beam that holds it goes on; points there."""
 
+_SQUARE_M, _MOST_FILLED = 0.15, 0.5
+"""Share of the squares beside a plate in which beams and their post were met, at most; walls fill
+all."""
+
 
 def posts_of(
     drives: Sequence[Drive], plan: SparsePlan, plates: Sequence[tuple[Plate, float]],
@@ -109,8 +113,15 @@ def _form_of(plate: Plate, about: Floats, span: Floats) -> PostForm | None:
     beam = about[is_behind & (about[:, 2] >= span[0] - 0.2) & (about[:, 2] <= span[1] + 0.3)]
     aside = np.abs(beam[:, 0]) - half
     beam = beam[(aside >= _BEAM_M[0]) & (aside <= _BEAM_M[1])]
-    sides = sum(int((beam[:, 0] * side > 0).sum() >= _FEWEST_ON_BEAM) for side in (-1, 1))
+    sides = sum(_is_beam(beam[beam[:, 0] * side > 0], span) for side in (-1, 1))
     return (None, "cantilever", "gantry")[sides]
+
+
+def _is_beam(beside: Floats, span: Floats) -> bool:
+    """Whether what lies on one side of a plate holds it and is no wall."""
+    squares = np.unique((beside[:, [0, 2]] / _SQUARE_M).astype(np.int64), axis=0)
+    every = (_BEAM_M[1] - _BEAM_M[0]) * np.ptp(span) / _SQUARE_M**2
+    return bool(len(beside) >= _FEWEST_ON_BEAM and len(squares) <= _MOST_FILLED * every)
 
 
 def _upright_things(behind: Floats, low_m: float, high_m: float) -> list[Floats]:
