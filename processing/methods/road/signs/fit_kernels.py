@@ -408,6 +408,30 @@ def explain_kernel(
 
 
 @kernel
+def clean_kernel(
+    outlines: Floats, counts: Integers, lines: Floats, poses: Floats, costs: Floats, cleans: Floats
+) -> None:
+    """What the ends on each outline that was laid say against it, each; much where hardly any is.
+
+    Parameters
+    ----------
+    poses : (t, n, 3), costs : (t, n)
+        As of `search_kernel`.
+    cleans : (t, n)
+        Filled; infinite where the cost is.
+    """
+    rest, blocked = np.empty((2 * len(lines), LINE)), np.empty((2 * len(lines), LINE))
+    for number in range(outlines.shape[0]):
+        for start in range(costs.shape[1]):
+            cleans[number, start] = math.inf
+            if math.isinf(costs[number, start]):
+                continue
+            corners, pose = outlines[number, : counts[number]], poses[number, start]
+            cost, ends, _, _, _ = explain_kernel(corners, lines, pose, rest, blocked)
+            cleans[number, start] = (cost + CAP) / max(ends, 1)
+
+
+@kernel
 def _cut(line: Floats, start: float, end: float, part: Floats) -> None:
     """A part of a line; where it was cut, another plate begins somewhere."""
     part[:] = line
@@ -431,6 +455,50 @@ def _block(line: Floats, start: float, sign: float, beyond: Floats) -> None:
     beyond[OPEN_START] = -1.0
 
 
+@kernel
+def overlap_kernel(one: Floats, one_pose: Floats, other: Floats, other_pose: Floats) -> float:
+    """How deep two outlines lie in each other, m; negative where they are apart.
+
+    Sides of either tell, and of circles the line between the middles.
+    """
+    deep = math.inf
+    between = np.array([one_pose[0] - other_pose[0], one_pose[1] - other_pose[1]])
+    long_m = math.hypot(between[0], between[1])
+    if long_m > 0.0:
+        deep = _deep(one, one_pose, other, other_pose, between / long_m)
+    for corners, pose in ((one, one_pose), (other, other_pose)):
+        c, s = math.cos(pose[2]), math.sin(pose[2])
+        for k in range(corners.shape[0] if corners.shape[0] > 1 else 0):
+            u, v = corners[k, 0] - corners[k - 1, 0], corners[k, 1] - corners[k - 1, 1]
+            size = max(math.hypot(u, v), 1e-9)
+            way = np.array([c * v + s * u, s * v - c * u]) / size
+            deep = min(deep, _deep(one, one_pose, other, other_pose, way))
+    return deep
+
+
+@kernel
+def _deep(one: Floats, one_pose: Floats, other: Floats, other_pose: Floats, way: Floats) -> float:
+    """By how much the shadows of two outlines along a way cover each other, m."""
+    one_low, one_high = _shadow(one, one_pose, way)
+    other_low, other_high = _shadow(other, other_pose, way)
+    return min(one_high - other_low, other_high - one_low)
+
+
+@kernel
+def _shadow(corners: Floats, pose: Floats, way: Floats) -> tuple[float, float]:
+    at = pose[0] * way[0] + pose[1] * way[1]
+    if corners.shape[0] == 1:
+        return at - corners[0, 0], at + corners[0, 0]
+    c, s = math.cos(pose[2]), math.sin(pose[2])
+    low, high = math.inf, -math.inf
+    for k in range(corners.shape[0]):
+        u = c * corners[k, 0] - s * corners[k, 1]
+        v = s * corners[k, 0] + c * corners[k, 1]
+        along = at + u * way[0] + v * way[1]
+        low, high = min(low, along), max(high, along)
+    return low, high
+
+
 def warm_up() -> None:
     """Compile the kernels."""
     lines = np.array([[-0.1, 0.0, 1.0, 0.0, 0.2, 0.02, 1.0, 1.0]])
@@ -442,3 +510,5 @@ def warm_up() -> None:
     box = np.array([[-0.1, -0.1], [0.1, 0.1]])
     search_kernel(corners[None], np.array([4]), lines, box, steps, costs, poses)
     explain_kernel(corners, lines, pose, np.empty((2, LINE)), np.empty((2, LINE)))
+    clean_kernel(corners[None], np.array([4]), lines, poses, costs, np.zeros((1, STARTS)))
+    overlap_kernel(corners, pose, corners, pose)

@@ -26,13 +26,23 @@ _SAME_WAY = math.sin(math.radians(10.0))
 _MISSED_TURNS = 3
 """That a plate may lack: leaves and things that pass before it."""
 
+_SPARE_TURNS = 0.6
+"""By how many turns more than there are between two lines they may lie apart: plates and directions
+are known to some degrees."""
+
+_LEAST_REACH_M, _MOST_REACH_M = 0.1, 0.8
+"""Between scan lines on a plate: dense ones, and those of a fast vehicle with a slow mirror."""
+
+_USUAL_REACH_M = 0.35
+"""Where a drive doesn't say how fast it went: 100 km/h at 100 turns a second."""
+
 _TRIED = 12
 """Longest pieces of a group, of which each two are tried for its plane."""
 
 
 @kernel
 def link_kernel(
-    values: Floats, rows: Integers, is_bright: NDArray[np.bool_], reach_m: float, group: Integers
+    values: Floats, rows: Integers, is_bright: NDArray[np.bool_], ways: Floats, group: Integers
 ) -> None:
     """Number groups of linked pieces of one drive.
 
@@ -41,8 +51,8 @@ def link_kernel(
     values : (n, PIECE)
     rows : (n,)
         The turn of each, rising.
-    reach_m : float
-        Between the lines of neighbours, at most.
+    ways : (n, 3)
+        What the vehicle went during one turn where each was measured, m; NaN where nobody knows.
     group : (n,)
         Filled: a piece of its group, the same for all of them.
     """
@@ -54,7 +64,8 @@ def link_kernel(
         while rows[first] < rows[b] - _MISSED_TURNS:
             first += 1
         for a in range(first, b):
-            if _are_linked(values, a, b, is_bright, reach_m):
+            turns = max(rows[b] - rows[a], 1) + _SPARE_TURNS
+            if _are_linked(values, a, b, is_bright, turns * ways[a]):
                 one, other = _root(group, a), _root(group, b)
                 group[max(one, other)] = min(one, other)
     for piece in range(count):
@@ -70,10 +81,14 @@ def _root(group: Integers, piece: int) -> int:
 
 
 @kernel
-def _are_linked(
-    values: Floats, a: int, b: int, is_bright: NDArray[np.bool_], reach_m: float
-) -> bool:
-    """Whether two pieces are near each other and span an upright plane."""
+def _are_linked(values: Floats, a: int, b: int, is_bright: NDArray[np.bool_], way: Floats) -> bool:
+    """Whether two pieces are near each other and span an upright plane.
+
+    Parameters
+    ----------
+    way : (3,)
+        What the vehicle went between them at most, m.
+    """
     most = 0.0
     for axis in range(3):
         middles = abs(
@@ -81,15 +96,19 @@ def _are_linked(
             - values[b, FROM + axis] - values[b, TO + axis]
         ) / 2  # fmt: skip
         most = max(most, middles)
-    if most > reach_m + 0.5 * max(_length(values, a), _length(values, b)):
+    half = 0.5 * max(_length(values, a), _length(values, b))
+    if most > _MOST_REACH_M + half:
         return False
     normal = np.empty(3)
     off, is_same = _plane_of(values, a, b, normal)
-    if off > reach_m:
-        return False
     if is_same:
-        return bool(is_bright[a] == is_bright[b])
-    if abs(normal[2]) > STEEPEST:
+        near = off <= _LEAST_REACH_M and most <= _LEAST_REACH_M + half
+        return bool(near and is_bright[a] == is_bright[b])
+    if (
+        off > _MOST_REACH_M
+        or abs(normal[2]) > STEEPEST
+        or not _is_flat(values, b, values[a], normal)
+    ):
         return False
     view_a, view_b = 0.0, 0.0
     for axis in range(3):
@@ -97,7 +116,33 @@ def _are_linked(
         view_b += values[b, VIEW + axis] * normal[axis]
     if is_bright[a] != is_bright[b] and view_a * view_b > 0:
         return False
-    return _is_flat(values, b, values[a], normal)
+    reach_m = _reach_of(values, a, normal, way)
+    return off <= reach_m and most <= reach_m + half
+
+
+@kernel
+def _reach_of(values: Floats, piece: int, normal: Floats, way: Floats) -> float:
+    """How far a scan line moves on a plane while the vehicle goes some way, m.
+
+    The plane in which the scanner turned moves by what of the way goes across it, and its trace on
+    a plane that it meets askew by so much more.
+    """
+    if math.isnan(way[0]):
+        return _USUAL_REACH_M
+    long_m = max(_length(values, piece), 1e-9)
+    size, across, both = 0.0, 0.0, 0.0
+    for axis in range(3):
+        p, q = (axis + 1) % 3, (axis + 2) % 3
+        turned = (
+            values[piece, VIEW + p] * (values[piece, TO + q] - values[piece, FROM + q])
+            - values[piece, VIEW + q] * (values[piece, TO + p] - values[piece, FROM + p])
+        ) / long_m
+        size += turned * turned
+        across += turned * way[axis]
+        both += turned * normal[axis]
+    size = max(size, 1e-12)
+    askew = math.sqrt(max(1.0 - both * both / size, 1e-6))
+    return min(max(abs(across) / math.sqrt(size) / askew, _LEAST_REACH_M), _MOST_REACH_M)
 
 
 @kernel
@@ -197,7 +242,7 @@ def plane_kernel(values: Floats, members: Integers, chosen: NDArray[np.bool_]) -
 def warm_up() -> None:
     """Compile the kernels."""
     values, rows = np.zeros((2, PIECE)), np.zeros(2, np.int64)
-    link_kernel(values, rows, np.zeros(2, np.bool_), 0.3, np.zeros(2, np.int64))
+    link_kernel(values, rows, np.zeros(2, np.bool_), np.zeros((2, 3)), np.zeros(2, np.int64))
     plane_kernel(values, np.arange(2), np.zeros(2, np.bool_))
 
 

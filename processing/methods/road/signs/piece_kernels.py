@@ -45,10 +45,21 @@ _MISSING = 6
 _LOOSE = 2.5
 """Distance of neighbours over that of a surface seen straight on: one seen under 66 degrees."""
 
+_GRAZED, _GRAZED_M = 20.0, 0.25
+"""The same, over that of a surface seen straight on and in m, of a face seen under 87 degrees, as
+scanners see it that look straight across the road. What shines beside what shines is one face; of
+dull things the next point has to lie as far again on the same line."""
+
+_AS_BEFORE = 1.5
+"""Of a run that is looser already: the next step over the last one."""
+
 _FAR_M = 0.25
 """What lies so far behind the end of a plate is no part of what it hangs on; a window's recess is
 less deep (サッシ: 10 to 20 cm)."""
 
+
+_SLIT_M = 0.03
+"""So far beyond its end a piece goes on behind what passed before it; plates hang farther apart."""
 
 _SYMBOL_M, _DULL_BEYOND, _MOST_BEYOND = 0.25, 3, 100
 """Beyond a bright piece so far nothing shines and so many pulses, of at most so many, met dull
@@ -187,25 +198,50 @@ def runs_kernel(
         How many runs there are.
     """
     count = 0
-    last = np.full(_OPEN_RUNS, -1, np.int64)
+    last, steps = np.full(_OPEN_RUNS, -1, np.int64), np.zeros(_OPEN_RUNS)
     for point in range(len(kinds)):
         runs[point] = -1
         if kinds[point] == LOW:
             continue
         step = range_of(chunk, point, limits) * limits.radians
         best, least = _nearest_run(chunk, point, last)
-        if best < 0 or least > _LOOSE * step + 2 * limits.straight_m:
+        loose = _LOOSE * step + 2 * limits.straight_m
+        if best >= 0 and least > loose:
+            loose = _AS_BEFORE * steps[best]
+            if least > loose and _is_grazed(chunk, kinds, last[best], point, limits.straight_m):
+                loose = min(_GRAZED * step, _GRAZED_M)
+        if best < 0 or least > loose:
             # The run that was followed last of all gives way.
             best = 0
             for slot in range(_OPEN_RUNS):
                 if last[slot] < last[best]:
                     best = slot
             runs[point] = count
+            steps[best] = 0.0
             count += 1
         else:
             runs[point] = runs[last[best]]
+            steps[best] = least
         last[best] = point
     return count
+
+
+@kernel
+def _is_grazed(
+    chunk: ChunkPoints, kinds: NDArray[np.uint8], last: int, point: int, straight_m: float
+) -> bool:
+    """Whether two points far apart may follow each other on a surface that is seen askew."""
+    if kinds[last] == BRIGHT and kinds[point] == BRIGHT:
+        return True
+    ahead = chunk.pulses[point] - chunk.pulses[last]
+    follower = point + 1
+    if follower >= len(kinds) or chunk.pulses[follower] - chunk.pulses[point] != ahead:
+        return False
+    off = 0.0
+    for axis in range(3):
+        expected = 2 * chunk.local[point, axis] - chunk.local[last, axis]
+        off += (chunk.local[follower, axis] - expected) ** 2
+    return off <= (2 * straight_m) ** 2
 
 
 @kernel
@@ -441,10 +477,10 @@ def _beyond(
     steps = max(1, abs(chunk.pulses[end] - chunk.pulses[other]))
     step = long_m / steps
     point = end + way
-    found = FREE
+    found, is_first = FREE, True
     while 0 <= point < len(chunk.pulses):
         ahead = abs(chunk.pulses[point] - chunk.pulses[end])
-        if ahead > 2:
+        if ahead > 2 and ahead * step > _SLIT_M:
             break
         if ahead > 0 and not chunk.is_noise[point]:
             gap, off = 0.0, 0.0
@@ -458,13 +494,14 @@ def _beyond(
             off = math.sqrt(off)
             gap = gap / range_of(chunk, end, limits) if limits.has_origin else off
             least = 3 * limits.straight_m + 0.5 * step
-            if off <= least or abs(gap) <= least:
+            if off <= least or (is_first and abs(gap) <= least):
                 return GOES_ON
-            if gap < 0:
-                found = HIDDEN
-            elif gap < _FAR_M:
-                found = max(found, STEP)
-            break
+            if is_first and ahead <= 2:
+                if gap < 0:
+                    found = HIDDEN
+                elif gap < _FAR_M:
+                    found = STEP
+            is_first = False
         point += way
     return found
 
@@ -473,7 +510,10 @@ def _beyond(
 def _is_dull_beyond(
     chunk: ChunkPoints, kinds: NDArray[np.uint8], points: Integers, way: int, long_m: float
 ) -> bool:
-    """Whether nothing shines for some way beyond the end of a bright piece, and dull things do."""
+    """Whether nothing shines for some way beyond the end of a bright piece, and dull things do.
+
+    One dull point alone is of a pulse that met the rim.
+    """
     end = points[len(points) - 1] if way > 0 else points[0]
     other = points[0] if way > 0 else points[len(points) - 1]
     step = long_m / max(1, abs(chunk.pulses[end] - chunk.pulses[other]))
@@ -485,7 +525,7 @@ def _is_dull_beyond(
             return False
         dull += kinds[point] == DULL
         point += way
-    return dull >= _DULL_BEYOND
+    return dull == 1 or dull >= _DULL_BEYOND
 
 
 def warm_up() -> None:

@@ -21,9 +21,11 @@ from processing.methods.road.signs.fit_kernels import (
     STARTS,
     U,
     V,
+    clean_kernel,
     cost_of,
     explain_kernel,
     fit_kernel,
+    overlap_kernel,
     search_kernel,
     stretch_kernel,
 )
@@ -41,12 +43,20 @@ _STRETCH = np.array([0.02, 0.008, 0.003])
 """Steps of the search, m: a plate's rim lies between pulses centimetres apart, and its place
 follows from all of them to millimetres."""
 
+_OUTLYING, _OUTLYING_M = 0.05, 0.2
+"""Share of what is drawn on a plane that may lie far out on either side, and how far: outlines are
+begun within the rest, too."""
+
+_RIM_M = 0.02
+"""Beyond the outermost lines, where the rim of a whole rectangle is begun."""
+
 _SEARCHED_LINES = 40
 """Longest lines that the coarse search looks at."""
 
-_TRIED, _RECTANGLES = 8, 2
-"""Outlines of standard plates, and rectangles, that are fitted finely; of rectangles as many that
-explain most, and as many that explain best what they do explain: plates of a stack."""
+_TRIED, _CLEAN, _RECTANGLES = 8, 4, 2
+"""Outlines of standard plates that are fitted finely: those that explain most, and those that
+explain best what they do explain: plates of a stack, or beside each other. Of rectangles as many of
+either."""
 
 _MOST_LINES = 120
 """Of a plane that outlines are laid on: more lie nearer to each other than a plate's rim is
@@ -72,6 +82,10 @@ _BELOW_COST = 2.0
 _SMALL_COST = 3.0
 """What plates of other than the usual size have to fit better (標識令: 拡大率, 縮小率 only where
 speeds or streets ask for it)."""
+
+_MOST_OVERLAP_M = 0.06
+"""Of plates that hang beside each other in one plane: what their rims are uncertain by, and sharp
+corners stand for round ones."""
 
 _BELOW_M = (-0.03, 0.15)
 _CENTRED_M = 0.06
@@ -234,6 +248,8 @@ def _solve(
         if not ends:
             continue
         plate = FittedPlate(shape, pose, cost, ends, pulses)
+        if any(_overlap(plate, one) for one in above):
+            continue
         own = (
             cost
             + _PLATE_COST
@@ -278,6 +294,12 @@ def _prior(plate: FittedPlate, above: tuple[FittedPlate, ...]) -> float:
     return 0.0 if plate.shape.is_usual else _SMALL_COST
 
 
+def _overlap(plate: FittedPlate, other: FittedPlate) -> bool:
+    """Whether two plates would lie in each other."""
+    corners, others = sharp_outline_of(plate.shape), sharp_outline_of(other.shape)
+    return bool(overlap_kernel(corners, plate.pose, others, other.pose) > _MOST_OVERLAP_M)
+
+
 def hangs_below(plate: FittedPlate, upper: FittedPlate) -> bool:
     """Whether a rectangle that is no larger hangs right below another plate."""
     return _is_right_below(plate, upper) and plate.shape.high_m < upper.shape.high_m
@@ -310,36 +332,52 @@ def _best_fits(lines: Floats, empty: Floats, outlines: _Outlines) -> list[tuple[
     """Shapes with their places, the best first."""
     box = _box_of(lines)
     every = np.concatenate([lines, empty])
-    slack = 2 * (0.06 + _spacing_across(lines))
-    is_small = (outlines.sizes <= box[1] - box[0] + slack).all(axis=1)
-    longest = lines[np.argsort(-lines[:, LONG], kind="stable")[:_SEARCHED_LINES]]
-    costs = np.empty((len(outlines.shapes), STARTS))
-    poses = np.empty((len(outlines.shapes), STARTS, 3))
-    search_kernel(
-        outlines.corners,
-        np.where(is_small, outlines.counts, 0),
-        np.concatenate([longest, empty]),
-        box,
-        _COARSE,
-        costs,
-        poses,
-    )
+    boxes = [box]
+    inner = _inner_box_of(lines)
+    if np.abs(inner - box).max() > _OUTLYING_M:
+        boxes.append(inner)
+    costs, poses = _searched(lines, empty, outlines, boxes)
     fine: list[tuple[float, SignShape, Floats]] = []
-    for number in np.argsort(costs, axis=None, kind="stable")[:_TRIED].tolist():
-        which, start = divmod(number, STARTS)
+    cleans = np.empty_like(costs)
+    clean_kernel(outlines.corners, outlines.counts, lines, poses, costs, cleans)
+    first, clean = _best_starts(costs, _TRIED), _best_starts(cleans, _CLEAN)
+    for which, start in first + [one for one in clean if one not in first]:
         if not np.isfinite(costs[which, start]):
-            break
+            continue
         shape, pose = outlines.shapes[which], poses[which, start].copy()
         cost = fit_kernel(outline_of(shape), every, _FINE, SIGMA_M, pose)
         fine.append((cost, shape, pose))
     if outlines.with_rectangles:
-        fine += _rectangles(lines, every, box)
+        fine += _rectangles(lines, every, boxes)
     fine.sort(key=lambda one: one[0])
     found: list[tuple[SignShape, Floats]] = []
     for _, shape, pose in fine:
         if all(shape != one or np.hypot(*(pose - at)[:2]) > SIGMA_M for one, at in found):
             found.append((shape, pose))
     return found
+
+
+def _best_starts(costs: Floats, count: int) -> list[tuple[int, int]]:
+    """Shapes that cost least, each with its best start."""
+    starts = costs.argmin(axis=1)
+    shapes = np.argsort(costs.min(axis=1), kind="stable")[:count]
+    return [(int(one), int(starts[one])) for one in shapes]
+
+
+def _searched(
+    lines: Floats, empty: Floats, outlines: _Outlines, boxes: Sequence[Floats]
+) -> tuple[Floats, Floats]:
+    """What each shape costs that is moved from each start, and where it lies then."""
+    slack = 2 * (0.06 + _spacing_across(lines))
+    is_small = (outlines.sizes <= boxes[0][1] - boxes[0][0] + slack).all(axis=1)
+    longest = lines[np.argsort(-lines[:, LONG], kind="stable")[:_SEARCHED_LINES]]
+    every = np.concatenate([longest, empty])
+    counts = np.where(is_small, outlines.counts, 0)
+    costs = np.empty((len(boxes), len(outlines.shapes), STARTS))
+    poses = np.empty((len(boxes), len(outlines.shapes), STARTS, 3))
+    for number, box in enumerate(boxes):
+        search_kernel(outlines.corners, counts, every, box, _COARSE, costs[number], poses[number])
+    return np.concatenate(list(costs), axis=1), np.concatenate(list(poses), axis=1)
 
 
 def _spacing_across(lines: Floats) -> float:
@@ -349,11 +387,13 @@ def _spacing_across(lines: Floats) -> float:
     return min(0.35, 1.5 * extent / max(1, len(lines) - 1))
 
 
-def _rectangles(lines: Floats, every: Floats, box: Floats) -> list[tuple[float, SignShape, Floats]]:
+def _rectangles(
+    lines: Floats, every: Floats, boxes: Sequence[Floats]
+) -> list[tuple[float, SignShape, Floats]]:
     """The best rectangles that are stretched to fit, begun as the whole and as parts of it."""
-    low, high = box
+    low, high = boxes[0]
     whole = high - low
-    starts = [(low, high)]
+    starts = [(one[0] - _RIM_M, one[1] + _RIM_M) for one in boxes]
     for axis, least in ((1, 0.3), (0, 0.8)):
         if whole[axis] > least:
             for share in (0.35, 0.65) if axis else (0.5,):
@@ -416,6 +456,20 @@ def _box_of(lines: Floats) -> Floats:
     starts = lines[:, [U, V]]
     ends = np.concatenate([starts, starts + lines[:, [LONG]] * lines[:, [ALONG_U, ALONG_V]]])
     return np.array([ends.min(axis=0), ends.max(axis=0)])
+
+
+def _inner_box_of(lines: Floats) -> Floats:
+    """(2, 2) the same but for what little of the lines lies farthest out: of posts, mostly."""
+    starts = lines[:, [U, V]]
+    ends = np.concatenate([starts, starts + lines[:, [LONG]] * lines[:, [ALONG_U, ALONG_V]]])
+    weights = np.tile(lines[:, LONG], 2)
+    box = np.empty((2, 2))
+    for axis in range(2):
+        order = np.argsort(ends[:, axis], kind="stable")
+        share = np.cumsum(weights[order]) / weights.sum()
+        outer = np.searchsorted(share, (_OUTLYING, 1.0 - _OUTLYING))
+        box[:, axis] = ends[order[outer], axis]
+    return box
 
 
 def _own_cost(lines: Floats, pose: Floats, sides: Floats) -> float:

@@ -33,6 +33,7 @@ from processing.methods.road.signs.piece_kernels import (
     FREE,
     FROM,
     GOES_ON,
+    HIDDEN,
     TO,
     VIEW,
 )
@@ -63,9 +64,17 @@ _SAME_PLANE_M = 0.04
 some centimetres apart. Plates that hang back to back have their post between them, 6 cm."""
 
 _SAME_WAY = np.cos(np.radians(12.0))
-_BESIDE_M = 0.2
+_LIKELY_WAY, _LIKELY_M = np.cos(np.radians(15.0)), 0.1
+"""The same of groups that are looked at: the plane of a group moves while others join it."""
+
+_BESIDE_M, _HIDDEN_M = 0.2, 0.5
 """Between the boxes of groups of one plate: the post before its back hides a strip of it, twice as
-wide as itself where it is seen askew."""
+wide as itself where it is seen askew; a pole before it hides more, and lines end at what is nearer
+then."""
+
+_LEAST_HIDDEN = 0.4
+"""Share of a group's lines with something nearer beyond an end: most of those that are left of a
+plate on either side of a pole run up to it."""
 
 
 @dataclass(frozen=True)
@@ -104,24 +113,25 @@ class PlateGroup:
         return np.asarray(self.middle + flat @ np.array([self.right, self.up]))
 
 
-def plate_groups(pieces: ScanPieces, reaches: Floats, monitor: Monitor) -> list[PlateGroup]:
+def plate_groups(pieces: ScanPieces, ways: Floats, monitor: Monitor) -> list[PlateGroup]:
     """Groups of pieces that may be plates.
 
     Parameters
     ----------
-    reaches : (drives,) float64
-        Between neighbouring scan lines on a plate, at most, m.
+    ways : (n, 3) float64
+        What the vehicle went during one turn where each piece was measured, m; NaN where nobody
+        knows.
     """
     values = pieces.values
     is_bright = 2 * values[:, BRIGHTS] > values[:, COUNT]
     is_seed = is_bright | (values[:, BEFORE] == FREE) | (values[:, BEHIND] == FREE)
     groups: list[PlateGroup] = []
-    for number, reach in enumerate(reaches.tolist()):
+    for number in range(int(pieces.drive.max(initial=-1)) + 1):
         monitor.check()
         mine = np.flatnonzero(is_seed & (pieces.drive == number))
         mine = mine[np.argsort(pieces.row[mine], kind="stable")]
         linked = np.empty(mine.size, np.int64)
-        link_kernel(values[mine], pieces.row[mine], is_bright[mine], reach, linked)
+        link_kernel(values[mine], pieces.row[mine], is_bright[mine], ways[mine], linked)
         order = np.argsort(linked, kind="stable")
         cuts = np.flatnonzero(np.diff(linked[order])) + 1
         for members in np.split(mine[order], cuts):
@@ -204,18 +214,24 @@ def _joined(
     if len(groups) < 2:
         return groups
     points = [float(pieces.values[one.pieces, COUNT].sum()) for one in groups]
-    order = np.argsort(-np.array(points), kind="stable").tolist()
-    tree = cKDTree(np.array([one.middle for one in groups]))
+    order = np.argsort(-np.array(points), kind="stable")
+    rank = np.argsort(order)
+    middles = np.array([one.middle for one in groups])
+    normals = np.array([one.normal for one in groups])
+    tree = cKDTree(middles)
     taken = np.zeros(len(groups), np.bool_)
     found: list[PlateGroup] = []
-    for first in order:
+    for first in order.tolist():
         if taken[first]:
             continue
         taken[first] = True
         whole = groups[first]
-        near = tree.query_ball_point(whole.middle, float(np.hypot(*(whole.high - whole.low))) + 1)
-        for other in sorted(near, key=order.index if len(order) < 50 else None):
-            if taken[other] or not _are_one(whole, groups[other]):
+        reach = float(np.hypot(*(whole.high - whole.low))) + 1
+        near = np.array(tree.query_ball_point(whole.middle, reach), np.int64)
+        near = near[np.abs(normals[near] @ whole.normal) >= _LIKELY_WAY]
+        near = near[np.abs((middles[near] - whole.middle) @ whole.normal) <= _LIKELY_M]
+        for other in near[np.argsort(rank[near])].tolist():
+            if taken[other] or not _are_one(pieces.values, whole, groups[other]):
                 continue
             if not _is_plate_on_wall(pieces, (whole, groups[other]), is_bright):
                 both = group_of(pieces.values, np.union1d(whole.pieces, groups[other].pieces))
@@ -225,7 +241,7 @@ def _joined(
     return found
 
 
-def _are_one(whole: PlateGroup, other: PlateGroup) -> bool:
+def _are_one(values: Floats, whole: PlateGroup, other: PlateGroup) -> bool:
     if abs(whole.normal @ other.normal) < _SAME_WAY:
         return False
     off = (other.middle - whole.middle) @ whole.normal
@@ -235,7 +251,14 @@ def _are_one(whole: PlateGroup, other: PlateGroup) -> bool:
     corners = other.xyz(np.array([other.low, other.high]))
     flat = whole.flat(corners)
     low, high = flat.min(axis=0), flat.max(axis=0)
-    return bool((low <= whole.high + _BESIDE_M).all() and (high >= whole.low - _BESIDE_M).all())
+    gap = float(np.maximum(low - whole.high, whole.low - high).max())
+    if gap <= _BESIDE_M:
+        return True
+    return gap <= _HIDDEN_M and all(_is_hidden(values[one.pieces]) for one in (whole, other))
+
+
+def _is_hidden(values: Floats) -> bool:
+    return bool((values[:, [BEFORE, BEHIND]] == HIDDEN).any(axis=1).mean() >= _LEAST_HIDDEN)
 
 
 def _is_plate_on_wall(

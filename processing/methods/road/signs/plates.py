@@ -25,6 +25,7 @@ from processing.methods.road.signs.piece_kernels import (
     FREE,
     HIDDEN,
     NOISE,
+    STEP,
 )
 from processing.methods.road.signs.plate_fit import Fit, FittedPlate, hangs_below, is_board_below
 from processing.methods.road.signs.plate_groups import PlateGroup, group_of
@@ -70,8 +71,8 @@ class PlateEvidence(NamedTuple):
     is_facing_sure : bool
         Whether what was measured tells the face from the back.
     thick : float
-        By how much more of the scan lines go on at its left edge than at its right one, or the
-        reverse, 0 to 1: they cross over to the side of a thick board or a box.
+        By how much more of the scan lines go on at one of two opposite edges than at the other, 0
+        to 1: they cross over to the side of a thick board or a box, or to a roof.
     both_seen : bool
         Whether both sides were seen.
     shine : float
@@ -212,22 +213,29 @@ def _plate(
 
 
 def _thick(fitted: FittedPlate, lines: Floats, values: Floats) -> float:
-    """How differently lines end at the left and the right edge of a plate."""
+    """How differently lines end at the left and the right edge of a plate, or at its other two.
+
+    Other plates of its post lie above or below it: there only what lies farther behind counts.
+    """
     ends = []
     for column, along in ((BEFORE, 0.0), (BEHIND, 1.0)):
         places = lines[:, [U, V]] + along * lines[:, [LONG]] * lines[:, [ALONG_U, ALONG_V]]
         ends.append(np.column_stack([places, values[:, column]]))
     every = np.concatenate(ends)
     flat = _turned(every[:, :2] - fitted.pose[:2], -fitted.pose[2])
-    half = fitted.shape.wide_m / 2
-    shares = []
-    for side in (-1.0, 1.0):
-        codes = every[np.abs(side * flat[:, 0] - half) <= 3 * SIGMA_M + 0.03, 2]
-        seen = codes[codes != HIDDEN]
-        if seen.size < _FEWEST_ENDS:
-            return 0.0
-        shares.append(float((seen != FREE).mean()))
-    return abs(shares[0] - shares[1])
+    halves = fitted.shape.wide_m / 2, fitted.shape.high_m / 2
+    goes_on = every[:, 2] != FREE, every[:, 2] == STEP
+    is_seen = every[:, 2] != HIDDEN
+    most = 0.0
+    for axis in range(2):
+        shares = []
+        for side in (-1.0, 1.0):
+            near = np.abs(side * flat[:, axis] - halves[axis]) <= 3 * SIGMA_M + 0.03
+            if np.count_nonzero(near & is_seen) >= _FEWEST_ENDS:
+                shares.append(float(goes_on[axis][near & is_seen].mean()))
+        if len(shares) == 2:
+            most = max(most, abs(shares[0] - shares[1]))
+    return most
 
 
 def _cut(pieces: ScanPieces, members: Integers) -> float:

@@ -25,6 +25,7 @@ from processing.methods.road.signs.plates import Plate, plates_of
 from processing.methods.road.signs.scan_pieces import ScanPieces, scan_pieces
 from processing.methods.road.signs.sign_confidence import (
     SignFacts,
+    best_chance_of,
     chance_of,
     facts_of,
     facts_with_other_side,
@@ -35,15 +36,9 @@ from processing.methods.road.signs.sign_shapes import SignShape, looked_for
 from processing.methods.road.signs.two_sided import with_other_side
 from processing.recording.drive import Drive
 
-_LEAST_REACH_M, _MOST_REACH_M = 0.1, 0.8
-"""Between scan lines on a plate: dense ones, and those of a fast vehicle with a slow mirror."""
-
-_USUAL_REACH_M = 0.35
-"""Where a drive doesn't say how fast it went: 100 km/h at 100 turns a second."""
-
-_TURNS = 1.6
-"""Turns of the scanner between two lines that are neighbours on a plate: one, and what a plate that
-is seen askew and a vehicle that goes faster elsewhere add."""
+_ABOUT_S = 0.05
+"""Before and after a turn, between which the vehicle's speed is taken: trajectories waver by
+millimetres from record to record."""
 
 _EVERY = 20
 """Records of a trajectory of which one is kept: a tenth of a second."""
@@ -134,8 +129,7 @@ def road_signs(
     """
     plan, ground = survey_ground(drives, PartMonitor(monitor, 0.0, 0.3))
     pieces = scan_pieces(drives, plan, ground, PartMonitor(monitor, 0.3, 0.7))
-    reaches = np.array([reach_of(drive) for drive in drives])
-    groups = plate_groups(pieces, reaches, PartMonitor(monitor, 0.7, 0.8))
+    groups = plate_groups(pieces, turn_ways(drives, pieces), PartMonitor(monitor, 0.7, 0.8))
     ways = DriveWays(drives)
 
     def of_group(group: PlateGroup) -> list[RoadSign]:
@@ -158,8 +152,8 @@ def road_signs(
         [one.plate for one in found], np.array([one.confidence for one in found]), _LIKELY
     )
     signs = [found[number] for number in kept]
-    likely = [one for one in signs if one.confidence >= _LIKELY]
-    others = [one for one in signs if one.confidence < _LIKELY]
+    likely = [one for one in signs if best_chance_of(one.facts) >= _LIKELY]
+    others = [one for one in signs if best_chance_of(one.facts) < _LIKELY]
     grounded = [(one.plate, one.ground_m - float(plan.origin[2])) for one in likely]
     forms = posts_of(drives, plan, grounded, PartMonitor(monitor, 0.9, 1.0))
     held = [_with_post(one, form) for one, form in zip(likely, forms, strict=True)]
@@ -205,15 +199,28 @@ class DriveWays:
         return np.asarray(self._steps[int(self._tree.query(place[:2])[1])])
 
 
-def reach_of(drive: Drive) -> float:
-    """How far neighbouring scan lines of a drive lie apart at most, m."""
-    revolutions, trajectory = drive.revolutions, drive.trajectory
-    if revolutions is None or trajectory is None:
-        return _USUAL_REACH_M
-    steps = np.linalg.norm(np.diff(trajectory.xyz, axis=0), axis=1)
-    speeds = steps / np.diff(trajectory.time)
-    between = float(np.quantile(speeds, 0.9)) / revolutions.revolution_rate_hz
-    return min(max(_TURNS * between, _LEAST_REACH_M), _MOST_REACH_M)
+def turn_ways(drives: Sequence[Drive], pieces: ScanPieces) -> Floats:
+    """(n, 3) what the vehicle went during one turn where each piece was measured, m.
+
+    NaN where a drive doesn't say.
+    """
+    ways = np.full((len(pieces), 3), np.nan)
+    for number, drive in enumerate(drives):
+        revolutions, trajectory = drive.revolutions, drive.trajectory
+        if revolutions is None or trajectory is None or len(trajectory.time) < 2:
+            continue
+        mine = np.flatnonzero(pieces.drive == number)
+        times = np.asarray(drive.columns["time"])[pieces.values[mine, FIRST].astype(np.int64)]
+        first, last = (
+            np.clip(times + off, trajectory.time[0], trajectory.time[-1])
+            for off in (-_ABOUT_S, _ABOUT_S)
+        )
+        seconds = np.maximum(last - first, 1e-6) * revolutions.revolution_rate_hz
+        for axis, along in enumerate(trajectory.xyz.T):
+            went = np.interp(last, trajectory.time, along)
+            went -= np.interp(first, trajectory.time, along)
+            ways[mine, axis] = went / seconds
+    return ways
 
 
 def _signs(

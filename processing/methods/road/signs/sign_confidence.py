@@ -31,6 +31,10 @@ _HIGH_M = 3.5
 _NARROWEST_M, _WIDE_M = 0.2, 0.35
 """The narrowest plates are 40 cm wide (標識令, 別表第二), less what their rims are uncertain by."""
 
+_LOWEST_BOARD_M, _LOW_BOARD_M = 0.1, 0.2
+"""Heights of boards with a line of letters: guide signs have letters of 10 cm and more with as much
+above and below (標識令, 別表第二)."""
+
 _METAL, _PAINT = 0.75, 1.5
 """Standard deviations above the middle of diffuse things up to which the metal back of a sign is,
 and from which only paint and plastic are (:mod:`.plate_sides`)."""
@@ -71,7 +75,7 @@ class SignFacts(NamedTuple):
     low : float
         How far its lower edge is below 1.6 m above the ground, m, 0 to 1.
     askew : float
-        Roll and tilt, 1 for ten degrees together.
+        Roll and tilt, 1 for ten degrees together, 2 at most.
     is_plain : float
         1 of a rectangle that is dull: boards, windows and walls look alike.
     is_large : float
@@ -80,11 +84,12 @@ class SignFacts(NamedTuple):
         Sine of the angle in plan between where it looks and where the vehicle drove by: signs look
         along the road.
     thick : float
-        By how much more of its scan lines go on at one of its upright edges than at the other: over
-        the side of a board or a box; plates are thin.
+        By how much more of its scan lines go on at one of two opposite edges than at the other:
+        over the side of a board or a box, or a roof; plates are thin.
     narrow : float
-        How far it is narrower than 35 cm, 1 from 20 cm on: no sign is, but strips of poles and
-        pieces of larger plates are.
+        How far it is narrower than 35 cm, 1 from 20 cm on, or lower than 20 cm, 1 from 10 cm on,
+        where it hangs below no other: no sign is, but strips of poles, edges of roofs and pieces
+        of larger plates are.
     other_disc : float
         1 of a disc of a size that bus stops and mirrors have and signs don't.
     unheld : float
@@ -166,8 +171,9 @@ _WEIGHTS = SignFacts(
     over_board=-4.0,
 )
 
-_OF_SIGNS = ("single", "double", "cantilever", "gantry")
-"""What signs hang on that is theirs."""
+_OVER_ROAD: tuple[PostForm, ...] = ("cantilever", "gantry")
+_OF_SIGNS = ("single", "double", *_OVER_ROAD)
+"""What signs hang on that is theirs, and what holds large ones over the road."""
 
 
 def facts_of(plate: Plate, ground_m: float, along: Floats) -> SignFacts:
@@ -195,13 +201,17 @@ def facts_of(plate: Plate, ground_m: float, along: Floats) -> SignFacts:
         open_ends=min(one.open_ends / (2.0 * len(plate.pieces)), 1.0),
         noise=_over(one.noise_m, _NOISE_M, _FULL_NOISE_M),
         low=min(max(_LOW_EDGE_M - edge, 0.0), 1.0),
-        askew=min((abs(math.degrees(one.roll_rad)) + abs(math.degrees(one.tilt))) / 10.0, 1.0),
+        askew=min((abs(math.degrees(one.roll_rad)) + abs(math.degrees(one.tilt))) / 10.0, 2.0),
         is_plain=float(is_plain),
         is_large=min(max(longer - _LARGE_M, 0.0), 1.0) * is_plain,
         high=min(max(high / _HIGH_M - 1.0, 0.0), 1.0) * (one.bright < _BRIGHT),
         across=across,
         thick=one.thick,
-        narrow=1.0 - _over(plate.shape.wide_m, _NARROWEST_M, _WIDE_M),
+        narrow=1.0
+        - min(
+            _over(plate.shape.wide_m, _NARROWEST_M, _WIDE_M),
+            _over(plate.shape.high_m, _LOWEST_BOARD_M, _LOW_BOARD_M) if plate.upper < 0 else 1.0,
+        ),
         other_disc=float(plate.shape.is_other_disc),
         unheld=0.0,
         painted=_painted(one),
@@ -212,9 +222,19 @@ def facts_of(plate: Plate, ground_m: float, along: Floats) -> SignFacts:
 
 
 def facts_with_post(facts: SignFacts, post: PostForm | None) -> SignFacts:
-    """The same, what a plate hangs on being known, or known not to have been measured."""
+    """The same, what a plate hangs on being known, or known not to have been measured.
+
+    Large plates high up are usual on arms and gantries over the road.
+    """
     is_held = facts.bright >= _BRIGHT or post in _OF_SIGNS
+    if post in _OVER_ROAD:
+        facts = facts._replace(high=0.0, is_large=0.0)
     return facts._replace(unheld=0.0 if is_held else 1.0)
+
+
+def best_chance_of(facts: SignFacts) -> float:
+    """The chance of a plate if what holds it turns out to be what holds signs."""
+    return max(chance_of(facts), chance_of(facts_with_post(facts, _OVER_ROAD[0])))
 
 
 def facts_with_other_side(facts: SignFacts, plate: Plate, other: Plate) -> SignFacts:

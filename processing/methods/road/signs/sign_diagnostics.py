@@ -17,7 +17,7 @@ from processing.methods.road.signs.plate_fit import fit_plates
 from processing.methods.road.signs.plate_groups import plate_groups
 from processing.methods.road.signs.plate_lines import empty_lines, lines_of
 from processing.methods.road.signs.plates import Plate, plates_of
-from processing.methods.road.signs.road_signs import DriveWays, reach_of
+from processing.methods.road.signs.road_signs import DriveWays, turn_ways
 from processing.methods.road.signs.scan_pieces import pieces_between
 from processing.methods.road.signs.sign_confidence import chance_of, facts_of
 from processing.methods.road.signs.sign_shapes import looked_for
@@ -64,7 +64,7 @@ def sign_diagnostics(asked: RequestedPosition, least_confidence: float) -> tuple
     pieces = pieces_between(drive, *span, plan)
     ways = DriveWays([drive])
     found: list[Diagnostic] = []
-    for group in plate_groups(pieces, np.array([reach_of(drive)]), SilentMonitor()):
+    for group in plate_groups(pieces, turn_ways([drive], pieces), SilentMonitor()):
         if math.hypot(*(group.middle - place)[:2]) > _ABOUT_M:
             continue
         lines = lines_of(pieces, group)

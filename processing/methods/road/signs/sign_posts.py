@@ -42,12 +42,18 @@ _ASIDE_M, _BEFORE_M, _BEHIND_M = 0.4, 0.2, 0.6
 _ABOVE_M = (0.3, 1.5)
 """Over the highest plate: posts of signs end within some 10 cm of it, poles and walls go on."""
 
-_OVER_ROAD_M = 4.0
-"""Lower edges from here on hang over the carriageway: 5 m of clearance (道路標識設置基準 2-2)."""
+_OVER_ROAD_M, _HIGHEST_M, _SMALL_M = 4.0, 7.5, 0.5
+"""Lower edges from here on hang over the carriageway (5 m of clearance, 道路標識設置基準 2-2) up
+to here; plates of the small scales don't (標識令, 縮小率). Leaves of crowns are smaller or hang
+higher."""
 
 _BEAM_M = (0.15, 1.2)
 _FEWEST_ON_BEAM = 4
 """Beside the edges of a plate over the road, where the beam that holds it goes on; points there."""
+
+_SQUARE_M, _MOST_FILLED = 0.15, 0.5
+"""Share of the squares beside a plate in which beams and their post were met, at most; walls fill
+all."""
 
 
 def posts_of(
@@ -104,13 +110,21 @@ def _form_of(plate: Plate, about: Floats, span: Floats) -> PostForm | None:
         if goes_on or any(np.ptp(one[:, 0]) > _WIDEST_POST_M for one in posts):
             return "attached"
         return "single" if len(posts) == 1 else "double"
-    if span[0] < _OVER_ROAD_M:
+    longer = max(plate.shape.wide_m, plate.shape.high_m)
+    if not _OVER_ROAD_M <= span[0] <= _HIGHEST_M or longer < _SMALL_M:
         return None
     beam = about[is_behind & (about[:, 2] >= span[0] - 0.2) & (about[:, 2] <= span[1] + 0.3)]
     aside = np.abs(beam[:, 0]) - half
     beam = beam[(aside >= _BEAM_M[0]) & (aside <= _BEAM_M[1])]
-    sides = sum(int((beam[:, 0] * side > 0).sum() >= _FEWEST_ON_BEAM) for side in (-1, 1))
+    sides = sum(_is_beam(beam[beam[:, 0] * side > 0], span) for side in (-1, 1))
     return (None, "cantilever", "gantry")[sides]
+
+
+def _is_beam(beside: Floats, span: Floats) -> bool:
+    """Whether what lies on one side of a plate holds it and is no wall."""
+    squares = np.unique((beside[:, [0, 2]] / _SQUARE_M).astype(np.int64), axis=0)
+    every = (_BEAM_M[1] - _BEAM_M[0]) * np.ptp(span) / _SQUARE_M**2
+    return bool(len(beside) >= _FEWEST_ON_BEAM and len(squares) <= _MOST_FILLED * every)
 
 
 def _upright_things(behind: Floats, low_m: float, high_m: float) -> list[Floats]:

@@ -15,6 +15,7 @@ from processing.methods.road.signs.fit_kernels import (
     chord_of,
     cost_of,
     fit_kernel,
+    overlap_kernel,
 )
 from processing.methods.road.signs.plate_fit import Fit, fit_plates, hangs_below, is_board_below
 from processing.methods.road.signs.sign_shapes import (
@@ -149,3 +150,19 @@ def test_a_stop_is_asked_before_every_set_of_plates_is_looked_for() -> None:
     lines = np.concatenate([above, below])
     fit_plates(lines, np.empty((0, LINE)), standard_shapes(), Counting())
     assert len(asked) > len(fitted(lines).plates)
+
+
+def test_two_discs_beside_each_other_are_two_though_a_post_ends_between_them() -> None:
+    left, right = (lines_on(shape_of("circle", 0.6), (side, 0.0)) for side in (-0.35, 0.35))
+    post = lines_on(SignShape(RECTANGLE, 0.08, 0.9), (0.0, -0.6))
+    plates = fitted(np.concatenate([left, right, post])).plates
+    discs = sorted(one.pose[0] for one in plates if one.shape == shape_of("circle", 0.6))
+    assert discs == pytest.approx([-0.35, 0.35], abs=0.02)
+
+
+def test_outlines_tell_how_deep_they_lie_in_each_other() -> None:
+    disc, square = outline_of(shape_of("circle", 0.6)), outline_of(shape_of("square", 0.6))
+    origin = np.zeros(3)
+    assert overlap_kernel(disc, origin, disc, np.array([0.5, 0.0, 0.0])) == pytest.approx(0.1)
+    assert overlap_kernel(disc, origin, square, np.array([0.0, 0.7, 0.0])) == pytest.approx(-0.1)
+    assert overlap_kernel(square, origin, square, np.array([0.55, 0.0, 0.0])) == pytest.approx(0.05)

@@ -9,8 +9,13 @@ import pytest
 
 from processing.core.arrays import Floats
 from processing.methods.road.signs.plates import Plate, PlateEvidence
-from processing.methods.road.signs.sign_confidence import chance_of, facts_of
-from processing.methods.road.signs.sign_shapes import shape_of
+from processing.methods.road.signs.sign_confidence import (
+    best_chance_of,
+    chance_of,
+    facts_of,
+    facts_with_post,
+)
+from processing.methods.road.signs.sign_shapes import RECTANGLE, SignShape, shape_of
 
 BACK = PlateEvidence(
     0.0,
@@ -80,3 +85,14 @@ def test_where_nothing_of_a_recording_shines_paint_says_nothing() -> None:
 def test_what_shines_is_no_paint_though_one_side_is_dull() -> None:
     face = BACK._replace(bright=1.0, shine=9.0)
     assert chance(face._replace(both_seen=True)) == chance(face) > 0.9
+
+
+def test_a_large_board_high_up_is_a_sign_where_an_arm_holds_it() -> None:
+    outline = np.array([[1.5, 0.0, 5.2], [-1.5, 0.0, 5.2], [-1.5, 0.0, 7.2], [1.5, 0.0, 7.2]])
+    plate = Plate(
+        SignShape(RECTANGLE, 3.0, 2.0), np.array([0.0, 0.0, 6.2]), outline,
+        np.array([0.0, 1.0, 0.0]), BACK._replace(sectors=0.95), -1, np.arange(10),
+    )  # fmt: skip
+    facts = facts_of(plate, 0.0, ALONG)
+    assert chance_of(facts_with_post(facts, None)) < 0.1 < best_chance_of(facts)
+    assert chance_of(facts_with_post(facts, "cantilever")) > 0.5
