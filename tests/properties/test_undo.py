@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 
 from hypothesis import given, settings
@@ -12,6 +13,7 @@ from processing.core.text import Text
 from processing.map.catalogue import Geometry
 from processing.map.change import Change, Replacement
 from processing.map.feature import Feature, PointReference, Status, Vertex
+from processing.map.own_points import own_points
 from processing.project.project import Project
 
 LABEL = Text("Step", "操作")
@@ -24,26 +26,35 @@ VERTICES = st.builds(
 ATTRIBUTES = st.dictionaries(
     st.text(max_size=5), st.text(max_size=5) | NUMBERS | st.integers(-9, 9) | st.booleans()
 )
+OWN_POINTS = st.lists(
+    st.builds(own_points, st.text(max_size=5), st.lists(st.integers(0, 2**40), min_size=1)),
+    max_size=2,
+    unique_by=lambda one: one.drive,
+).map(tuple)
 STEPS = st.lists(
     st.tuples(
         st.sampled_from(["add", "replace", "remove", "undo", "redo", "reopen"]),
         st.lists(VERTICES, min_size=3, max_size=4),
         ATTRIBUTES,
+        OWN_POINTS,
     ),
     max_size=12,
 )
 
 
-def _change(request, vertices, attributes, number, features) -> Change:
+def _change(request, shape, own, number, features) -> Change:
+    vertices, attributes = shape
     if request == "add" or not features:
         geometry = list(Geometry)[number % 3]
         kept = tuple(vertices[:1] if geometry is Geometry.POINT else vertices)
-        return Change(added=(Feature(f"f{number}", "kind", geometry, kept, attributes),))
+        made = Feature(f"f{number}", "kind", geometry, kept, attributes, own_points=own)
+        return Change(added=(made,))
     chosen = features[number % len(features)]
     if request == "remove":
         return Change(removed=(chosen,))
     moved = chosen.with_vertices(tuple(vertices[: len(chosen.vertices)]))
     after = Feature(moved.id, "other", moved.geometry, moved.vertices, attributes, Status.CANDIDATE)
+    after = replace(after, own_points=own)
     return Change(replaced=(Replacement(chosen, after),))
 
 
@@ -54,7 +65,7 @@ def test_undo_and_redo_give_every_state_back_also_across_a_restart(steps):
         path = Path(folder) / "街路.zuka"
         project = Project.create(path, "EPSG:6677")
         states, position = [{}], 0
-        for number, (request, vertices, attributes) in enumerate(steps):
+        for number, (request, vertices, attributes, own) in enumerate(steps):
             if request == "reopen":
                 project.close()
                 project = Project.open(path)
@@ -66,7 +77,7 @@ def test_undo_and_redo_give_every_state_back_also_across_a_restart(steps):
                 position = min(len(states) - 1, position + 1)
             else:
                 features = tuple(project.features.all())
-                change = _change(request, vertices, attributes, number, features)
+                change = _change(request, (vertices, attributes), own, number, features)
                 project.features.apply(LABEL, change)
                 states = [*states[: position + 1], {f.id: f for f in project.features.all()}]
                 position += 1

@@ -22,10 +22,8 @@ COLUMNS = (
 )  # fmt: skip
 """Columns of the table ``features``, in the order of rows."""
 
-_OWN = ""
-"""Beside the drives, whose ids are never empty, in what features rest on: their own points."""
-
-_OWN_POINTS = "own_points"
+_OWN_POINTS, _VERTICES = "own_points", "vertices"
+"""What a feature rests on in a drive of which it has own points, too."""
 
 FeatureRow = tuple[bytes, str, str, str, str, float, str, str, str, str]
 
@@ -64,21 +62,21 @@ def feature_of(row: tuple[Any, ...]) -> Feature:
     """
     blob, id_, kind, _, status, _, attributes, provenance, measured, occluded = row
     geometry, positions = positions_of(blob)
-    references = {} if measured == "{}" else _mapping(json_of(measured))
-    own = _own_points_from(references.pop(_OWN, {}))
+    rests = {} if measured == "{}" else _mapping(json_of(measured))
+    own = {drive: one[_OWN_POINTS] for drive, one in rests.items() if isinstance(one, dict)}
     return Feature(
         id=id_,
         kind=kind,
         geometry=geometry,
         vertices=_vertices(
             positions,
-            references,
+            _vertex_references(rests) if own else rests,
             [] if occluded == "[]" else json_of(occluded),
         ),
         attributes={} if attributes == "{}" else _mapping(json_of(attributes)),
         status=Status(status),
         provenance=_provenance(provenance),
-        own_points=own,
+        own_points=_own_points_from(own),
     )
 
 
@@ -187,9 +185,20 @@ def _provenance(text: str) -> Provenance:
 
 
 def _measured(feature: Feature) -> dict[str, object]:
-    """What the vertices rest on, by drive, and the feature's own points."""
-    own = {_OWN: _plain_own_points(feature)} if feature.own_points else {}
-    return {**_references(feature.vertices), **own}
+    """By drive: what the vertices rest on, where there are own points both of them."""
+    measured: dict[str, object] = {**_references(feature.vertices)}
+    for drive, runs in _plain_own_points(feature).items():
+        vertices = {_VERTICES: measured[drive]} if drive in measured else {}
+        measured[drive] = {**vertices, _OWN_POINTS: runs}
+    return measured
+
+
+def _vertex_references(rests: dict[str, Any]) -> dict[str, list[int | None]]:
+    """What the vertices rest on, of what :func:`_measured` made."""
+    vertices = {
+        drive: one.get(_VERTICES) if isinstance(one, dict) else one for drive, one in rests.items()
+    }
+    return {drive: one for drive, one in vertices.items() if one is not None}
 
 
 def _plain_own_points(feature: Feature) -> dict[str, str]:
