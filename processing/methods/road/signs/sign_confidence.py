@@ -28,6 +28,11 @@ _LARGE_M = 1.0
 _HIGH_M = 3.5
 """Signs beside a road hang lower; over a road they are guide signs, and their backs plain."""
 
+_OVERHEAD_M, _ABOVE_ROADS_M = 9.0, 12.0
+"""Heights up to which the middles of signs over a road hang (道路標識設置基準: lower edges at
+5 m, with plates of a few metres), and from which surely none does: what shines there are windows
+and walls."""
+
 _NARROWEST_M, _WIDE_M = 0.2, 0.35
 """The narrowest plates are 40 cm wide (標識令, 別表第二), less what their rims are uncertain by."""
 
@@ -107,8 +112,8 @@ class SignFacts(NamedTuple):
         1 of what is dull and has a higher board right below it: bus stops have a disc over their
         timetable.
     high : float
-        Of what is dull, how far its middle is above 3.5 m, over 3.5 m, 0 to 1: parts of buildings
-        are.
+        Of what is dull, how far its middle is above 3.5 m, over 3.5 m; of anything how far above
+        9 m, over 3 m; 0 to 1: parts of buildings are.
     """
 
     bright: float
@@ -204,7 +209,7 @@ def facts_of(plate: Plate, ground_m: float, along: Floats) -> SignFacts:
         askew=min((abs(math.degrees(one.roll_rad)) + abs(math.degrees(one.tilt))) / 10.0, 2.0),
         is_plain=float(is_plain),
         is_large=min(max(longer - _LARGE_M, 0.0), 1.0) * is_plain,
-        high=min(max(high / _HIGH_M - 1.0, 0.0), 1.0) * (one.bright < _BRIGHT),
+        high=_high(high, is_bright=one.bright >= _BRIGHT),
         across=across,
         thick=one.thick,
         narrow=1.0
@@ -241,6 +246,12 @@ def facts_with_other_side(facts: SignFacts, plate: Plate, other: Plate) -> SignF
     """The same of a plate of which the other side was found as a plate of its own."""
     shine = max(plate.evidence.shine, other.evidence.shine)
     return facts._replace(painted=_painted(plate.evidence._replace(shine=shine, both_seen=True)))
+
+
+def _high(high_m: float, *, is_bright: bool) -> float:
+    """How much a plate hangs higher than its like, 0 to 1."""
+    beside_road = 0.0 if is_bright else min(max(high_m / _HIGH_M - 1.0, 0.0), 1.0)
+    return max(beside_road, _over(high_m, _OVERHEAD_M, _ABOVE_ROADS_M))
 
 
 def _over(value: float, low: float, high: float) -> float:

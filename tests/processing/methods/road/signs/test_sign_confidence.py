@@ -96,3 +96,17 @@ def test_a_large_board_high_up_is_a_sign_where_an_arm_holds_it() -> None:
     facts = facts_of(plate, 0.0, ALONG)
     assert chance_of(facts_with_post(facts, None)) < 0.1 < best_chance_of(facts)
     assert chance_of(facts_with_post(facts, "cantilever")) > 0.5
+
+
+def test_what_shines_far_above_any_road_is_no_sign() -> None:
+    def chance_at(middle_m: float) -> float:
+        outline = np.array([[1.5, 0.0, -1.0], [-1.5, 0.0, -1.0], [-1.5, 0.0, 1.0], [1.5, 0.0, 1.0]])
+        plate = Plate(
+            SignShape(RECTANGLE, 3.0, 2.0), np.array([0.0, 0.0, middle_m]),
+            outline + np.array([0.0, 0.0, middle_m]), np.array([0.0, 1.0, 0.0]),
+            BACK._replace(bright=1.0, shine=9.0, explained=0.7), -1, np.arange(10),
+        )  # fmt: skip
+        return chance_of(facts_with_post(facts_of(plate, 0.0, ALONG), None))
+
+    assert chance_at(6.2) == chance_at(8.9) > 0.7
+    assert chance_at(20.0) < 0.5
