@@ -14,7 +14,7 @@ from processing.recording.drive import Drive
 from widgets.feature_drawing.crowded_marks import marks_to_paint
 from widgets.shared.map_source import MapSource
 
-_MOST_FEATURES = 50
+MOST_FEATURES = 50
 """Of more chosen ones no points are shown: who chooses them all doesn't look at one."""
 
 _DOT_PX, _HALO_PX = 2.5, 4.5
@@ -35,7 +35,7 @@ class OwnPointPlaces:
 
     def features(self, chosen: frozenset[str]) -> Iterator[Feature]:
         """Those that have points to show; none where very many are chosen."""
-        if len(chosen) > _MOST_FEATURES:
+        if len(chosen) > MOST_FEATURES:
             return
         for id_ in sorted(chosen):
             feature = self._source.feature(id_)
@@ -47,7 +47,7 @@ class OwnPointPlaces:
         known, drives = self._known.get(feature.id), self._source.drives()
         if known is None or known[0] is not feature or known[1] != drives:
             parts = [drive.xyz(points_in(drive, (feature,))) for drive in drives]
-            if len(self._known) > _MOST_FEATURES:
+            if len(self._known) > MOST_FEATURES:
                 self._known.clear()
             known = feature, drives, np.concatenate([np.empty((0, 3)), *parts])
             self._known[feature.id] = known

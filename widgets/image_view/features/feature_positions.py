@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from processing.core.arrays import Floats
 from processing.image.search.nearest import NearestSearch, nearest_point, nearest_points
 from processing.map.feature import Feature, Vertex
-from widgets.feature_drawing.own_point_marks import points_in
+from widgets.feature_drawing.own_point_marks import MOST_FEATURES, points_in
 from widgets.image_view.features.picture_feature import PictureFeature, join_vertices
 from widgets.image_view.features.waiting_features import WaitingFeatures
 from widgets.image_view.orientation.oriented_image import OrientedImage, Span
@@ -142,6 +142,8 @@ class FeaturePositions:
         known = self._own.get(feature.id)
         if known is None or known[0] is not feature:
             known = feature, _positions(picture, points_in(picture.drive, (feature,)))
+            if len(self._own) > MOST_FEATURES:
+                self._own.clear()
             self._own[feature.id] = known
         return known[1]
 
