@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 
 import numpy as np
 from PySide6.QtCore import QPointF, Qt
@@ -13,6 +13,7 @@ from processing.map.feature import Feature
 from processing.recording.drive import Drive
 from widgets.feature_drawing.crowded_marks import marks_to_paint
 from widgets.shared.map_source import MapSource
+from widgets.shared.shared_state import SharedState
 
 MOST_FEATURES = 50
 """Of more chosen ones no points are shown: who chooses them all doesn't look at one."""
@@ -27,26 +28,32 @@ class OwnPointPlaces:
     Parameters
     ----------
     source : MapSource
+    shared : SharedState
+        Says what is chosen, shown and being edited.
     """
 
-    def __init__(self, source: MapSource) -> None:
+    def __init__(self, source: MapSource, shared: SharedState) -> None:
         self._source = source
+        self._shared = shared
         self._known: dict[str, tuple[Feature, tuple[Drive, ...], Floats]] = {}
 
-    def features(self, chosen: frozenset[str]) -> Iterator[Feature]:
+    def features(self) -> Iterator[Feature]:
         """Those that have points to show; none where very many are chosen."""
+        chosen, drawing = self._shared.selection.features, self._shared.sketch.drawing
         if len(chosen) > MOST_FEATURES:
             return
         for id_ in sorted(chosen):
             feature = self._source.feature(id_)
-            if feature is not None and feature.own_points:
+            if feature is None or (drawing is not None and drawing.replaces == id_):
+                continue
+            if feature.own_points and self._shared.view_settings.shows(feature):
                 yield feature
 
     def xyz(self, feature: Feature) -> Floats:
         """(n, 3) float64: where a feature's points lie, m, project CRS."""
         known, drives = self._known.get(feature.id), self._source.drives()
         if known is None or known[0] is not feature or known[1] != drives:
-            parts = [drive.xyz(points_in(drive, (feature,))) for drive in drives]
+            parts = [drive.xyz(points_in(drive, feature)) for drive in drives]
             if len(self._known) > MOST_FEATURES:
                 self._known.clear()
             known = feature, drives, np.concatenate([np.empty((0, 3)), *parts])
@@ -54,14 +61,9 @@ class OwnPointPlaces:
         return known[2]
 
 
-def points_in(drive: Drive, features: Iterable[Feature]) -> Integers:
-    """(n,) int64: the own points of features that are of a drive."""
-    found = [
-        own.numbers(drive.count)
-        for feature in features
-        for own in feature.own_points
-        if own.drive == drive.id
-    ]
+def points_in(drive: Drive, feature: Feature) -> Integers:
+    """(n,) int64: the own points of a feature that are of a drive."""
+    found = [own.numbers(drive.count) for own in feature.own_points if own.drive == drive.id]
     return np.concatenate([np.empty(0, np.int64), *found])
 
 

@@ -97,9 +97,8 @@ class ImageView(QWidget):
         self._images = TileImages(tiles)
         self._images.setParent(self)
         self._positions = FeaturePositions(source)
-        self._overlay = FeatureOverlay(
-            self._positions, shared.view_settings, OwnPointPlaces(source)
-        )
+        chosen = OwnPointPlaces(source, shared)
+        self._overlay = FeatureOverlay(self._positions, shared.view_settings, chosen)
         self._hits = HitFinder(self._overlay, shared.snap, shared.view_settings)
         self._gesture = Gesture(self._hits, shared.cursor)
         self._navigation = Navigation()

@@ -91,7 +91,7 @@ class PlaneView(QWidget):
         self._hits = PlaneHits(self)
         self._hits.selected = shared.selection.features
         self._mouse = PlaneMouse(self, self._hits, shared)
-        self._chosen = OwnPointPlaces(source)
+        self._chosen = OwnPointPlaces(source, shared)
         self._still = StillPicture()
         self._live = LivePainter()
         self.setMouseTracking(True)
@@ -294,10 +294,9 @@ class PlaneView(QWidget):
     def _paint_own_points(self, painter: QPainter, projection: PlaneProjection) -> None:
         """The points that chosen features consist of, where they are shown."""
         catalogue = self._source.catalogue()
-        for feature in self._chosen.features(self._shared.selection.features):
-            if self._shared.view_settings.shows(feature):
-                spots = self._viewport.to_screen(projection.to_plane(self._chosen.xyz(feature)))
-                paint_own_points(painter, spots, colour_of_kind(catalogue, feature.kind))
+        for feature in self._chosen.features():
+            spots = self._viewport.to_screen(projection.to_plane(self._chosen.xyz(feature)))
+            paint_own_points(painter, spots, colour_of_kind(catalogue, feature.kind))
 
     @override
     def resizeEvent(self, event: QResizeEvent) -> None:

@@ -28,6 +28,8 @@ from processing.laboratory.accuracy.filters.filters import write_sections
 from processing.project.importing.import_request import ImportRequest
 from processing.project.importing.importing import import_drives
 from processing.recording.drive import Drive
+from processing.scoring.features.one_to_one import pairs_within
+from processing.scoring.points.confusion_matrix import BinaryConfusionMatrix
 from processing.tools.registry import TOOLS
 from processing.tools.running.runner import RunRequest, run
 from processing.tools.tool import Candidate, CandidateResult
@@ -184,19 +186,16 @@ def _candidates(cloud: Path, names: Iterable[str]) -> dict[str, tuple[Candidate,
 
 
 def found_things(street: SearchedStreet, name: str) -> ThingScore:
-    """The things of a kind, one to one with what was found, the nearest first."""
+    """The things of a kind, one to one with what was found."""
     from scipy.spatial import cKDTree
 
     is_own = np.isin(street.label, street.labels.codes[name])
     things = _things(street.xyz[is_own], 0.0 if name == "signs" else _LEAST_HIGH_M)
     feet = np.array([one.xyz[0, :2] for one in street.candidates[name]]).reshape(-1, 2)
     middles = np.array([_foot_of(one) for one in things]).reshape(-1, 2)
-    away = np.hypot(*(middles[:, None] - feet[None]).transpose(2, 0, 1))
     found, used = np.zeros(len(things), np.bool_), np.zeros(len(feet), np.bool_)
-    for flat in np.argsort(away, axis=None).tolist():
-        thing, foot = divmod(flat, len(feet))
-        if away[thing, foot] <= REACH_M and not found[thing] and not used[foot]:
-            found[thing] = used[foot] = True
+    of_foot, of_thing = pairs_within(feet, middles, REACH_M)
+    found[of_thing] = used[of_foot] = True
     is_named = ~np.isin(street.label, street.labels.unnamed)
     tree = cKDTree(street.xyz[:, :2])
     wrong = 0
@@ -255,13 +254,12 @@ def _cells(streets: Sequence[ThingScore]) -> list[str]:
     found = np.concatenate([one.found for one in streets])
     wrong = sum(one.wrong for one in streets)
     hits = int(found.sum())
-    right = hits / (hits + wrong) if hits + wrong else float("nan")
-    recall = hits / found.size if found.size else float("nan")
-    f = 2 * right * recall / (right + recall) if hits else 0.0
+    counts = BinaryConfusionMatrix(hits, wrong, found.size - hits, 0)
+    f = counts.f_measure if hits else 0.0
     ends = (*_BANDS[1:], np.inf)
     bands = [(points >= low) & (points < high) for low, high in zip(_BANDS, ends, strict=True)]
     return [
-        f"{hits}, {wrong}, {found.size - hits}",
+        f"{counts.hits}, {counts.false_alarms}, {counts.misses}",
         f"{f:.1%}".replace("%", " %"),
         *(f"{int(found[band].sum())} of {int(band.sum())}" for band in bands),
     ]

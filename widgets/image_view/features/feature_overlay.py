@@ -79,10 +79,9 @@ class FeatureOverlay:
         """Paint features, without the one that is being edited."""
         replaced = "" if drawing is None else drawing.replaces
         shown = self.shown_in(viewport.span_with(_MARGIN_PX), replaced)
-        for feature in self._chosen.features(self.selected):
-            if feature.id != replaced and self._settings.shows(feature):
-                spots = viewport.to_screen(self._positions.own_places(feature))
-                paint_own_points(painter, spots, colour_of_kind(catalogue, feature.kind))
+        for feature in self._chosen.features():
+            spots = viewport.to_screen(self._positions.own_places(feature))
+            paint_own_points(painter, spots, colour_of_kind(catalogue, feature.kind))
         is_smooth = len(shown) <= _MOST_SMOOTH
         painter.setRenderHint(QPainter.RenderHint.Antialiasing, is_smooth)
         for one in shown:

@@ -141,7 +141,7 @@ class FeaturePositions:
             return np.empty((0, 2))
         known = self._own.get(feature.id)
         if known is None or known[0] is not feature:
-            known = feature, _positions(picture, points_in(picture.drive, (feature,)))
+            known = feature, _positions(picture, points_in(picture.drive, feature))
             if len(self._own) > MOST_FEATURES:
                 self._own.clear()
             self._own[feature.id] = known

@@ -13,12 +13,7 @@ from processing.image.search.clip import Clip
 from processing.map.catalogue import Catalogue
 from processing.map.feature import Feature, Status
 from processing.map.solids import thickness_of
-from widgets.feature_drawing.feature_shapes import (
-    FeatureShape,
-    FeatureShapes,
-    FlatShapes,
-    flatten_shapes,
-)
+from widgets.feature_drawing.feature_shapes import FeatureShapes, FlatShapes, flatten_shapes
 from widgets.feature_drawing.feature_style import colour_of_kind, style_of
 from widgets.feature_drawing.own_point_marks import OwnPointPlaces
 from widgets.shared.map_source import MapSource
@@ -59,7 +54,7 @@ class MapLayer(QObject):
         self._source = source
         self._shared = shared
         self._shapes = FeatureShapes(np.zeros(3), ())
-        self._chosen = OwnPointPlaces(source)
+        self._chosen = OwnPointPlaces(source, shared)
         self.flat: FlatShapes = flatten_shapes(())
         self.replaced = ""
         self._clip: Clip | None = None
@@ -109,7 +104,7 @@ class MapLayer(QObject):
             )
             for shape in seen
         ]
-        scene_renderer.features.show(styled, scene_renderer.scale, self._own_points(seen))
+        scene_renderer.features.show(styled, scene_renderer.scale, self._own_points())
         scene_renderer.solids.show(
             [
                 StyledSolid(one.shape, one.style, thickness_m)
@@ -124,16 +119,14 @@ class MapLayer(QObject):
         positions = [shape.local_xyz for shape in shapes if shape is not None]
         return np.concatenate(positions) if positions else None
 
-    def _own_points(self, seen: tuple[FeatureShape, ...]) -> tuple[DottedPoints, ...]:
-        """The points that chosen things consist of, of those that are drawn."""
+    def _own_points(self) -> tuple[DottedPoints, ...]:
+        """The points that chosen things consist of."""
         from widgets.scene_view.rendering.feature_actors import DottedPoints
 
-        drawn, origin = {shape.feature.id for shape in seen}, self._source.origin()
-        catalogue = self._source.catalogue()
+        catalogue, origin = self._source.catalogue(), self._source.origin()
         return tuple(
             DottedPoints(self._chosen.xyz(one) - origin, colour_of_kind(catalogue, one.kind))
-            for one in self._chosen.features(self._shared.selection.features)
-            if one.id in drawn
+            for one in self._chosen.features()
         )
 
     def _on_map_features_changed(self, ids: tuple[str, ...]) -> None:
