@@ -25,12 +25,12 @@ from processing.methods.classes.painted_cells import (
     PaintedLabels,
     painted_cells,
 )
-from processing.methods.classes.single_scans import is_single_scan
 from processing.operations.inputs import opened_project
 from processing.project.own_models import model_id, model_name
 from processing.project.project import Project
 from processing.project.results.run_findings import set_by_hand
 from processing.recording.columns.classes import point_classes
+from processing.recording.density import is_single_scan
 from processing.recording.drive import Drive
 
 LEARN = Text("Learn from corrections", "修正から学習")

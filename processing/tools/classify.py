@@ -17,6 +17,7 @@ from processing.core.text import Text
 from processing.methods.classes.aerial_cells import is_from_air, spacing_m
 from processing.methods.classes.aerial_classes import classify_thin_cloud
 from processing.methods.classes.class_models import (
+    SCAN_CELL_M,
     ClassModels,
     aerial_models,
     scan_models,
@@ -25,9 +26,9 @@ from processing.methods.classes.class_models import (
 from processing.methods.classes.drive_classes import FoundClasses, classify_drive
 from processing.methods.classes.found_things import FoundThings
 from processing.methods.classes.own_model import ModelFacts, read_own_model
-from processing.methods.classes.single_scans import SCAN_CELL_M, is_single_scan
 from processing.recording.columns.columns import ColumnWriter
 from processing.recording.columns.ordering import chunk_ranges, read_chunk
+from processing.recording.density import is_single_scan
 from processing.recording.drive import Drive
 from processing.scoring.scorers import CLASS_SCORER
 from processing.tools.found_things import LookedFor, look_for_things

@@ -11,10 +11,16 @@ import numpy as np
 from processing.core.monitor import Monitor
 from processing.core.parameters import least_confidence, length
 from processing.core.text import Text
+from processing.methods.road.coarse.coarse_uprights import (
+    CoarseUpright,
+    coarse_uprights,
+    sparse_note,
+)
 from processing.methods.road.diagnostics import Diagnostic
 from processing.methods.road.poles.shaft_diagnostics import shaft_diagnostics
 from processing.methods.road.poles.street_poles import StreetPole, street_poles
 from processing.methods.road.requested_position import RequestedPosition
+from processing.recording.density import are_sparse
 from processing.recording.drive import Drive
 from processing.scoring.scorers import POLE_SCORER
 from processing.tools.tool import (
@@ -56,6 +62,8 @@ def find_poles(
     drives: tuple[Drive, ...], parameters: PoleParameters, monitor: Monitor
 ) -> CandidateResult:
     """Poles of a survey: one result for all heads and passes."""
+    if are_sparse(drives):
+        return _of_sparse_drives(drives, parameters, monitor)
     found = street_poles(drives, monitor)
     poles = [
         one
@@ -114,6 +122,38 @@ def _candidate(pole: StreetPole) -> Candidate:
         pole.drives[:1],
         own_points=pole.points,
         own_drives=pole.drives,
+    )
+
+
+def _of_sparse_drives(
+    drives: tuple[Drive, ...], parameters: PoleParameters, monitor: Monitor
+) -> CandidateResult:
+    found = coarse_uprights(drives, monitor)
+    likely = [
+        one
+        for one in found
+        if one.pole >= parameters.least_confidence and one.top_m >= parameters.lowest_m
+    ]
+    candidates = tuple(_coarse_candidate(one) for one in likely)
+    return CandidateResult(candidates, sparse_note(len(likely), len(found)))
+
+
+def _coarse_candidate(upright: CoarseUpright) -> Candidate:
+    attributes: dict[str, CandidateValue] = {
+        "type": "other",
+        "height_m": round(upright.top_m, 2),
+        "lean_deg": round(upright.lean_deg, 1),
+    }
+    return Candidate(
+        "pole",
+        "point",
+        upright.foot[None],
+        np.array([-1], np.int64),  # the foot lies on no measured point
+        upright.pole,
+        attributes,
+        upright.drives[:1],
+        own_points=upright.points,
+        own_drives=upright.drives,
     )
 
 

@@ -11,10 +11,16 @@ import numpy as np
 from processing.core.monitor import Monitor
 from processing.core.parameters import least_confidence, length
 from processing.core.text import Text
+from processing.methods.road.coarse.coarse_uprights import (
+    CoarseUpright,
+    coarse_uprights,
+    sparse_note,
+)
 from processing.methods.road.diagnostics import Diagnostic
 from processing.methods.road.requested_position import RequestedPosition
 from processing.methods.road.trees.street_trees import StreetTree, TreeSettings, street_trees
 from processing.methods.road.trees.trunk_diagnostics import trunk_diagnostics
+from processing.recording.density import are_sparse
 from processing.recording.drive import Drive
 from processing.scoring.scorers import TREE_SCORER
 from processing.tools.tool import (
@@ -56,7 +62,10 @@ def find_trees(
     drives: tuple[Drive, ...], parameters: TreeParameters, monitor: Monitor
 ) -> CandidateResult:
     """Street trees of a survey: one result for all heads and passes."""
-    found = street_trees(drives, TreeSettings(parameters.thickest_m), monitor)
+    if are_sparse(drives):
+        return _of_sparse_drives(drives, parameters, monitor)
+    settings = TreeSettings(parameters.thickest_m)
+    found = street_trees(drives, settings, monitor)
     trees = [one for one in found if one.confidence >= parameters.least_confidence]
     return CandidateResult(tuple(_candidate(one) for one in trees), _note(drives, found, trees))
 
@@ -112,6 +121,33 @@ def _candidate(tree: StreetTree) -> Candidate:
         tree.drives[:1],
         own_points=tree.points,
         own_drives=tree.drives,
+    )
+
+
+def _of_sparse_drives(
+    drives: tuple[Drive, ...], parameters: TreeParameters, monitor: Monitor
+) -> CandidateResult:
+    found = coarse_uprights(drives, monitor)
+    likely = [one for one in found if one.tree >= parameters.least_confidence]
+    candidates = tuple(_coarse_candidate(one) for one in likely)
+    return CandidateResult(candidates, sparse_note(len(likely), len(found)))
+
+
+def _coarse_candidate(upright: CoarseUpright) -> Candidate:
+    attributes: dict[str, CandidateValue] = {
+        "height_m": round(upright.highest_m, 2),
+        "lean_deg": round(upright.lean_deg, 1),
+    }
+    return Candidate(
+        "street_tree",
+        "point",
+        upright.foot[None],
+        np.array([-1], np.int64),  # the foot lies on no measured point
+        upright.tree,
+        attributes,
+        upright.drives[:1],
+        own_points=upright.points,
+        own_drives=upright.drives,
     )
 
 

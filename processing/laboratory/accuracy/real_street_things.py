@@ -71,11 +71,14 @@ class ThingLabels:
         By :data:`TOOL_OF`.
     unnamed : tuple of int
         Points that nobody named, or so coarsely that they may be anything.
+    leaves : tuple of int
+        Foliage: stems of small trees and shrubs mostly have its name.
     """
 
     folder: str
     codes: Mapping[str, tuple[int, ...]]
     unnamed: tuple[int, ...]
+    leaves: tuple[int, ...]
 
 
 DATA_SETS = (
@@ -88,8 +91,11 @@ DATA_SETS = (
             "wires": (1100, 1101, 1102),
         },
         (1000, 1001, 1002, 1003, 1004, 1005),
+        (1300,),
     ),
-    ThingLabels("street_semantic_kitti", {"trunks": (16,), "poles": (18,), "signs": (19,)}, (0,)),
+    ThingLabels(
+        "street_semantic_kitti", {"trunks": (16,), "poles": (18,), "signs": (19,)}, (0,), (15,)
+    ),
 )
 
 
@@ -97,12 +103,13 @@ class ThingScore(NamedTuple):
     """Things of one kind on one street.
 
     ``points``: how many labelled points each true one has; ``found``: which of them were found;
-    ``wrong``: candidates that stand on something else.
+    ``wrong``: candidates that stand on something else; ``in_leaves``: those of them on foliage.
     """
 
     points: Integers
     found: Flags
     wrong: int
+    in_leaves: int
 
 
 class WireScore(NamedTuple):
@@ -197,12 +204,17 @@ def found_things(street: SearchedStreet, name: str) -> ThingScore:
     of_foot, of_thing = pairs_within(feet, middles, REACH_M)
     found[of_thing] = used[of_foot] = True
     is_named = ~np.isin(street.label, street.labels.unnamed)
+    if name == "poles":  # a plate that has a name hangs on a pole that has none
+        is_named &= ~np.isin(street.label, street.labels.codes["signs"])
+    is_leaf = np.isin(street.label, street.labels.leaves)
     tree = cKDTree(street.xyz[:, :2])
-    wrong = 0
+    wrong = in_leaves = 0
     for near in tree.query_ball_point(feet[~used], _ABOUT_M):
         named = np.array(near, np.int64)[is_named[near]]
-        wrong += named.size > len(near) / 2 and is_own[named].mean() < 1 / 2
-    return ThingScore(np.array([len(one) for one in things], np.int64), found, int(wrong))
+        if named.size > len(near) / 2 and is_own[named].mean() < 1 / 2:
+            wrong += 1
+            in_leaves += bool(is_leaf[named].mean() > 1 / 2)
+    return ThingScore(np.array([len(one) for one in things], np.int64), found, wrong, in_leaves)
 
 
 def _things(xyz: Floats, least_high_m: float) -> list[Floats]:
@@ -252,7 +264,7 @@ def _steps_along(wire: Candidate) -> Floats:
 def _cells(streets: Sequence[ThingScore]) -> list[str]:
     points = np.concatenate([one.points for one in streets])
     found = np.concatenate([one.found for one in streets])
-    wrong = sum(one.wrong for one in streets)
+    wrong, in_leaves = (sum(getattr(one, name) for one in streets) for name in _FALSE)
     hits = int(found.sum())
     counts = BinaryConfusionMatrix(hits, wrong, found.size - hits, 0)
     f = counts.f_measure if hits else 0.0
@@ -261,6 +273,7 @@ def _cells(streets: Sequence[ThingScore]) -> list[str]:
     return [
         f"{counts.hits}, {counts.false_alarms}, {counts.misses}",
         f"{f:.1%}".replace("%", " %"),
+        str(in_leaves),
         *(f"{int(found[band].sum())} of {int(band.sum())}" for band in bands),
     ]
 
@@ -275,7 +288,9 @@ def _wire_cells(streets: Sequence[WireScore]) -> list[str]:
     ]
 
 
-_HEAD = ["data set", "things", "found, false, missed", "F"]
+_FALSE = ("wrong", "in_leaves")
+
+_HEAD = ["data set", "things", "found, false, missed", "F", "of the false, in foliage"]
 _HEAD += [f"of {low} to {high - 1} points" for low, high in pairwise(_BANDS)]
 _HEAD += [f"of {_BANDS[-1]} and more"]
 _WIRE_HEAD = ["data set", "points of wires", "on one found", "found", "of it on something else"]

@@ -50,9 +50,9 @@ from processing.laboratory.simulate.scene.chance import chance
 from processing.laboratory.simulate.spinning_head import spinning_scans
 from processing.laboratory.simulate.street.styles import style_of
 from processing.methods.classes.aerial_cells import aerial_cells
-from processing.methods.classes.class_models import SCAN_AGAIN, SCAN_ALONE, scan_models
+from processing.methods.classes.class_models import SCAN_AGAIN, SCAN_ALONE, SCAN_CELL_M, scan_models
 from processing.methods.classes.drive_classes import shares_of_cells
-from processing.methods.classes.single_scans import SCAN_CELL_M, points_a_place
+from processing.recording.density import points_a_place
 from processing.recording.drive import Drive
 from processing.scoring.points.class_scores import class_score
 from processing.scoring.points.confusion_matrix import ConfusionMatrix

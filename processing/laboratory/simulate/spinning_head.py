@@ -84,11 +84,14 @@ class SpinningScan:
     intensity : (n,) uint16
     labels : (n,) uint8
         Codes of the contract.
+    instance : (n,) int32
+        Of which thing of the street each is.
     """
 
     xyz: Floats
     intensity: NDArray[np.uint16]
     labels: NDArray[np.uint8]
+    instance: NDArray[np.int32]
 
 
 def any_spinning_head(random: Generator) -> SpinningHead:
@@ -167,4 +170,5 @@ def _scan(seen: SeenStreet, pose: Pose, head: SpinningHead, random: Generator) -
     kept = (away < head.sensor.most_m) & (random.random(away.size) >= head.lost)
     strength = np.empty(away.size, np.uint16)
     intensities(returns.strength, weather.damping, strength)
-    return SpinningScan(returns.xyz[kept] - pose.position, strength[kept], returns.label[kept])
+    xyz, instance = returns.xyz[kept] - pose.position, returns.instance[kept]
+    return SpinningScan(xyz, strength[kept], returns.label[kept], instance)

@@ -19,6 +19,10 @@ WAVE_ALONE, WAVE_AGAIN = "wave_alone.onnx", "wave_again.onnx"
 SCAN_ALONE, SCAN_AGAIN = "scan_alone.onnx", "scan_again.onnx"
 BARE_ALONE, BARE_AGAIN = "bare_alone.onnx", "bare_again.onnx"
 
+SCAN_CELL_M = 0.2
+"""Side of the finest cells of single scans, too sparse for those of 10 cm: two rows of a spinning
+head at 10 m are as far apart or farther. Their ground is found as in clouds from the air."""
+
 
 @dataclass(frozen=True)
 class ClassModels:

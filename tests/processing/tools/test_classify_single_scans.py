@@ -15,10 +15,10 @@ from processing.laboratory.simulate.assembly.street import Street
 from processing.laboratory.simulate.spinning_head import spinning_scans
 from processing.laboratory.simulate.street.styles import style_of
 from processing.methods.classes.aerial_cells import density_of, is_from_air
-from processing.methods.classes.single_scans import is_single_scan, points_a_place, spread_of
 from processing.project.importing.import_request import ImportRequest
 from processing.project.importing.importing import import_drives
 from processing.recording.columns.source_order import sources_of
+from processing.recording.density import is_single_scan, points_a_place, spread_of
 from processing.recording.drive import Drive
 from processing.scoring.points.confusion_matrix import ConfusionMatrix
 from processing.tools.classify import ClassifyParameters

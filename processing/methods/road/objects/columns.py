@@ -45,6 +45,9 @@ _APART_CELLS = 2
 """Columns are farther apart in either direction: 0.4 m; nearer ones are stakes beside a trunk, or
 the stems of one tree."""
 
+ONE_M = 0.3
+"""Columns nearer to each other are of one pole, as thick as two cells; each would get a half."""
+
 _BEGINS = np.uint32((1 << 11) - 1)
 """The slabs up to 2.4 m, in which a column stands free: a pedestrian passes under what hangs
 higher."""
@@ -104,6 +107,21 @@ def find_columns(
                 if ((middle >= 0) & (middle < TILE)).all()
             ]
     return _on_ground(standing, plan, ground), _on_ground(raised, plan, ground)
+
+
+def distinct_columns(columns: FoundColumns) -> FoundColumns:
+    """Of columns that are one the one that stands free at the most heights."""
+    from scipy.spatial import cKDTree
+
+    if len(columns) < 2:
+        return columns
+    kept = np.ones(len(columns), np.bool_)
+    heights = np.bitwise_count(columns.slabs)
+    pairs = cKDTree(columns.middles).query_pairs(ONE_M, output_type="ndarray")
+    for a, b in pairs[np.lexsort(pairs.T)].tolist():
+        if kept[a] and kept[b]:
+            kept[b if heights[a] >= heights[b] else a] = False
+    return FoundColumns(columns.middles[kept], columns.ground[kept], columns.slabs[kept])
 
 
 def _on_ground(

@@ -12,7 +12,7 @@ from processing.core.arrays import Floats, Integers
 from processing.core.monitor import Monitor, PartMonitor
 from processing.core.worked_ahead import in_order
 from processing.methods.road.objects.column_points import ColumnPoints, points_about
-from processing.methods.road.objects.columns import FoundColumns
+from processing.methods.road.objects.columns import ONE_M, FoundColumns, distinct_columns
 from processing.methods.road.objects.drive_passes import passes_of
 from processing.methods.road.objects.foot import foot_height
 from processing.methods.road.objects.sparse_plan import SparsePlan
@@ -47,9 +47,6 @@ ABOUT_M = 0.7
 
 _COLUMNS_AT_ONCE = 64
 """Between two moments at which the work can be stopped: a hundredth of a second."""
-
-_ONE_M = 0.3
-"""Columns nearer to each other are of one pole, as thick as two cells; each would get a half."""
 
 _OF_COLUMN = 2
 """Shafts of a column: a post and the trunk, wall or stay beside it."""
@@ -143,7 +140,7 @@ def find_shafts(
     columns : FoundColumns
         What stands upright on it.
     """
-    columns = _distinct(columns)
+    columns = distinct_columns(columns)
     gathered = points_about(drives, plan, columns.middles, ABOUT_M, PartMonitor(monitor, 0.0, 0.8))
     found: list[Shaft] = []
     for members in passes_of(drives):
@@ -171,7 +168,7 @@ def find_hidden_shafts(
 
     if not len(raised):
         return []
-    raised = _distinct(raised)
+    raised = distinct_columns(raised)
     gathered = points_about(drives, plan, raised.middles, ABOUT_M, monitor)
     found: list[Shaft] = []
     for members in passes_of(drives):
@@ -181,7 +178,7 @@ def find_hidden_shafts(
         return found
     known = cKDTree(np.array([one.foot[:2] for one in standing]))
     away = np.asarray(known.query(np.array([one.foot[:2] for one in found]))[0])
-    return [found[number] for number in np.flatnonzero(away > _ONE_M).tolist()]
+    return [found[number] for number in np.flatnonzero(away > ONE_M).tolist()]
 
 
 def with_whole_sides(
@@ -225,21 +222,6 @@ def _fitted_again(around: ColumnPoints, number: int, shaft: Shaft) -> Shaft:
     again = [_standing(place, about, 0, one) for one in told[0][_are_shafts(told)[0]]]
     off = [float(np.hypot(*(one.foot - shaft.foot)[:2])) for one in again]
     return again[int(np.argmin(off))] if off and min(off) < _SAME_M else shaft
-
-
-def _distinct(columns: FoundColumns) -> FoundColumns:
-    """Of columns that are one the one that stands free at the most heights."""
-    from scipy.spatial import cKDTree
-
-    if len(columns) < 2:
-        return columns
-    kept = np.ones(len(columns), np.bool_)
-    heights = np.bitwise_count(columns.slabs)
-    pairs = cKDTree(columns.middles).query_pairs(_ONE_M, output_type="ndarray")
-    for a, b in pairs[np.lexsort(pairs.T)].tolist():
-        if kept[a] and kept[b]:
-            kept[b if heights[a] >= heights[b] else a] = False
-    return FoundColumns(columns.middles[kept], columns.ground[kept], columns.slabs[kept])
 
 
 def shafts_about(points: Floats) -> list[Floats]:

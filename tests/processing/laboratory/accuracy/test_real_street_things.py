@@ -56,6 +56,15 @@ def test_things_are_paired_one_to_one_and_what_stands_on_something_else_is_false
     )
 
 
+def test_a_pole_under_a_plate_is_not_false_and_what_stands_in_foliage_is_told() -> None:
+    things = {1111: upright(0.0, 50), 1300: upright(10.0, 50), WALL: upright(20.0, 50)}
+    candidates = [pole_at(0.1), pole_at(10.0), pole_at(20.0)]
+    poles = found_things(street(things, poles=candidates), "poles")
+    assert (poles.wrong, poles.in_leaves) == (2, 1)
+    trunks = found_things(street(things, trunks=candidates), "trunks")
+    assert (trunks.wrong, trunks.in_leaves) == (3, 1)
+
+
 def test_low_things_are_none_but_for_signs() -> None:
     low = upright(0.0, 40, high_m=0.5)
     assert told(found_things(street({POLE: low}, poles=[]), "poles"))[0] == []
@@ -92,5 +101,5 @@ def test_the_page_tells_of_a_street_on_which_nothing_stands(tmp_path: Path) -> N
     page.write_text(f"{HEADING}\nold\n", "utf-8")
     assert main([str(tmp_path), "--markdown", str(page)]) == 0
     words = page.read_text("utf-8")
-    assert "| street_oakland | poles | 0, 0, 0 | 0.0 % | 0 of 0 | 0 of 0 | 0 of 0 |" in words
+    assert "| street_oakland | poles | 0, 0, 0 | 0.0 % | 0 | 0 of 0 | 0 of 0 | 0 of 0 |" in words
     assert "| street_oakland | 0 | – | 0 m | 0 m |" in words
