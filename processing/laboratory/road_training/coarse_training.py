@@ -116,7 +116,7 @@ def _judged(recording: CoarseRecording) -> list[tuple[ColumnFacts, int]]:
         below, columns = survey_columns([drive], SilentMonitor())
         columns = distinct_columns(columns)
         sums = sum_columns([drive], below.plan, columns, SilentMonitor())
-    told = known_columns(sums)
+    told = known_columns(sums, SilentMonitor())
     places = sums.axes.base[[number for number, _ in told]] + below.plan.origin[:2]
     codes = label_columns(places, [one.points for _, one in told], recording)
     return [
@@ -165,10 +165,12 @@ def fit_kind(known: KnownColumns, kind: str) -> Trees:
 
 
 def cross_validated(known: KnownColumns, kind: str) -> Floats:
-    """(n,) each street's chances by trees that were fitted without it."""
+    """(n,) each street's chances by trees that were fitted without it; 0 of a single one."""
     found = np.zeros(known.codes.size)
     for fold in range(_FOLDS):
         is_here = known.street % _FOLDS == fold
+        if not is_here.any() or is_here.all():
+            continue
         trees = fit_kind(known.chosen(~is_here), kind)
         found[is_here] = _chances(trees, known.facts[is_here])
     return found

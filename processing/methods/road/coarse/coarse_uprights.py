@@ -96,7 +96,7 @@ def coarse_uprights(drives: Sequence[Drive], monitor: Monitor) -> tuple[CoarseUp
     below, columns = survey_columns(drives, PartMonitor(monitor, 0.0, 0.3))
     columns = distinct_columns(columns)
     sums = sum_columns(drives, below.plan, columns, PartMonitor(monitor, 0.3, 0.8))
-    told = known_columns(sums)
+    told = known_columns(sums, monitor)
     if not told:
         return ()
     rows = np.array([facts for _, facts in told], np.float32)
@@ -108,10 +108,15 @@ def coarse_uprights(drives: Sequence[Drive], monitor: Monitor) -> tuple[CoarseUp
     return tuple(_standing(drives, below.plan, (columns, sums), found, part))
 
 
-def known_columns(sums: ColumnSums) -> list[tuple[int, ColumnFacts]]:
+def known_columns(sums: ColumnSums, monitor: Monitor) -> list[tuple[int, ColumnFacts]]:
     """Number and facts of each column that has some."""
-    told = ((number, facts_of(sums, number)) for number in range(len(sums.slabs)))
-    return [(number, facts) for number, facts in told if facts is not None]
+    told: list[tuple[int, ColumnFacts]] = []
+    for number in range(len(sums.slabs)):
+        monitor.check()
+        facts = facts_of(sums, number)
+        if facts is not None:
+            told.append((number, facts))
+    return told
 
 
 def chances_of(rows: NDArray[np.float32], *, is_scan: bool, monitor: Monitor) -> Floats:
@@ -203,14 +208,14 @@ def sparse_note(likely: int, found: int) -> Text:
     """What things of sparse recordings lack; or that none of what was found is likely."""
     if not likely:
         return Text(
-            f"The recording is too sparse for round shapes, and none of {found} upright things is "
-            "likely enough by where its points stand.",
-            f"点密度が低く円形を当てはめられません。点の並びから見て、直立した物{found}件のうち"
+            "The recording is too sparse for round shapes, and by where points stand "
+            f"none of {found} upright things is likely enough.",
+            f"点密度が低く円形を当てはめられません。点の並びから見て、直立した物{found}件のうち、"
             "該当するとみなせるものはありませんでした。",
         )
     return Text(
-        f"The recording is too sparse for round shapes: {likely} things were told by where points "
-        "stand, without a diameter, and as high as they were seen.",
-        f"点密度が低く円形を当てはめられないため、{likely}件は点の並びから判定しました。"
+        "The recording is too sparse for round shapes: what was found is told by where points "
+        "stand, without a diameter and only as high as it was seen.",
+        "点密度が低く円形を当てはめられないため、点の並びから判定しました。"
         "直径は求めず、高さは計測された範囲の値です。",
     )

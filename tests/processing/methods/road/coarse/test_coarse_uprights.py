@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from processing.core.arrays import Floats
+from processing.core.errors import Cancelled
 from processing.core.monitor import SilentMonitor
 from processing.laboratory.road_training.coarse_recordings import CoarseRecording
 from processing.laboratory.road_training.coarse_training import label_columns
@@ -118,6 +119,19 @@ def test_tools_say_what_sparse_things_lack(sparse: Drive) -> None:
     assert tree.attributes["height_m"] == pytest.approx(7.0, abs=0.4)
     assert "too sparse" in trees.note.en
     assert "点密度" in trees.note.ja
+
+
+def test_a_cancel_is_felt_between_columns(sparse: Drive) -> None:
+    class EndsEarly(SilentMonitor):
+        asked = 0
+
+        def check(self) -> None:
+            self.asked += 1
+            if self.asked > 5:
+                raise Cancelled
+
+    with pytest.raises(Cancelled):
+        coarse_uprights((sparse,), EndsEarly())
 
 
 def test_a_dense_recording_is_left_to_the_exact_way(tmp_path: Path) -> None:
