@@ -308,10 +308,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _scenes(options: argparse.Namespace) -> Iterator[RoadScene]:
     yield from given_scenes(options.samples)
-    yield from simulated_scenes(options.seeds, options.length, _options_of_seed)
+    yield from simulated_scenes(options.seeds, options.length, options_of_seed)
 
 
-def _options_of_seed(_number: int, seed: int, length_m: float) -> StreetRequest:
+def options_of_seed(_number: int, seed: int, length_m: float) -> StreetRequest:
     """A street is the same whichever others are made with it."""
     return fast_options_of(seed % 10, seed, length_m)
 

@@ -18,10 +18,10 @@ from processing.methods.road.objects.sparse_plan import SparsePlan
 from processing.methods.road.objects.survey import survey_ground
 from processing.methods.road.signs.distinct_plates import distinct_plates
 from processing.methods.road.signs.piece_kernels import FIRST, FROM
-from processing.methods.road.signs.plate_fit import fit_plates
+from processing.methods.road.signs.plate_fit import FittedPlate, fit_plates
 from processing.methods.road.signs.plate_groups import PlateGroup, plate_groups
 from processing.methods.road.signs.plate_lines import empty_lines, lines_of
-from processing.methods.road.signs.plates import Plate, plates_of
+from processing.methods.road.signs.plates import Plate, plate_alone, plates_of
 from processing.methods.road.signs.scan_pieces import ScanPieces, scan_pieces
 from processing.methods.road.signs.sign_confidence import (
     SignFacts,
@@ -46,6 +46,11 @@ _EVERY = 20
 _LIKELY = 0.1
 """Chance from which it is looked for what a plate hangs on: what is less likely is hardly shown,
 and nothing that holds it makes it likelier."""
+
+
+_HOPELESS = 0.01
+"""Chance of a plate, if all that isn't known yet speaks for it, up to which it is no sign: less
+than any limit that people set."""
 
 
 @dataclass(frozen=True)
@@ -140,22 +145,42 @@ def road_signs(
         lines = lines_of(pieces, group)
         empty = empty_lines(pieces, group, lines)
         rectangles = sought.with_rectangles
-        fit = fit_plates(lines, empty, sought.shapes, monitor, with_rectangles=rectangles)
+
+        def is_hopeful(fitted: FittedPlate) -> bool:
+            plate = plate_alone(pieces, group, lines, fitted)
+            return plate is not None and _may_be_sign(plate, pieces, (plan, ground), ways)
+
+        fit = fit_plates(
+            lines,
+            empty,
+            sought.shapes,
+            monitor,
+            with_rectangles=rectangles,
+            is_hopeful=is_hopeful,
+        )
         return _signs(plates_of(pieces, group, lines, fit), pieces, (plan, ground), ways)
 
     found: list[RoadSign] = []
     for number, signs_of_group in enumerate(in_order(of_group, groups)):
         found += signs_of_group
         monitor.report(0.8 + 0.1 * (number + 1) / len(groups))
-    found = _with_other_sides(found)
-    kept = distinct_plates(
-        [one.plate for one in found], np.array([one.confidence for one in found]), _LIKELY
-    )
-    signs = [found[number] for number in kept]
+    return _held(_distinct(_with_other_sides(found)), drives, plan, PartMonitor(monitor, 0.9, 1.0))
+
+
+def _distinct(found: list[RoadSign]) -> list[RoadSign]:
+    """One of each plate."""
+    chances = np.array([one.confidence for one in found])
+    return [found[n] for n in distinct_plates([one.plate for one in found], chances, _LIKELY)]
+
+
+def _held(
+    signs: list[RoadSign], drives: Sequence[Drive], plan: SparsePlan, monitor: Monitor
+) -> tuple[RoadSign, ...]:
+    """Signs with what each hangs on, the surest ones first."""
     likely = [one for one in signs if best_chance_of(one.facts) >= _LIKELY]
     others = [one for one in signs if best_chance_of(one.facts) < _LIKELY]
     grounded = [(one.plate, one.ground_m - float(plan.origin[2])) for one in likely]
-    forms = posts_of(drives, plan, grounded, PartMonitor(monitor, 0.9, 1.0))
+    forms = posts_of(drives, plan, grounded, monitor)
     held = [_with_post(one, form) for one, form in zip(likely, forms, strict=True)]
     held += [_with_post(one, None) for one in others]
     return tuple(sorted(held, key=lambda one: -one.confidence))
@@ -230,12 +255,10 @@ def _signs(
     ways: DriveWays,
 ) -> list[RoadSign]:
     """The plates of one plane with what is known of each; supplements are as sure as their sign."""
-    plan, ground = below
+    plan = below[0]
     found: list[RoadSign] = []
     for plate in plates:
-        level = height_of(ground, plan, float(plate.centre[0]), float(plate.centre[1]))
-        if not np.isfinite(level):
-            level = float(np.median(pieces.ground[plate.pieces]))
+        level = _level_below(plate, pieces, below)
         facts = facts_of(plate, level, ways.at(plate.centre + plan.origin))
         point, drive = _point_near(plate, pieces)
         found.append(
@@ -251,6 +274,27 @@ def _signs(
             )
         )
     return found
+
+
+def _may_be_sign(
+    plate: Plate,
+    pieces: ScanPieces,
+    below: tuple[SparsePlan, NDArray[np.float32]],
+    ways: DriveWays,
+) -> bool:
+    """Whether a plate may be a sign if it explains all, is thin and hangs on what holds signs."""
+    level = _level_below(plate, pieces, below)
+    facts = facts_of(plate, level, ways.at(plate.centre + below[0].origin))
+    return best_chance_of(facts._replace(thick=0.0, narrow=0.0)) > _HOPELESS
+
+
+def _level_below(
+    plate: Plate, pieces: ScanPieces, below: tuple[SparsePlan, NDArray[np.float32]]
+) -> float:
+    """Height of the ground below a plate, m about the origin of the plan."""
+    plan, ground = below
+    level = height_of(ground, plan, float(plate.centre[0]), float(plate.centre[1]))
+    return level if np.isfinite(level) else float(np.median(pieces.ground[plate.pieces]))
 
 
 def _point_near(plate: Plate, pieces: ScanPieces) -> tuple[int, int]:

@@ -28,6 +28,7 @@ EVIDENCE = PlateEvidence(
     shine=9.0,
     cut=0.0,
     over_board=False,
+    faint=0.0,
 )
 LIKELY = 0.1
 
