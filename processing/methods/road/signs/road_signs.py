@@ -48,8 +48,8 @@ _LIKELY = 0.1
 and nothing that holds it makes it likelier."""
 
 
-_HOPELESS = 0.01
-"""Chance of a plate, if all that isn't known yet speaks for it, up to which it is no sign: less
+_HOPELESS = 0.05
+"""Chance of a plate, if all that isn't known yet speaks for it, up to which it is none: less
 than any limit that people set."""
 
 
