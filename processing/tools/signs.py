@@ -279,6 +279,8 @@ def _candidate(sign: RoadSign, plates: int) -> Candidate:
         sign.confidence,
         attributes,
         np.array([sign.drive], np.int64),
+        own_points=sign.own_points,
+        own_drives=sign.own_drives,
     )
 
 

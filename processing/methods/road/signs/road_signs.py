@@ -10,14 +10,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from processing.core.arrays import Floats
+from processing.core.arrays import Floats, Integers
 from processing.core.monitor import Monitor, PartMonitor
 from processing.core.worked_ahead import in_order
 from processing.methods.road.objects.ground_heights import height_of
 from processing.methods.road.objects.sparse_plan import SparsePlan
 from processing.methods.road.objects.survey import survey_ground
 from processing.methods.road.signs.distinct_plates import distinct_plates
-from processing.methods.road.signs.piece_kernels import FIRST, FROM
+from processing.methods.road.signs.piece_kernels import COUNT, FIRST, FROM, LAST, TO
 from processing.methods.road.signs.plate_fit import FittedPlate, fit_plates
 from processing.methods.road.signs.plate_groups import PlateGroup, plate_groups
 from processing.methods.road.signs.plate_lines import empty_lines, lines_of
@@ -53,6 +53,10 @@ _HOPELESS = 0.05
 than any limit that people set."""
 
 
+_RIM_M = 0.02
+"""Beyond the rim of a plate, where points on it may seem to lie: noise, and the beam is wide."""
+
+
 @dataclass(frozen=True)
 class RoadSign:
     """One sign, or what might be one.
@@ -72,6 +76,8 @@ class RoadSign:
         Whether it hangs below another plate that it explains.
     point, drive : int
         The measured point nearest to the centre that lies on it, and which of the drives it is of.
+    own_points, own_drives : (k,) int64
+        The measured points on it, and which of the drives each is of.
     post : str or None
         What it hangs on; None where that wasn't measured.
     """
@@ -84,6 +90,8 @@ class RoadSign:
     is_supplement: bool
     point: int
     drive: int
+    own_points: Integers
+    own_drives: Integers
     post: PostForm | None = None
 
 
@@ -261,6 +269,7 @@ def _signs(
         level = _level_below(plate, pieces, below)
         facts = facts_of(plate, level, ways.at(plate.centre + plan.origin))
         point, drive = _point_near(plate, pieces)
+        own_points, own_drives = _points_on(plate, pieces)
         found.append(
             RoadSign(
                 plate,
@@ -271,9 +280,33 @@ def _signs(
                 plate.upper >= 0,
                 point,
                 drive,
+                own_points,
+                own_drives,
             )
         )
     return found
+
+
+def _points_on(plate: Plate, pieces: ScanPieces) -> tuple[Integers, Integers]:
+    """The points on a plate, and the drive of each; few of lines with other things before them.
+
+    Lines go on to what hangs beside a plate; where on a line a point lies, its number tells.
+    """
+    values, drives = pieces.values[plate.pieces], pieces.drive[plate.pieces]
+    first, last = (values[:, column].astype(np.int64) for column in (FIRST, LAST))
+    steps = np.where(last - first + 1 == values[:, COUNT], 1, last - first)
+    counts = (last - first) // steps + 1
+    line = np.repeat(np.arange(counts.size), counts)
+    points = first[line] + steps[line] * (np.arange(line.size) - (np.cumsum(counts) - counts)[line])
+    along = (points - first[line]) / (last - first)[line]
+    ends = values[line, FROM : FROM + 3], values[line, TO : TO + 3]
+    places = ends[0] + along[:, None] * (ends[1] - ends[0]) - plate.centre
+    right = np.array([-plate.normal[1], plate.normal[0], 0.0])
+    axes = np.column_stack([right / np.linalg.norm(right), np.cross(plate.normal, right)])
+    rim, flat = (plate.outline - plate.centre) @ axes, places @ axes
+    is_on = (flat >= rim.min(axis=0) - _RIM_M) & (flat <= rim.max(axis=0) + _RIM_M)
+    chosen = is_on.all(axis=1)
+    return points[chosen], drives[line[chosen]]
 
 
 def _may_be_sign(
