@@ -169,8 +169,9 @@ class _Tried:
     blocked: Floats
 
 
-Hope = Callable[[FittedPlate], bool]
-"""Whether a plate may be what is looked for, whatever hangs beside it."""
+Hope = Callable[[FittedPlate, float], bool]
+"""Whether a plate may be what is looked for if it and what hangs beside it explain this share of
+what lies in its plane."""
 
 
 class _Outlines(NamedTuple):
@@ -191,7 +192,7 @@ def fit_plates(
     monitor: Monitor,
     *,
     with_rectangles: bool = True,
-    is_hopeful: Hope = lambda _: True,
+    is_hopeful: Hope = lambda _plate, _explained: True,
 ) -> Fit:
     """The plates that explain lines best.
 
@@ -271,7 +272,9 @@ def _solve(
         whole = own + _unexplained(rest[:left])
         tried.append(_Tried(whole, own, plate, rest[:left], blocked[:free]))
     promising = _promising(tried, unexplained, len(above))
-    is_hopeful = bool(above) or any(outlines.is_hopeful(one.plate) for one in promising)
+    is_hopeful = bool(above) or any(
+        outlines.is_hopeful(one.plate, 1.0 - one.own / unexplained) for one in promising
+    )
     for one in promising:
         if one.whole < best.cost:
             best = Fit((one.plate,), one.whole, unexplained)

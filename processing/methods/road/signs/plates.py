@@ -156,13 +156,13 @@ def plates_of(pieces: ScanPieces, group: PlateGroup, lines: Floats, fit: Fit) ->
 
 
 def plate_alone(
-    pieces: ScanPieces, group: PlateGroup, lines: Floats, fitted: FittedPlate
+    pieces: ScanPieces, group: PlateGroup, lines: Floats, fitted: FittedPlate, explained: float
 ) -> Plate | None:
-    """A plate of a plane as if it explained all that lies there; None: no line lies on it."""
+    """A plate of a plane, a share of which is explained; None: no line lies on it."""
     on = _inside(fitted, lines)
     if not on.any():
         return None
-    alone = Fit((fitted,), 0.0, 1.0)
+    alone = Fit((fitted,), 1.0 - explained, 1.0)
     return _plate(pieces, group, fitted, np.flatnonzero(on), (lines, alone, -1))
 
 

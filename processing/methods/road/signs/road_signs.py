@@ -154,8 +154,8 @@ def road_signs(
         empty = empty_lines(pieces, group, lines)
         rectangles = sought.with_rectangles
 
-        def is_hopeful(fitted: FittedPlate) -> bool:
-            plate = plate_alone(pieces, group, lines, fitted)
+        def is_hopeful(fitted: FittedPlate, explained: float) -> bool:
+            plate = plate_alone(pieces, group, lines, fitted, explained)
             return plate is not None and _may_be_sign(plate, pieces, (plan, ground), ways)
 
         fit = fit_plates(
@@ -315,10 +315,10 @@ def _may_be_sign(
     below: tuple[SparsePlan, NDArray[np.float32]],
     ways: DriveWays,
 ) -> bool:
-    """Whether a plate may be a sign if it explains all, is thin and hangs on what holds signs."""
+    """Whether a plate may be a sign if it is a supplement or hangs on what holds signs."""
     level = _level_below(plate, pieces, below)
     facts = facts_of(plate, level, ways.at(plate.centre + below[0].origin))
-    return best_chance_of(facts._replace(thick=0.0, narrow=0.0)) > _HOPELESS
+    return best_chance_of(facts._replace(narrow=0.0)) > _HOPELESS
 
 
 def _level_below(

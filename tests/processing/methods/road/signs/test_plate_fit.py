@@ -104,7 +104,8 @@ def test_beside_what_can_be_no_sign_nothing_is_looked_for() -> None:
     lines = np.concatenate([lines_on(circle, (-0.33, 0.0)), lines_on(square, (0.33, 0.0))])
     asked: list[SignShape] = []
 
-    def never(plate: FittedPlate) -> bool:
+    def never(plate: FittedPlate, explained: float) -> bool:
+        assert explained < 1.0
         asked.append(plate.shape)
         return False
 
