@@ -34,6 +34,8 @@ def training_streets(
     scenes: Callable[[Sequence[int], float], Iterator[RoadScene]] = simulated_scenes,
     seeds: tuple[str, str] = ("500-529", "530-539"),
     others: Mapping[str, tuple[str, RequestOf]] | None = None,
+    *,
+    length_m: float = 60.0,
 ) -> TrainingStreets:
     """What the command of a module of `processing.laboratory.road_training` was told.
 
@@ -46,11 +48,13 @@ def training_streets(
     others : mapping, optional
         By the name of an option, seeds of other streets to learn from, and what makes requests of
         them.
+    length_m : float
+        Of each, if nothing else is asked.
     """
     parser = argparse.ArgumentParser(prog=f"python -m processing.laboratory.road_training.{module}")
     parser.add_argument("--seeds", default=seeds[0], help="streets to learn from")
     parser.add_argument("--check", default=seeds[1], help="streets to check with")
-    parser.add_argument("--length", type=float, default=60.0, help="m of each")
+    parser.add_argument("--length", type=float, default=length_m, help="m of each")
     for name, (default, _) in (others or {}).items():
         parser.add_argument(f"--{name}", default=default, help=f"{name} streets to learn from")
     parser.add_argument("--deliveries", type=Path, nargs="*", default=[])

@@ -210,6 +210,25 @@ def test_a_sign_faces_where_it_shines_seen_from_before_or_behind(
     assert found["height_m"] == pytest.approx(plate.centroid[2], abs=0.2)
 
 
+@pytest.mark.parametrize("plate", PLATES, ids=lambda one: one.plate.shape)
+def test_a_sign_keeps_the_points_on_its_plate_and_no_others(
+    told: RunOutcome, drives: tuple[Drive, ...], plate: KnownPlate
+) -> None:
+    found = sign_at(told, plate)
+    assert found.own_points is not None
+    assert found.own_drives is not None
+    assert np.unique(found.own_points).size == found.own_points.size
+    assert found.own_drives.tolist() == [0] * found.own_points.size
+    right, up, look = axes_of(plate.hung)
+    about = drives[0].coordinates.xyz(np.arange(drives[0].count)) - ORIGIN - np.array(plate.middle)
+    half = np.stack([about @ right, about @ up]) / np.abs(outline(plate.plate)).max(axis=0)[:, None]
+    is_near = (np.abs(about @ look) < 0.03) & (np.abs(half) < 1.1).all(axis=0)
+    assert is_near[found.own_points].all()
+    assert found.own_points.size > 0.7 * np.count_nonzero(
+        is_near & (np.abs(half) < 0.6).all(axis=0)
+    )
+
+
 def test_a_plate_below_a_sign_is_its_supplement(told: RunOutcome) -> None:
     assert sign_at(told, BELOW).attributes["supplementary"] is True
     assert sign_at(told, CIRCLE).attributes["supplementary"] is False

@@ -22,6 +22,11 @@ _ON_RIM_M = 0.05
 """Middles of plates that hang beside a larger one lie outside of its rim, less its uncertainty."""
 
 
+_DIGITS = 1
+"""Of chances that differ: what lies nearer together is as sure, and the plate that was met by more
+points tells more of it than a piece that happened to lie in a plane of its own."""
+
+
 def distinct_plates(plates: Sequence[Plate], chances: Floats, likely: float) -> list[int]:
     """Numbers of the plates that are left, the surest one first.
 
@@ -36,7 +41,8 @@ def distinct_plates(plates: Sequence[Plate], chances: Floats, likely: float) -> 
         return []
     centres = np.array([one.centre for one in plates])
     tree = cKDTree(centres)
-    order = np.argsort(-chances, kind="stable").tolist()
+    points = np.array([one.evidence.points for one in plates])
+    order = np.lexsort([-points, -np.round(chances, _DIGITS)]).tolist()
     gone = np.zeros(len(plates), np.bool_)
     for number in order:
         if not gone[number]:

@@ -36,6 +36,9 @@ _LEAST_REACH_M, _MOST_REACH_M = 0.1, 0.8
 _USUAL_REACH_M = 0.35
 """Where a drive doesn't say how fast it went: 100 km/h at 100 turns a second."""
 
+RIM_M = 0.1
+"""About the box of a group, in which further pieces of its plate may lie."""
+
 _TRIED = 12
 """Longest pieces of a group, of which each two are tried for its plane."""
 
@@ -239,13 +242,6 @@ def plane_kernel(values: Floats, members: Integers, chosen: NDArray[np.bool_]) -
     return most
 
 
-def warm_up() -> None:
-    """Compile the kernels."""
-    values, rows = np.zeros((2, PIECE)), np.zeros(2, np.int64)
-    link_kernel(values, rows, np.zeros(2, np.bool_), np.zeros((2, 3)), np.zeros(2, np.int64))
-    plane_kernel(values, np.arange(2), np.zeros(2, np.bool_))
-
-
 PLANE_MIDDLE, PLANE_RIGHT, PLANE_UP, PLANE_NORMAL, PLANE_NOISE, PLANE_LOW, PLANE_HIGH = (
     0, 3, 6, 9, 12, 13, 15,
 )  # fmt: skip
@@ -315,3 +311,93 @@ def _box(values: Floats, members: Integers, told: Floats) -> None:
                 told[PLANE_LOW + axis] = min(told[PLANE_LOW + axis], flat[axis])
                 told[PLANE_HIGH + axis] = max(told[PLANE_HIGH + axis], flat[axis])
     told[PLANE_NOISE] = math.sqrt(squares / total)
+
+
+@kernel
+def complete_kernel(
+    values: Floats,
+    near: Integers,
+    members: Integers,
+    plane: Floats,
+    is_bright: NDArray[np.bool_],
+    is_own: NDArray[np.bool_],
+    chosen: Integers,
+) -> int:
+    """Choose the pieces that lie in the box and the plane of a group and are as bright as it.
+
+    Parameters
+    ----------
+    near : (n,) int64
+        Pieces near the group.
+    members : (k,) int64
+        Those of the group.
+    plane : (PLANE_WIDTH,) float64
+    is_own : (m,) bool
+        Of all pieces; false before and after.
+    chosen : (n,) int64
+        Filled with their numbers.
+
+    Returns
+    -------
+    int
+        How many were chosen.
+    """
+    points, brights = np.zeros(2), np.zeros(2)
+    for member in members:
+        is_own[member] = True
+        side = _side_of(values, member, plane)
+        if side >= 0:
+            points[side] += values[member, COUNT]
+            brights[side] += values[member, COUNT] * is_bright[member]
+    count = 0
+    for piece in near:
+        if is_own[piece] or not _is_in_box(values, piece, plane):
+            continue
+        side = _side_of(values, piece, plane)
+        is_seen = side >= 0 and points[side] > 0.0
+        if is_seen and is_bright[piece] != (brights[side] / points[side] > 0.5):
+            continue
+        chosen[count] = piece
+        count += 1
+    for member in members:
+        is_own[member] = False
+    return count
+
+
+@kernel
+def _side_of(values: Floats, piece: int, plane: Floats) -> int:
+    """From which side of a plane a piece was seen: 0, 1; -1 along it."""
+    towards = 0.0
+    for axis in range(3):
+        towards += values[piece, VIEW + axis] * plane[PLANE_NORMAL + axis]
+    return -1 if towards == 0.0 else int(towards > 0.0)
+
+
+@kernel
+def _is_in_box(values: Floats, piece: int, plane: Floats) -> bool:
+    """Whether both ends of a piece lie in a plane, and in its box and a rim about it."""
+    for side in (FROM, TO):
+        off, right, up = 0.0, 0.0, 0.0
+        for axis in range(3):
+            away = values[piece, side + axis] - plane[PLANE_MIDDLE + axis]
+            off += away * plane[PLANE_NORMAL + axis]
+            right += away * plane[PLANE_RIGHT + axis]
+            up += away * plane[PLANE_UP + axis]
+        if abs(off) > FLAT_M:
+            return False
+        if right < plane[PLANE_LOW] - RIM_M or right > plane[PLANE_HIGH] + RIM_M:
+            return False
+        if up < plane[PLANE_LOW + 1] - RIM_M or up > plane[PLANE_HIGH + 1] + RIM_M:
+            return False
+    return True
+
+
+def warm_up() -> None:
+    """Compile the kernels."""
+    values, rows = np.zeros((2, PIECE)), np.zeros(2, np.int64)
+    link_kernel(values, rows, np.zeros(2, np.bool_), np.zeros((2, 3)), np.zeros(2, np.int64))
+    plane_kernel(values, np.arange(2), np.zeros(2, np.bool_))
+    values[:, COUNT], values[1, TO], values[1, TO + 2] = 1.0, 1.0, 1.0
+    plane, one = np.zeros(PLANE_WIDTH), np.zeros(2, np.int64)
+    flat_kernel(values, rows, plane)
+    complete_kernel(values, rows, rows, plane, np.zeros(2, np.bool_), np.zeros(2, np.bool_), one)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -169,14 +169,20 @@ class _Tried:
     blocked: Floats
 
 
+Hope = Callable[[FittedPlate, float], bool]
+"""Whether a plate may be what is looked for if it and what hangs beside it explain this share of
+what lies in its plane."""
+
+
 class _Outlines(NamedTuple):
-    """Shapes as the kernels take them."""
+    """Shapes as the kernels take them, and what may be one of those that are looked for."""
 
     shapes: tuple[SignShape, ...]
     sizes: Floats
     corners: Floats
     counts: Integers
     with_rectangles: bool
+    is_hopeful: Hope
 
 
 def fit_plates(
@@ -186,6 +192,7 @@ def fit_plates(
     monitor: Monitor,
     *,
     with_rectangles: bool = True,
+    is_hopeful: Hope = lambda _plate, _explained: True,
 ) -> Fit:
     """The plates that explain lines best.
 
@@ -197,6 +204,9 @@ def fit_plates(
         What is looked for.
     with_rectangles : bool
         Whether rectangles of any size are, too.
+    is_hopeful : callable
+        Asked of the best plates that may lie in the plane. If none may be what is looked for,
+        nothing is laid beside the best of them: of leaves and of parts of houses, mostly.
 
     Notes
     -----
@@ -205,12 +215,14 @@ def fit_plates(
     2. What goes on beyond an outline is explained by further plates in the same way, for each of
        the best shapes; the set of plates that leaves the least unexplained wins.
     """
-    outlines = _outlines(tuple(shapes), with_rectangles=with_rectangles)
+    outlines = _outlines(tuple(shapes), is_hopeful, with_rectangles=with_rectangles)
     step = -(-len(lines) // _MOST_LINES)
     return _solve(lines[::step], empty, outlines, (), monitor)
 
 
-def _outlines(shapes: tuple[SignShape, ...], *, with_rectangles: bool) -> _Outlines:
+def _outlines(
+    shapes: tuple[SignShape, ...], is_hopeful: Hope, *, with_rectangles: bool
+) -> _Outlines:
     corners = [sharp_outline_of(shape) for shape in shapes]
     every = np.zeros((len(shapes), max((len(one) for one in corners), default=1), 2))
     for number, one in enumerate(corners):
@@ -221,6 +233,7 @@ def _outlines(shapes: tuple[SignShape, ...], *, with_rectangles: bool) -> _Outli
         every,
         np.array([len(one) for one in corners], np.int64),
         with_rectangles,
+        is_hopeful,
     )
 
 
@@ -258,10 +271,14 @@ def _solve(
         )
         whole = own + _unexplained(rest[:left])
         tried.append(_Tried(whole, own, plate, rest[:left], blocked[:free]))
-    for one in _promising(tried, unexplained, len(above)):
+    promising = _promising(tried, unexplained, len(above))
+    is_hopeful = bool(above) or any(
+        outlines.is_hopeful(one.plate, 1.0 - one.own / unexplained) for one in promising
+    )
+    for one in promising:
         if one.whole < best.cost:
             best = Fit((one.plate,), one.whole, unexplained)
-        if one.own + _PLATE_COST >= best.cost:
+        if not is_hopeful or one.own + _PLATE_COST >= best.cost:
             continue
         step = max(1, len(one.blocked) // _MOST_EMPTY)
         nothing = np.concatenate([empty, one.blocked[::step]])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,7 +12,6 @@ from scipy.spatial import cKDTree
 from processing.core.arrays import Floats, Integers
 from processing.core.monitor import Monitor
 from processing.methods.road.signs.link_kernels import (
-    FLAT_M,
     PLANE_HIGH,
     PLANE_LOW,
     PLANE_MIDDLE,
@@ -20,6 +20,8 @@ from processing.methods.road.signs.link_kernels import (
     PLANE_RIGHT,
     PLANE_UP,
     PLANE_WIDTH,
+    RIM_M,
+    complete_kernel,
     flat_kernel,
     link_kernel,
     plane_kernel,
@@ -104,6 +106,12 @@ class PlateGroup:
     low: Floats
     high: Floats
 
+    @property
+    def plane(self) -> Floats:
+        """(PLANE_WIDTH,) float64: the same as the kernels take it."""
+        axes = (self.middle, self.right, self.up, self.normal)
+        return np.concatenate([*axes, [self.noise_m], self.low, self.high])
+
     def flat(self, xyz: Floats) -> Floats:
         """(n, 2) right and up of the middle."""
         return np.asarray((xyz - self.middle) @ np.column_stack([self.right, self.up]))
@@ -138,11 +146,9 @@ def plate_groups(pieces: ScanPieces, ways: Floats, monitor: Monitor) -> list[Pla
             monitor.check()
             if members.size >= _FEWEST_PIECES:
                 groups += _planes(pieces, members)
-    search = _PieceSearch(pieces)
     found: list[PlateGroup] = []
-    for joined in _joined(pieces, groups, is_bright):
+    for one in _completed(pieces, _joined(pieces, groups, is_bright), is_bright):
         monitor.check()
-        one = search.completed(joined)
         if is_bright[one.pieces].any() or _may_be_dull(pieces, one):
             found.append(one)
     return found
@@ -283,40 +289,32 @@ def _is_plate_on_wall(
     return False
 
 
-class _PieceSearch:
-    """Finds further pieces that lie on plates: what ends at things before them or beside them."""
+def _completed(
+    pieces: ScanPieces, groups: Sequence[PlateGroup], is_bright: NDArray[np.bool_]
+) -> Iterator[PlateGroup]:
+    """Groups with what else lies in the box and the plane of each and is as bright.
 
-    def __init__(self, pieces: ScanPieces) -> None:
-        self._pieces = pieces
-        values = pieces.values
-        middles = (values[:, FROM : FROM + 3] + values[:, TO : TO + 3]) / 2
-        self._tree = cKDTree(middles)
-        self._is_bright = 2 * values[:, BRIGHTS] > values[:, COUNT]
-
-    def completed(self, group: PlateGroup) -> PlateGroup:
-        """A group with what else lies in its box and its plane and is as bright."""
-        values = self._pieces.values
-        low, high = group.low - 0.1, group.high + 0.1
-        reach = float(np.hypot(*(high - low)) / 2)
-        about = group.xyz((low + high) / 2)
-        near = np.array(self._tree.query_ball_point(about, reach), np.int64)
-        for side in (FROM, TO):
-            xyz = values[near, side : side + 3]
-            near = near[np.abs((xyz - group.middle) @ group.normal) <= FLAT_M]
-        near = np.setdiff1d(near, group.pieces)
-        for side in (FROM, TO):
-            flat = group.flat(values[near, side : side + 3])
-            near = near[((flat >= low) & (flat <= high)).all(axis=1)]
-        if not near.size:
-            return group
-        is_in = np.ones(near.size, np.bool_)
-        views = values[:, VIEW : VIEW + 3]
-        of_near, of_group = views[near] @ group.normal, views[group.pieces] @ group.normal
-        for sign in (-1.0, 1.0):
-            mine = group.pieces[of_group * sign > 0]
-            if mine.size:
-                share = np.average(self._is_bright[mine], weights=values[mine, COUNT])
-                is_in &= ~((of_near * sign > 0) & (self._is_bright[near] != (share > 0.5)))
-        if not is_in.any():
-            return group
-        return group_of(values, np.concatenate([group.pieces, near[is_in]])) or group
+    Further pieces of plates end at things before them or beside them.
+    """
+    if not groups:
+        return
+    values = pieces.values
+    tree = cKDTree((values[:, FROM : FROM + 3] + values[:, TO : TO + 3]) / 2)
+    planes = np.array([one.plane for one in groups])
+    low, high = planes[:, PLANE_LOW:PLANE_HIGH], planes[:, PLANE_HIGH:]
+    middles = (low + high)[:, :, None] / 2
+    about = planes[:, PLANE_MIDDLE:PLANE_RIGHT] + middles[:, 0] * planes[:, PLANE_RIGHT:PLANE_UP]
+    about += middles[:, 1] * planes[:, PLANE_UP:PLANE_NORMAL]
+    reach = np.hypot(*(high - low + 2 * RIM_M).T) / 2
+    is_own = np.zeros(len(pieces), np.bool_)
+    for number, group in enumerate(groups):
+        near = np.array(tree.query_ball_point(about[number], reach[number]), np.int64)
+        chosen = np.empty(near.size, np.int64)
+        count = complete_kernel(
+            values, near, group.pieces, planes[number], is_bright, is_own, chosen
+        )
+        if not count:
+            yield group
+            continue
+        whole = np.concatenate([group.pieces, np.sort(chosen[:count])])
+        yield group_of(values, whole) or group

@@ -6,6 +6,7 @@ import math
 from typing import NamedTuple
 
 from processing.core.arrays import Floats, Integers
+from processing.methods.road.signs.brightness import SHINING
 from processing.methods.road.signs.piece_kernels import BRIGHTS, COUNT, SHINE, VIEW
 from processing.methods.road.signs.scan_pieces import ScanPieces
 
@@ -42,7 +43,9 @@ class PlateSides(NamedTuple):
         Whether both sides were seen.
     shine : float
         How bright the brighter side is that was seen, in standard deviations above the middle of
-        diffuse things; NaN where nothing of a recording shines.
+        diffuse things; NaN where nothing of a survey shines.
+    faint : float
+        Of what shines, how far it stays below the brightest faces of the survey, 0 to 1.
     """
 
     facing: Floats
@@ -51,6 +54,7 @@ class PlateSides(NamedTuple):
     is_sure: bool
     both_seen: bool
     shine: float
+    faint: float
 
 
 def sides_of(pieces: ScanPieces, members: Integers, normal: Floats) -> PlateSides:
@@ -75,21 +79,36 @@ def sides_of(pieces: ScanPieces, members: Integers, normal: Floats) -> PlateSide
     least = _LEAST_SIDE * sum(one.points for one in seen)
     before, behind = (one if one.points >= least else _UNSEEN for one in seen)
     bright = max(before.share, behind.share)
-    shows_faces = bool(pieces.shows_faces[pieces.drive[members]].all())
+    shows_faces = not math.isnan(pieces.face_shine)
     if before.points and behind.points:
         facing = normal if before.shine >= behind.shine else -normal
         is_sure = bright > _SHINES or abs(before.shine - behind.shine) >= _BRIGHTER
-        shine = max(before.shine, behind.shine) if shows_faces else math.nan
-        return PlateSides(
-            facing, bright, front_seen=True, is_sure=is_sure, both_seen=True, shine=shine
-        )
-    only, way = (before, normal) if before.points else (behind, -normal)
-    is_face = only.share > _SHINES or only.shine >= _FACE_ABOVE
-    is_told = only.shine > _UNSURE_TO or (only.shine < _UNSURE_FROM and shows_faces)
-    is_sure = is_told or only.share > _SHINES
-    shine = only.shine if shows_faces else math.nan
-    facing = way if is_face else -way
-    return PlateSides(facing, bright, is_face, is_sure, both_seen=False, shine=shine)
+        shine = max(before.shine, behind.shine)
+        is_face = True
+    else:
+        only, way = (before, normal) if before.points else (behind, -normal)
+        shine = only.shine
+        is_face = bright > _SHINES or shine >= _FACE_ABOVE
+        is_told = shine > _UNSURE_TO or (shine < _UNSURE_FROM and shows_faces)
+        is_sure = is_told or bright > _SHINES
+        facing = way if is_face else -way
+    return PlateSides(
+        facing,
+        bright,
+        front_seen=is_face,
+        is_sure=is_sure,
+        both_seen=bool(before.points and behind.points),
+        shine=shine if shows_faces else math.nan,
+        faint=_faint(shine, pieces.face_shine) if bright > _SHINES else 0.0,
+    )
+
+
+def _faint(shine: float, face_shine: float) -> float:
+    """How far what shines stays below what faces reach, 0 to 1."""
+    span = face_shine - SHINING
+    if not span > 0.0:
+        return 0.0
+    return min(max((face_shine - shine) / span, 0.0), 1.0)
 
 
 class _Seen(NamedTuple):

@@ -83,6 +83,8 @@ class PlateEvidence(NamedTuple):
         measured.
     over_board : bool
         Whether a board that is higher than it hangs right below it, as at bus stops.
+    faint : float
+        Of what shines, how far it stays below the brightest faces of the survey, 0 to 1.
     """
 
     bright: float
@@ -102,6 +104,7 @@ class PlateEvidence(NamedTuple):
     shine: float
     cut: float
     over_board: bool
+    faint: float
 
 
 @dataclass(frozen=True)
@@ -150,6 +153,17 @@ def plates_of(pieces: ScanPieces, group: PlateGroup, lines: Floats, fit: Fit) ->
         upper = next((n for n, other in enumerate(fit.plates) if hangs_below(one, other)), -1)
         found.append(_plate(pieces, group, one, np.flatnonzero(on), (lines, fit, upper)))
     return found
+
+
+def plate_alone(
+    pieces: ScanPieces, group: PlateGroup, lines: Floats, fitted: FittedPlate, explained: float
+) -> Plate | None:
+    """A plate of a plane, a share of which is explained; None: no line lies on it."""
+    on = _inside(fitted, lines)
+    if not on.any():
+        return None
+    alone = Fit((fitted,), 1.0 - explained, 1.0)
+    return _plate(pieces, group, fitted, np.flatnonzero(on), (lines, alone, -1))
 
 
 def _inside(plate: FittedPlate, lines: Floats) -> Floats:
@@ -208,6 +222,7 @@ def _plate(
         shine=sides.shine,
         cut=_cut(pieces, members),
         over_board=any(is_board_below(one, fitted) for one in fit.plates),
+        faint=sides.faint,
     )
     return Plate(fitted.shape, xyz[0], xyz[1:], sides.facing, evidence, upper, members)
 

@@ -10,18 +10,18 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from processing.core.arrays import Floats
+from processing.core.arrays import Floats, Integers
 from processing.core.monitor import Monitor, PartMonitor
 from processing.core.worked_ahead import in_order
 from processing.methods.road.objects.ground_heights import height_of
 from processing.methods.road.objects.sparse_plan import SparsePlan
 from processing.methods.road.objects.survey import survey_ground
 from processing.methods.road.signs.distinct_plates import distinct_plates
-from processing.methods.road.signs.piece_kernels import FIRST, FROM
-from processing.methods.road.signs.plate_fit import fit_plates
+from processing.methods.road.signs.piece_kernels import COUNT, FIRST, FROM, LAST, TO
+from processing.methods.road.signs.plate_fit import FittedPlate, fit_plates
 from processing.methods.road.signs.plate_groups import PlateGroup, plate_groups
 from processing.methods.road.signs.plate_lines import empty_lines, lines_of
-from processing.methods.road.signs.plates import Plate, plates_of
+from processing.methods.road.signs.plates import Plate, plate_alone, plates_of
 from processing.methods.road.signs.scan_pieces import ScanPieces, scan_pieces
 from processing.methods.road.signs.sign_confidence import (
     SignFacts,
@@ -48,6 +48,15 @@ _LIKELY = 0.1
 and nothing that holds it makes it likelier."""
 
 
+_HOPELESS = 0.05
+"""Chance of a plate, if all that isn't known yet speaks for it, up to which it is none: less
+than any limit that people set."""
+
+
+_RIM_M = 0.02
+"""Beyond the rim of a plate, where points on it may seem to lie: noise, and the beam is wide."""
+
+
 @dataclass(frozen=True)
 class RoadSign:
     """One sign, or what might be one.
@@ -67,6 +76,8 @@ class RoadSign:
         Whether it hangs below another plate that it explains.
     point, drive : int
         The measured point nearest to the centre that lies on it, and which of the drives it is of.
+    own_points, own_drives : (k,) int64
+        The measured points on it, and which of the drives each is of.
     post : str or None
         What it hangs on; None where that wasn't measured.
     """
@@ -79,6 +90,8 @@ class RoadSign:
     is_supplement: bool
     point: int
     drive: int
+    own_points: Integers
+    own_drives: Integers
     post: PostForm | None = None
 
 
@@ -140,22 +153,42 @@ def road_signs(
         lines = lines_of(pieces, group)
         empty = empty_lines(pieces, group, lines)
         rectangles = sought.with_rectangles
-        fit = fit_plates(lines, empty, sought.shapes, monitor, with_rectangles=rectangles)
+
+        def is_hopeful(fitted: FittedPlate, explained: float) -> bool:
+            plate = plate_alone(pieces, group, lines, fitted, explained)
+            return plate is not None and _may_be_sign(plate, pieces, (plan, ground), ways)
+
+        fit = fit_plates(
+            lines,
+            empty,
+            sought.shapes,
+            monitor,
+            with_rectangles=rectangles,
+            is_hopeful=is_hopeful,
+        )
         return _signs(plates_of(pieces, group, lines, fit), pieces, (plan, ground), ways)
 
     found: list[RoadSign] = []
     for number, signs_of_group in enumerate(in_order(of_group, groups)):
         found += signs_of_group
         monitor.report(0.8 + 0.1 * (number + 1) / len(groups))
-    found = _with_other_sides(found)
-    kept = distinct_plates(
-        [one.plate for one in found], np.array([one.confidence for one in found]), _LIKELY
-    )
-    signs = [found[number] for number in kept]
+    return _held(_distinct(_with_other_sides(found)), drives, plan, PartMonitor(monitor, 0.9, 1.0))
+
+
+def _distinct(found: list[RoadSign]) -> list[RoadSign]:
+    """One of each plate."""
+    chances = np.array([one.confidence for one in found])
+    return [found[n] for n in distinct_plates([one.plate for one in found], chances, _LIKELY)]
+
+
+def _held(
+    signs: list[RoadSign], drives: Sequence[Drive], plan: SparsePlan, monitor: Monitor
+) -> tuple[RoadSign, ...]:
+    """Signs with what each hangs on, the surest ones first."""
     likely = [one for one in signs if best_chance_of(one.facts) >= _LIKELY]
     others = [one for one in signs if best_chance_of(one.facts) < _LIKELY]
     grounded = [(one.plate, one.ground_m - float(plan.origin[2])) for one in likely]
-    forms = posts_of(drives, plan, grounded, PartMonitor(monitor, 0.9, 1.0))
+    forms = posts_of(drives, plan, grounded, monitor)
     held = [_with_post(one, form) for one, form in zip(likely, forms, strict=True)]
     held += [_with_post(one, None) for one in others]
     return tuple(sorted(held, key=lambda one: -one.confidence))
@@ -230,14 +263,13 @@ def _signs(
     ways: DriveWays,
 ) -> list[RoadSign]:
     """The plates of one plane with what is known of each; supplements are as sure as their sign."""
-    plan, ground = below
+    plan = below[0]
     found: list[RoadSign] = []
     for plate in plates:
-        level = height_of(ground, plan, float(plate.centre[0]), float(plate.centre[1]))
-        if not np.isfinite(level):
-            level = float(np.median(pieces.ground[plate.pieces]))
+        level = _level_below(plate, pieces, below)
         facts = facts_of(plate, level, ways.at(plate.centre + plan.origin))
         point, drive = _point_near(plate, pieces)
+        own_points, own_drives = _points_on(plate, pieces)
         found.append(
             RoadSign(
                 plate,
@@ -248,9 +280,54 @@ def _signs(
                 plate.upper >= 0,
                 point,
                 drive,
+                own_points,
+                own_drives,
             )
         )
     return found
+
+
+def _points_on(plate: Plate, pieces: ScanPieces) -> tuple[Integers, Integers]:
+    """The points on a plate, and the drive of each; few of lines with other things before them.
+
+    Lines go on to what hangs beside a plate; where on a line a point lies, its number tells.
+    """
+    values, drives = pieces.values[plate.pieces], pieces.drive[plate.pieces]
+    first, last = (values[:, column].astype(np.int64) for column in (FIRST, LAST))
+    steps = np.where(last - first + 1 == values[:, COUNT], 1, last - first)
+    counts = (last - first) // steps + 1
+    line = np.repeat(np.arange(counts.size), counts)
+    points = first[line] + steps[line] * (np.arange(line.size) - (np.cumsum(counts) - counts)[line])
+    along = (points - first[line]) / (last - first)[line]
+    ends = values[line, FROM : FROM + 3], values[line, TO : TO + 3]
+    places = ends[0] + along[:, None] * (ends[1] - ends[0]) - plate.centre
+    right = np.array([-plate.normal[1], plate.normal[0], 0.0])
+    axes = np.column_stack([right / np.linalg.norm(right), np.cross(plate.normal, right)])
+    rim, flat = (plate.outline - plate.centre) @ axes, places @ axes
+    is_on = (flat >= rim.min(axis=0) - _RIM_M) & (flat <= rim.max(axis=0) + _RIM_M)
+    chosen = is_on.all(axis=1)
+    return points[chosen], drives[line[chosen]]
+
+
+def _may_be_sign(
+    plate: Plate,
+    pieces: ScanPieces,
+    below: tuple[SparsePlan, NDArray[np.float32]],
+    ways: DriveWays,
+) -> bool:
+    """Whether a plate may be a sign if it is a supplement or hangs on what holds signs."""
+    level = _level_below(plate, pieces, below)
+    facts = facts_of(plate, level, ways.at(plate.centre + below[0].origin))
+    return best_chance_of(facts._replace(narrow=0.0)) > _HOPELESS
+
+
+def _level_below(
+    plate: Plate, pieces: ScanPieces, below: tuple[SparsePlan, NDArray[np.float32]]
+) -> float:
+    """Height of the ground below a plate, m about the origin of the plan."""
+    plan, ground = below
+    level = height_of(ground, plan, float(plate.centre[0]), float(plate.centre[1]))
+    return level if np.isfinite(level) else float(np.median(pieces.ground[plate.pieces]))
 
 
 def _point_near(plate: Plate, pieces: ScanPieces) -> tuple[int, int]:

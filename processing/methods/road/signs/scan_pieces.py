@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -21,6 +22,7 @@ from processing.methods.road.signs.piece_kernels import (
     COUNT,
     ORIGIN_EVERY,
     PIECE,
+    SHINE,
     ChunkPoints,
     PieceLimits,
     brightness_kernel,
@@ -78,7 +80,7 @@ _MOST_STRAIGHT_M = 0.04
 
 
 _FEWEST_SHINING = 10
-"""Points that shine, from which a recording is known to show faces: as many as a sign has that is
+"""Points that shine, from which a survey is known to show faces: as many as a sign has that is
 asked for."""
 
 
@@ -106,13 +108,19 @@ class ScanPieces:
     at_end: NDArray[np.bool_]
 
     @cached_property
-    def shows_faces(self) -> NDArray[np.bool_]:
-        """(drives,) whether anything shone: what is dull then is no face."""
-        is_bright = 2 * self.values[:, BRIGHTS] > self.values[:, COUNT]
-        points = np.bincount(self.drive[is_bright], self.values[is_bright, COUNT])
-        shown = np.zeros(int(self.drive.max(initial=-1)) + 1, np.bool_)
-        shown[: points.size] = points >= _FEWEST_SHINING
-        return shown
+    def face_shine(self) -> float:
+        """How bright faces are to this survey; NaN where nothing shone.
+
+        In standard deviations above the middle of diffuse things, and of all drives together: a
+        head that looks back meets backs alone, and measures as the one does that looks ahead.
+        """
+        counts = self.values[:, COUNT]
+        bright = np.flatnonzero(2 * self.values[:, BRIGHTS] > counts)
+        shine = self.values[bright, SHINE] / counts[bright]
+        order = np.argsort(-shine, kind="stable")
+        points = np.cumsum(counts[bright][order])
+        enough = int(np.searchsorted(points, _FEWEST_SHINING))
+        return float(shine[order[enough]]) if enough < order.size else math.nan
 
     def __len__(self) -> int:
         return len(self.values)

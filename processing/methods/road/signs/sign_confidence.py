@@ -25,6 +25,7 @@ _NOISE_M, _FULL_NOISE_M = 0.005, 0.01
 """How far points lie off a plate that is flat, by the noise of most scanners; leaves and rough
 walls scatter more."""
 _LARGE_M = 1.0
+_PLAIN = (RECTANGLE, "square")
 _HIGH_M = 3.5
 """Signs beside a road hang lower; over a road they are guide signs, and their backs plain."""
 
@@ -64,7 +65,8 @@ class SignFacts(NamedTuple):
     Attributes
     ----------
     bright : float
-        Share of its points that shine on the side where more do.
+        Share of its points that shine on the side where more do, by how near they come to the
+        brightest faces of the survey.
     cost : float
         Mean of what the ends of its lines say against it, over their most: 0 to 1.
     explained : float
@@ -82,9 +84,9 @@ class SignFacts(NamedTuple):
     askew : float
         Roll and tilt, 1 for ten degrees together, 2 at most.
     is_plain : float
-        1 of a rectangle that is dull: boards, windows and walls look alike.
+        1 of a rectangle or a square that is dull: boards, windows and walls look alike.
     is_large : float
-        Of such a one, how far its longer side is above a metre, 0 to 1.
+        Of what is dull, how far its longer side is above a metre, 0 to 1.
     across : float
         Sine of the angle in plan between where it looks and where the vehicle drove by: signs look
         along the road.
@@ -98,8 +100,8 @@ class SignFacts(NamedTuple):
     other_disc : float
         1 of a disc of a size that bus stops and mirrors have and signs don't.
     unheld : float
-        1 of what is dull and hangs on no post, arm or gantry of its own, as far as was seen: parts
-        of buildings, boards on walls and poles.
+        1 of what hangs on no post, arm or gantry of its own, as far as was seen: parts of
+        buildings, boards on walls and poles.
     painted : float
         1 of what shows neither a face nor the metal of a back: one side is as bright as paint, or
         both were seen and neither shines. 0 where nothing of a recording shines.
@@ -111,9 +113,12 @@ class SignFacts(NamedTuple):
     over_board : float
         1 of what is dull and has a higher board right below it: bus stops have a disc over their
         timetable.
+    faint : float
+        Of what shines, how far it stays below the brightest faces of the survey, 0 to 1: white
+        walls and frames of windows shine a little where they are met straight on.
     high : float
-        Of what is dull, how far its middle is above 3.5 m, over 3.5 m; of anything how far above
-        9 m, over 3 m; 0 to 1: parts of buildings are.
+        Of what is dull, how far its middle is above 3.5 m, over 3.5 m, 0 to 1; of anything twice
+        how far above 9 m, over 3 m, 0 to 2: parts of buildings are.
     """
 
     bright: float
@@ -137,43 +142,39 @@ class SignFacts(NamedTuple):
     cut: float
     averted: float
     over_board: float
+    faint: float
 
 
-# As `python -m processing.laboratory.road_training.sign_training` learns them, on 1,858 plates, of
-# which 173 lie within 15 cm of signs, of its 18 simulated streets of five scanners (seeds 700 to
-# 711 and avenues 600 to 605, 60 m each). Left out one street at a time, 142 of 145 given 0.9 and
-# more were right, 13 of 23 from 0.5, 9 of 19 from 0.3, 5 of 33 from 0.1, 4 of 1,638 below; of the
-# streets 718 and 719, from which nothing was learnt, 14 of 14 from 0.5 and 3 of 145 below.
-# `painted` and `cut` were learnt on top, the others held, on 15 of the 18 streets (1,414 plates, of
-# which 109 are signs; expected as `sign_training` expects them). Left out one street at a time, 99
-# of 101 from 0.5 were right, 99 of 102 without the two. The command ran from end to end since, on
-# 54 streets and avenues (4,261 plates, of which 408 are signs): what it learnt was as good on own
-# streets and one percent worse on those of another simulator, and is not used.
-# `averted` and `over_board` stand as reasoning expects them: on 5 streets (seeds 700 to 704, 31
-# signs) no dull sign looks across the road or has a higher board below it.
-_CONSTANT = -5.12
+# As `python -m processing.laboratory.road_training.sign_training` learns them, on 9,219 plates, of
+# which 377 lie within 15 cm of signs, of its 48 simulated streets and avenues of five scanners (80
+# m each); none of them is on the page of accuracy. Left out one street at a time, 322 of 323 given
+# 0.9 and more were right, 21 of 27 from 0.7, 14 of 20 from 0.5, 6 of 23 from 0.3, 14 of 8,826
+# below.
+# What hardly occurs there (`over_board`, `other_disc`) stands nearly as reasoning expects it.
+_CONSTANT = -4.74
 _WEIGHTS = SignFacts(
-    bright=1.65,
-    cost=-1.19,
-    explained=3.52,
-    sectors=3.71,
+    bright=4.98,
+    cost=-1.16,
+    explained=5.56,
+    sectors=3.29,
     turns=0.0,
-    open_ends=3.08,
-    noise=-1.17,
-    low=-4.58,
-    askew=-1.44,
-    is_plain=-1.26,
-    is_large=-1.28,
-    high=-3.25,
-    across=-3.23,
-    thick=-2.39,
-    narrow=-3.22,
-    other_disc=-4.53,
-    unheld=-1.72,
-    painted=-3.19,
-    cut=-2.18,
-    averted=-2.5,
-    over_board=-4.0,
+    open_ends=2.10,
+    noise=-1.80,
+    low=-7.43,
+    askew=-3.27,
+    is_plain=-1.39,
+    is_large=-2.80,
+    high=-3.95,
+    across=-1.75,
+    thick=-3.00,
+    narrow=-2.24,
+    other_disc=-5.00,
+    unheld=-1.66,
+    painted=-3.32,
+    cut=-1.34,
+    averted=-2.10,
+    over_board=-3.80,
+    faint=-2.24,
 )
 
 _OVER_ROAD: tuple[PostForm, ...] = ("cantilever", "gantry")
@@ -194,11 +195,11 @@ def facts_of(plate: Plate, ground_m: float, along: Floats) -> SignFacts:
     one = plate.evidence
     edge = float(plate.outline[:, 2].min()) - ground_m
     high = float(plate.centre[2]) - ground_m
-    is_plain = plate.shape.shape == RECTANGLE and one.bright < _BRIGHT
+    is_dull = one.bright < _BRIGHT
     longer = max(plate.shape.wide_m, plate.shape.high_m)
     across = _across(plate, along)
     return SignFacts(
-        bright=one.bright,
+        bright=one.bright * (1.0 - one.faint),
         cost=min(one.cost / 4.0, 1.0),
         explained=max(0.0, one.explained),
         sectors=one.sectors,
@@ -207,8 +208,8 @@ def facts_of(plate: Plate, ground_m: float, along: Floats) -> SignFacts:
         noise=_over(one.noise_m, _NOISE_M, _FULL_NOISE_M),
         low=min(max(_LOW_EDGE_M - edge, 0.0), 1.0),
         askew=min((abs(math.degrees(one.roll_rad)) + abs(math.degrees(one.tilt))) / 10.0, 2.0),
-        is_plain=float(is_plain),
-        is_large=min(max(longer - _LARGE_M, 0.0), 1.0) * is_plain,
+        is_plain=float(is_dull and plate.shape.shape in _PLAIN),
+        is_large=min(max(longer - _LARGE_M, 0.0), 1.0) * is_dull,
         high=_high(high, is_bright=one.bright >= _BRIGHT),
         across=across,
         thick=one.thick,
@@ -222,7 +223,8 @@ def facts_of(plate: Plate, ground_m: float, along: Floats) -> SignFacts:
         painted=_painted(one),
         cut=one.cut,
         averted=_averted(one, across),
-        over_board=float(one.over_board and one.bright < _BRIGHT),
+        over_board=float(one.over_board and is_dull),
+        faint=one.faint,
     )
 
 
@@ -231,10 +233,9 @@ def facts_with_post(facts: SignFacts, post: PostForm | None) -> SignFacts:
 
     Large plates high up are usual on arms and gantries over the road.
     """
-    is_held = facts.bright >= _BRIGHT or post in _OF_SIGNS
     if post in _OVER_ROAD:
         facts = facts._replace(high=0.0, is_large=0.0)
-    return facts._replace(unheld=0.0 if is_held else 1.0)
+    return facts._replace(unheld=0.0 if post in _OF_SIGNS else 1.0)
 
 
 def best_chance_of(facts: SignFacts) -> float:
@@ -249,9 +250,9 @@ def facts_with_other_side(facts: SignFacts, plate: Plate, other: Plate) -> SignF
 
 
 def _high(high_m: float, *, is_bright: bool) -> float:
-    """How much a plate hangs higher than its like, 0 to 1."""
+    """How much a plate hangs higher than its like, 0 to 2."""
     beside_road = 0.0 if is_bright else min(max(high_m / _HIGH_M - 1.0, 0.0), 1.0)
-    return max(beside_road, _over(high_m, _OVERHEAD_M, _ABOVE_ROADS_M))
+    return max(beside_road, 2.0 * _over(high_m, _OVERHEAD_M, _ABOVE_ROADS_M))
 
 
 def _over(value: float, low: float, high: float) -> float:

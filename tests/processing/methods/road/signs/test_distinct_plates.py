@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -28,6 +29,7 @@ EVIDENCE = PlateEvidence(
     shine=9.0,
     cut=0.0,
     over_board=False,
+    faint=0.0,
 )
 LIKELY = 0.1
 
@@ -46,6 +48,14 @@ def test_of_a_plate_that_was_found_twice_the_surer_one_is_left() -> None:
     circle, square = shape_of("circle", 0.6), shape_of("square", 0.6)
     twice = [plate(square, (0.0, 0.03, 2.0)), plate(circle, (0.0, 0.0, 2.0))]
     assert distinct_plates(twice, np.array([0.6, 0.9]), LIKELY) == [1]
+
+
+def test_of_two_that_are_as_sure_the_one_with_more_points_is_left() -> None:
+    square, piece = shape_of("square", 0.9), shape_of("square", 0.6)
+    whole = plate(square, (0.0, 0.0, 2.0))
+    part = plate(piece, (0.0, 0.0, 2.17))
+    part = replace(part, evidence=part.evidence._replace(points=whole.evidence.points - 1))
+    assert distinct_plates([part, whole], np.array([0.996, 0.97]), LIKELY) == [1]
 
 
 def test_plates_on_two_sides_of_a_post_are_two() -> None:

@@ -5,7 +5,13 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from processing.methods.road.signs.link_kernels import PLANE_WIDTH, flat_kernel
+from processing.methods.road.signs.link_kernels import (
+    FLAT_M,
+    PLANE_WIDTH,
+    RIM_M,
+    complete_kernel,
+    flat_kernel,
+)
 from processing.methods.road.signs.piece_kernels import COUNT, FROM, PIECE, TO, VIEW
 from processing.methods.road.signs.plate_groups import group_of
 
@@ -48,3 +54,34 @@ def test_what_lies_level_is_no_plate() -> None:
     values[:, TO : TO + 3] = values[:, FROM : FROM + 3] + (0.1, 0.2, 0.0)
     values[:, COUNT] = 4.0
     assert group_of(values, np.arange(6)) is None
+
+
+@pytest.mark.parametrize("is_face", [False, True])
+def test_what_lies_in_the_box_and_the_plane_of_a_plate_and_is_as_bright_is_of_it(
+    is_face: bool,
+) -> None:
+    random = np.random.default_rng(6)
+    values = np.zeros((120, PIECE))
+    values[:, FROM : FROM + 3] = random.uniform(-1.0, 1.0, (120, 3)) * (1.0, 0.04, 1.0)
+    values[:, TO : TO + 3] = values[:, FROM : FROM + 3] + (0.02, 0.0, 0.1)
+    values[:, COUNT], values[:, VIEW + 1] = 5.0, 1.0
+    values[:8, [FROM + 1, TO + 1]] = 0.0
+    is_bright = np.arange(120) % 3 == 0
+    is_bright[:8] = is_face
+    group = group_of(values, np.arange(8))
+    assert group is not None
+    flat = [group.flat(values[:, side : side + 3]) for side in (FROM, TO)]
+    off = [
+        np.abs((values[:, side : side + 3] - group.middle) @ group.normal) for side in (FROM, TO)
+    ]
+    is_near = (np.maximum(*off) <= FLAT_M) & (np.minimum(*flat) >= group.low - RIM_M).all(axis=1)
+    is_near &= (np.maximum(*flat) <= group.high + RIM_M).all(axis=1)
+    expected = np.flatnonzero(is_near & (is_bright == is_face))
+    expected = expected[expected >= 8]
+    assert expected.size > 3
+    for kernel in (complete_kernel, complete_kernel.py_func):  # type: ignore[attr-defined]
+        chosen, is_own = np.empty(120, np.int64), np.zeros(120, np.bool_)
+        near = np.arange(120)
+        count = kernel(values, near, group.pieces, group.plane, is_bright, is_own, chosen)
+        assert chosen[:count].tolist() == expected.tolist()
+        assert not is_own.any()

