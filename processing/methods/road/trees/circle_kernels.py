@@ -286,7 +286,7 @@ def chains_kernel(
     """
     found = 0
     while True:
-        slab, number = divmod(worth.argmax(), MOST_CIRCLES)
+        slab, number = divmod(int(worth.argmax()), MOST_CIRCLES)
         if worth[slab, number] <= 0:
             return found
         chain = chains[found]

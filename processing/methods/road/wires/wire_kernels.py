@@ -152,7 +152,7 @@ def _near(
             # Without a branch, since a quarter of them are near, in no order.
             found[count] = other
             off = aside * aside + ahead * ahead + above * above
-            count += np.int64((off <= reach) & (count < most))
+            count += int((off <= reach) & (count < most))
     return count
 
 
@@ -345,7 +345,7 @@ def _on_neighbours(
         along = offs[0, one] * way[0] + offs[1, one] * way[1] + offs[2, one] * way[2]
         off = offs[3, one] - along * along
         inside[number] = one
-        number += np.int64((ring < off) & (off < free))
+        number += int((ring < off) & (off < free))
     beside = np.empty((4, number))
     for one in range(number):
         at = inside[one]
@@ -388,7 +388,7 @@ def _fullest_neighbour(
         # Without a branch, so that several points are counted at a time.
         for one in range(number):
             aside, ahead, above = easts[one] - east, norths[one] - north, ups[one] - up
-            on += np.int64(aside * aside + ahead * ahead + above * above < core)
+            on += int(aside * aside + ahead * ahead + above * above < core)
         if on <= best:
             continue
         low, high = math.inf, -math.inf
