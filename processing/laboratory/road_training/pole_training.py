@@ -48,7 +48,6 @@ from processing.methods.road.poles.shafts import Shaft, find_shafts, with_whole_
 from processing.methods.road.poles.street_poles import (
     REACH_M,
     carried_if_likely,
-    own_points,
     usual_noise_m,
 )
 from processing.methods.road.poles.surroundings import surroundings_of
@@ -149,7 +148,7 @@ def _judge_shafts(scene: RoadScene) -> Iterator[tuple[bool, PoleFacts, bool]]:
         if label is not None and not (label is False and _is_noise(shaft, codes)):
             local = around.local[around.of(number)] - shaft.foot
             beside = surroundings_of(local, shaft, usual_m, fellows[number])
-            carried = carried_if_likely(own_points(around, number, shafts), shaft, usual_m)
+            carried = carried_if_likely(around, number, shafts, usual_m)
             sides = seen_sides(scene.drives, shaft, plan.origin)
             yield is_low(shaft), facts_of(shaft, beside, carried, sides, usual_m), label
 

@@ -113,7 +113,8 @@ def lone_points(
     """
     found = np.empty(points.size, np.bool_)
     scale = 4.0 ** (0.5 - strictness)
-    has_moved = bool(np.ptp(beams.origins, axis=0).any())
+    # Axis by axis: NumPy takes ten times as long over rows of three.
+    has_moved = any(np.ptp(axis) > 0 for axis in beams.origins.T)
     limits = _Limits(scale * _APART_FROM_SURFACE, scale**3 * _LONELINESS if has_moved else math.inf)
 
     def look(start: int, stop: int) -> None:

@@ -35,10 +35,10 @@ def is_far(xyz: NDArray[np.float64]) -> NDArray[np.bool_]:
     reach = max(_LEAST_M, _EXTENTS * float((high - low).max()))
     least, most = low - reach, high + reach
     far = np.zeros(xyz.shape[0], np.bool_)
-    if (xyz.min(axis=0) >= least).all() and (xyz.max(axis=0) <= most).all():
-        return far
-    for axis in range(3):
-        far |= (xyz[:, axis] < least[axis]) | (xyz[:, axis] > most[axis])
+    # Axis by axis: NumPy takes ten times as long over rows of three.
+    for axis, values in enumerate(xyz.T):
+        if values.min() < least[axis] or values.max() > most[axis]:
+            far |= (values < least[axis]) | (values > most[axis])
     return far
 
 

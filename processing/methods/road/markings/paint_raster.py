@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from processing.core.arrays import Floats, Integers
 from processing.core.monitor import Monitor, PartMonitor
+from processing.core.worked_ahead import in_order
 from processing.methods.road.markings.tone_kernels import (
     BINS,
     ceilings_kernel,
@@ -315,7 +316,11 @@ def _shares(
     monitor: Monitor,
 ) -> NDArray[np.float32]:
     shares: NDArray[np.float32] = np.empty(len(paint), np.float32)
-    for tile in np.argwhere(table >= 0).tolist():
+
+    def of_tile(tile: list[int]) -> None:
         monitor.check()
         shares_kernel(paint, counts, table, (tile[0], tile[1]), per_tile, shares)
+
+    for _ in in_order(of_tile, np.argwhere(table >= 0).tolist()):
+        monitor.check()
     return shares

@@ -261,17 +261,22 @@ def shares_kernel(
 
     A cell as wide as points lie apart is often empty; its neighbours tell what lies there.
     """
+    first = int(table[tile[0], tile[1]]) * per_tile * per_tile
     for a in range(per_tile):
         for b in range(per_tile):
             total, count = 0.0, 0.0
+            is_inner = 0 < a < per_tile - 1 and 0 < b < per_tile - 1
             for i in range(-1, 2):
                 for j in range(-1, 2):
-                    other = _neighbour(
-                        tile[0] * per_tile + a + i, tile[1] * per_tile + b + j, table, per_tile
-                    )
+                    if is_inner:
+                        other = first + (a + i) * per_tile + b + j
+                    else:
+                        other = _neighbour(
+                            tile[0] * per_tile + a + i, tile[1] * per_tile + b + j, table, per_tile
+                        )
                     if other >= 0 and counts[other] > 0:
                         weight = (2.0 - abs(i)) * (2.0 - abs(j))
                         total += weight * paint[other]
                         count += weight * counts[other]
-            own = int((table[tile[0], tile[1]] * per_tile + a) * per_tile + b)
+            own = first + a * per_tile + b
             shares[own] = total / (PAINT_SCALE * count) if count > 0 else np.nan

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -44,15 +44,6 @@ class ColumnPoints:
     drives: Integers
     points: Integers
 
-    def followed_by(self, other: ColumnPoints) -> ColumnPoints:
-        """Points about these columns, and about others after them."""
-        return ColumnPoints(
-            np.concatenate([self.starts, self.starts[-1] + other.starts[1:]]),
-            np.concatenate([self.local, other.local]),
-            np.concatenate([self.drives, other.drives]),
-            np.concatenate([self.points, other.points]),
-        )
-
     def of(self, column: int) -> slice:
         """The lines of a column."""
         return slice(int(self.starts[column]), int(self.starts[column + 1]))
@@ -73,26 +64,48 @@ def points_about(
         Of the columns, m about the origin of the plan.
     radius_m : float
     """
-    if not len(middles):
-        return ColumnPoints(
-            np.zeros(1, np.int64), np.empty((0, 3)), np.empty(0, np.int64), np.empty(0, np.int64)
-        )
-    nearest = nearest_columns(plan, middles, radius_m).reshape(-1)
+    return points_about_each(drives, plan, (middles,), radius_m, monitor)
 
-    def gathered(chunk: DriveChunk) -> _GatheredPoints:
+
+def points_about_each(
+    drives: Sequence[Drive],
+    plan: SparsePlan,
+    groups: Sequence[Floats],
+    radius_m: float,
+    monitor: Monitor,
+) -> ColumnPoints:
+    """The same about several groups of columns, one group after the other.
+
+    A point lies about a column of each group that is near: none takes it from another's.
+    """
+    groups = [middles for middles in groups if len(middles)]
+    sizes = np.array([0, *(len(middles) for middles in groups)], np.int64)
+    offsets = np.cumsum(sizes)
+    nearest = [nearest_columns(plan, middles, radius_m).reshape(-1) for middles in groups]
+
+    def gathered(chunk: DriveChunk) -> list[_GatheredPoints]:
+        found = []
         owners = np.empty(len(chunk.local), np.int32)
-        owners_kernel(chunk.local, plan.table, nearest, middles, radius_m, owners)
-        owners[chunk.is_noise] = -1
-        kept = np.flatnonzero(owners >= 0)
-        return _GatheredPoints(
-            owners.take(kept), chunk.local.take(kept, axis=0), chunk.drive, chunk.start + kept
-        )
+        for middles, near, offset in zip(groups, nearest, offsets[:-1].tolist(), strict=True):
+            owners_kernel(chunk.local, plan.table, near, middles, radius_m, owners)
+            owners[chunk.is_noise] = -1
+            kept = np.flatnonzero(owners >= 0)
+            local = chunk.local.take(kept, axis=0)
+            numbers = owners.take(kept) + np.int32(offset)
+            found.append(_GatheredPoints(numbers, local, chunk.drive, chunk.start + kept))
+        return found
 
-    parts = list(in_order(gathered, chunks_of(drives, plan.origin, monitor)))
-    counts = np.zeros(len(middles), np.int64)
+    chunks = chunks_of(drives, plan.origin, monitor) if groups else ()
+    parts = [part for some in in_order(gathered, chunks) for part in some]
+    return _in_columns(parts, int(offsets[-1]), monitor)
+
+
+def _in_columns(parts: Sequence[_GatheredPoints], columns: int, monitor: Monitor) -> ColumnPoints:
+    """Points of stretches that follow each other, column by column."""
+    counts = np.zeros(columns, np.int64)
     for part in parts:
         monitor.check()
-        counts += np.bincount(part.owners, minlength=len(middles))
+        counts += np.bincount(part.owners, minlength=columns)
     starts = np.concatenate([[0], np.cumsum(counts)])
     about = ColumnPoints(
         starts,
@@ -100,10 +113,19 @@ def points_about(
         np.empty(starts[-1], np.int64),
         np.empty(starts[-1], np.int64),
     )
-    free = starts[:-1].copy()
-    for part in parts:
+
+    def with_room() -> Iterator[tuple[_GatheredPoints, Integers]]:
+        free = starts[:-1].copy()
+        for part in parts:
+            monitor.check()
+            yield part, free.copy()
+            free += np.bincount(part.owners, minlength=columns)
+
+    def place(part: tuple[_GatheredPoints, Integers]) -> None:
+        place_kernel(*part, about.local, about.drives, about.points)
+
+    for _ in in_order(place, with_room()):
         monitor.check()
-        place_kernel(part, free, about.local, about.drives, about.points)
     return about
 
 

@@ -19,6 +19,7 @@ from scipy import ndimage
 from processing.core.arrays import Floats, Integers
 from processing.core.kernels import kernel
 from processing.core.monitor import Monitor
+from processing.core.worked_ahead import in_order
 from processing.methods.road.objects.drive_chunks import chunks_of
 from processing.methods.road.objects.ground_heights import GROUND_CELLS, height_of
 from processing.methods.road.objects.sparse_plan import TILE, SparsePlan, cell_of
@@ -97,10 +98,13 @@ def find_columns(
         slabs_kernel(chunk.local, chunk.is_noise, plan.table, ground.reshape(-1), slabs.reshape(-1))
     standing: list[tuple[Floats, int]] = []
     raised: list[tuple[Floats, int]] = []
-    for tile in range(len(plan)):
+
+    def of_tile(tile: int) -> tuple[list[tuple[Floats, int]], list[tuple[Floats, int]]]:
         monitor.check()
-        window = plan.window(slabs, tile, _HALO + _APART_CELLS, 0)
-        for found, here in zip((standing, raised), _columns_of(window), strict=True):
+        return _columns_of(plan.window(slabs, tile, _HALO + _APART_CELLS, 0))
+
+    for tile, both in enumerate(in_order(of_tile, range(len(plan)))):
+        for found, here in zip((standing, raised), both, strict=True):
             found += [
                 (plan.middles(tile, np.asarray(middle - 0.5)), bits)
                 for middle, bits in here

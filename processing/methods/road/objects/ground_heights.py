@@ -16,6 +16,7 @@ from scipy.ndimage import distance_transform_edt, minimum_filter
 from processing.core.arrays import Floats
 from processing.core.kernels import kernel
 from processing.core.monitor import Monitor
+from processing.core.worked_ahead import in_order
 from processing.methods.road.objects.drive_chunks import chunks_of
 from processing.methods.road.objects.opaque_ground import (
     LAYER_M,
@@ -98,11 +99,15 @@ def ground_heights(
     rises = (_STEP_M, _STEEPEST * GROUND_M)
     third[cells_below_ground(third, counts, plan, rises, monitor)] = np.inf
     ground = np.empty_like(third)
-    for tile in range(len(plan)):
+
+    def fill(tile: int) -> None:
         monitor.check()
         halo = _REACH_CELLS + _FILL_CELLS
         heights = plan.window(third, tile, halo, np.inf)
         ground[tile] = _filled(heights, _are_ground(heights))[halo:-halo, halo:-halo]
+
+    for _ in in_order(fill, range(len(plan))):
+        monitor.check()
     return ground
 
 

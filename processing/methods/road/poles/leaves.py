@@ -91,8 +91,7 @@ def leaves_about(points: Floats, shaft: Shaft) -> LeavesAbout:
     free = points[(points[:, 2] > _LOW_M) & ~_is_on(points, shaft)]
     if len(free) == 0:
         return LeavesAbout(0, 0, 1.0, 1.0)
-    cells, member = np.unique(_cells_of(free), axis=0, return_inverse=True)
-    member = member.reshape(-1)
+    cells, member = _filled_cells(_cells_of(free))
     is_told, is_flat = _shapes(free, member, cells)
     middles = (cells + 0.5) * _CELL_M
     axis = shaft.lean * top
@@ -124,6 +123,16 @@ def _is_on(points: Floats, shaft: Shaft) -> NDArray[np.bool_]:
 
 def _cells_of(points: Floats) -> Integers:
     return np.floor(points / _CELL_M).astype(np.int64)
+
+
+def _filled_cells(cells: Integers) -> tuple[Integers, Integers]:
+    """The different ones of cells, rising, and which of them each is: one number a cell."""
+    low = cells.min(axis=0)
+    shape = cells.max(axis=0) - low + 1
+    numbers = np.ravel_multi_index(tuple((cells - low).T), tuple(shape.tolist()))
+    different, member = np.unique(numbers, return_inverse=True)
+    places = np.column_stack(np.unravel_index(different, tuple(shape.tolist())))
+    return places + low, member.reshape(-1)
 
 
 def _shapes(

@@ -13,7 +13,7 @@ import numpy as np
 
 from processing.core.arrays import Floats, Integers
 from processing.core.monitor import Monitor, PartMonitor
-from processing.methods.road.objects.column_points import ColumnPoints, points_about
+from processing.methods.road.objects.column_points import ColumnPoints, points_about_each
 from processing.methods.road.objects.survey import raised_columns, survey_columns
 from processing.methods.road.poles.carried import (
     ARMS_FROM_M,
@@ -131,10 +131,8 @@ def street_poles(drives: Sequence[Drive], monitor: Monitor) -> tuple[StreetPole,
     usual_m = usual_noise_m(shafts or hidden)
     part = PartMonitor(monitor, 0.75, 0.9)
     # What stands out of a crown or behind a wall takes no points from what stands on the ground.
-    around, about_hidden = (
-        points_about(drives, plan, _feet(some), REACH_M, part) for some in (shafts, hidden)
-    )
-    shafts, around = shafts + hidden, around.followed_by(about_hidden)
+    feet = _feet(shafts), _feet(hidden)
+    shafts, around = shafts + hidden, points_about_each(drives, plan, feet, REACH_M, part)
     shafts = with_whole_sides(shafts, around, monitor)
     fellows = fellows_of(shafts)
     sure: list[tuple[float, int, tuple[Carried, float]]] = []
@@ -146,7 +144,7 @@ def street_poles(drives: Sequence[Drive], monitor: Monitor) -> tuple[StreetPole,
         beside = surroundings_of(local, shaft, usual_m, fellows[number])
         if most_chance_of(shaft, beside, usual_m) < _LEAST_CHANCE:
             continue
-        carried = carried_if_likely(own_points(around, number, shafts), shaft, usual_m)
+        carried = carried_if_likely(around, number, shafts, usual_m)
         sides = seen_sides(drives, shaft, plan.origin)
         facts = facts_of(shaft, beside, carried, sides, usual_m)
         chance = chance_of(facts, is_low=is_low(shaft))
@@ -184,9 +182,10 @@ def own_points(around: ColumnPoints, number: int, shafts: Sequence[Shaft]) -> Sh
         for other, neighbour in enumerate(shafts):
             if 0 < np.hypot(*(neighbour.foot - shaft.foot)[:2]) < 2 * REACH_M:
                 theirs = around.of(other)
-                local = around.local[theirs] - shaft.foot
-                is_near = (local[:, 2] > ARMS_FROM_M) & np.isin(around.drives[theirs], heads)
-                is_near &= np.hypot(local[:, 0], local[:, 1]) < REACH_M
+                high = np.flatnonzero(around.local[theirs, 2] - shaft.foot[2] > ARMS_FROM_M)
+                local = around.local[theirs].take(high, axis=0) - shaft.foot
+                is_near = np.hypot(local[:, 0], local[:, 1]) < REACH_M
+                is_near &= np.isin(around.drives[theirs].take(high), heads)
                 beyond.append(local[is_near])
     return ShaftNeighbourhood(
         around.local[part][is_own] - shaft.foot,
@@ -195,17 +194,22 @@ def own_points(around: ColumnPoints, number: int, shafts: Sequence[Shaft]) -> Sh
     )
 
 
-def carried_if_likely(about: ShaftNeighbourhood, shaft: Shaft, usual_m: float) -> Carried:
+def carried_if_likely(
+    around: ColumnPoints, number: int, shafts: Sequence[Shaft], usual_m: float
+) -> Carried:
     """What a shaft carries; nothing, of low ones and of those too rough for a pole.
 
     Parameters
     ----------
+    around : ColumnPoints
+        Points about all shafts, of which the one with the number is asked.
     usual_m : float
         Noise of the recording's smooth shafts.
     """
+    shaft = shafts[number]
     if is_low(shaft) or shaft.noise_m > _ROUGH * usual_m:
         return Carried()
-    return carried_of(about, shaft)
+    return carried_of(own_points(around, number, shafts), shaft)
 
 
 def usual_noise_m(shafts: Sequence[Shaft]) -> float:

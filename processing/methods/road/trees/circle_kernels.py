@@ -269,6 +269,40 @@ class ChainLimits(NamedTuple):
 
 
 @kernel
+def chains_kernel(
+    circles: Floats, worth: Floats, limits: ChainLimits, fewest: int, chains: Integers
+) -> int:
+    """Join circles that follow each other upwards, from the likeliest on; how many chains.
+
+    Parameters
+    ----------
+    circles : (slabs, MOST_CIRCLES, CIRCLE_WIDTH) float64
+    worth : (slabs, MOST_CIRCLES) float64
+        Becomes 0.
+    fewest : int
+        Circles of a chain.
+    chains : (k, slabs) int64
+        The circle of each slab, −1: none; k is larger than all circles give chains. Written.
+    """
+    found = 0
+    while True:
+        slab, number = divmod(int(worth.argmax()), MOST_CIRCLES)
+        if worth[slab, number] <= 0:
+            return found
+        chain = chains[found]
+        chain[:] = -1
+        lean = lean_kernel(circles, worth, slab, number, limits)
+        chain_kernel(circles, worth, (slab, number, 1), lean, limits, chain)
+        chain_kernel(circles, worth, (slab, number, -1), lean, limits, chain)
+        count = 0
+        for at in range(len(chain)):
+            if chain[at] >= 0:
+                worth[at, chain[at]] = 0.0
+                count += 1
+        found += count >= fewest
+
+
+@kernel
 def chain_kernel(
     circles: Floats,
     worth: Floats,

@@ -27,9 +27,8 @@ from processing.methods.road.trees.circle_kernels import (
     WORTH,
     ChainLimits,
     CircleLimits,
-    chain_kernel,
+    chains_kernel,
     circles_kernel,
-    lean_kernel,
 )
 from processing.methods.road.trees.cone_kernels import (
     EVEN_NOISE_M,
@@ -40,7 +39,7 @@ from processing.methods.road.trees.cone_kernels import (
     scatter_kernel,
     settle_kernel,
 )
-from processing.methods.road.trees.wall_kernels import rows_kernel
+from processing.methods.road.trees.wall_kernels import without_rows_kernel
 
 BREAST_M = 1.2
 """Height of the diameter above the foot: 胸高 in Japan (Takahashi 2022, 5.1)."""
@@ -265,22 +264,14 @@ def slab_circles(points: Floats, most_diameter_m: float, thick_m: float = THICK_
     first = np.searchsorted(rising, heights - thick_m / 2)
     end = np.searchsorted(rising, heights + thick_m / 2)
     if (end > first).any():
-        parts = [_without_rows(points, order[a:b]) for a, b in zip(first, end, strict=True)]
-        members = np.concatenate(parts)
-        starts = np.cumsum([0, *(part.size for part in parts)])
+        plan = np.ascontiguousarray(points[order, :2])
+        members = np.empty(int((end - first).sum()), np.int64)
+        starts = np.empty(heights.size + 1, np.int64)
+        spans = np.column_stack([first, end])
+        without_rows_kernel(plan, spans, TOLERANCE_M, _MOST_OF_SLAB, members, starts)
         limits = CircleLimits(_THINNEST_M, most_diameter_m / 2, TOLERANCE_M, 5, 0.12, 0.15)
-        circles_kernel(np.ascontiguousarray(points[members, :2]), starts, limits, circles)
+        circles_kernel(plan[members[: starts[-1]]], starts, limits, circles)
     return SlabCircles(heights, circles)
-
-
-def _without_rows(points: Floats, slab: Integers) -> Integers:
-    """Points of a slab that lie in no straight row; of thousands a few hundred."""
-    plan = np.ascontiguousarray(points[slab, :2])
-    is_row = np.zeros(slab.size, np.bool_)
-    rows_kernel(plan, TOLERANCE_M, max(1, -(-slab.size // _MOST_OF_SLAB)), is_row)
-    left = slab[~is_row]
-    some: Integers = left[:: max(1, -(-left.size // _MOST_OF_SLAB))]
-    return some
 
 
 def _chains(circles: Floats, heights: Floats) -> list[Floats]:
@@ -288,19 +279,14 @@ def _chains(circles: Floats, heights: Floats) -> list[Floats]:
     free = circles[..., RADIUS] > 0
     worth = np.where(free, circles[..., WORTH], 0.0)
     limits = ChainLimits(_SHIFT_M, _STEEP * STEP_M, _SWELL_M, _SWELL, _SKIPPED, _REMEMBERED)
-    chains: list[Floats] = []
-    while worth.max(initial=0.0) > 0:
-        slab, number = divmod(int(worth.argmax()), MOST_CIRCLES)
-        chain = np.full(len(circles), -1, np.int64)
-        lean = lean_kernel(circles, worth, slab, number, limits)
-        chain_kernel(circles, worth, (slab, number, 1), lean, limits, chain)
-        chain_kernel(circles, worth, (slab, number, -1), lean, limits, chain)
+    chains = np.empty((np.count_nonzero(free) // _FEWEST_SLABS + 1, len(circles)), np.int64)
+    count = chains_kernel(circles, worth, limits, _FEWEST_SLABS, chains)
+    told: list[Floats] = []
+    for chain in chains[:count]:
         slabs = np.flatnonzero(chain >= 0)
-        worth[slabs, chain[slabs]] = 0.0
-        if slabs.size >= _FEWEST_SLABS:
-            rows = circles[slabs, chain[slabs]][:, [EAST, NORTH, RADIUS, ARC]]
-            chains.append(np.column_stack([heights[slabs], rows]))
-    return chains
+        rows = circles[slabs, chain[slabs]][:, [EAST, NORTH, RADIUS, ARC]]
+        told.append(np.column_stack([heights[slabs], rows]))
+    return told
 
 
 def _fitted(points: Floats, chain: Floats, most_diameter_m: float) -> FittedStem | None:

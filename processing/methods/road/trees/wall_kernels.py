@@ -11,7 +11,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.core.arrays import Floats
+from processing.core.arrays import Floats, Integers
 from processing.core.kernels import kernel
 
 _DRAWS = 60
@@ -60,6 +60,44 @@ def rows_kernel(plan: Floats, noise_m: float, step: int, is_row: NDArray[np.bool
             return
         if not _mark(plan, (first, second), noise_m, along, is_row):
             return
+
+
+@kernel
+def without_rows_kernel(
+    plan: Floats,
+    spans: Integers,
+    noise_m: float,
+    most: int,
+    members: Integers,
+    starts: Integers,
+) -> None:
+    """Points of slabs that lie in no straight row; of thousands in a slab a few hundred.
+
+    Parameters
+    ----------
+    plan : (n, 2) float64
+        Points in plan, m, the lowest first.
+    spans : (s, 2) int64
+        The first of each slab and the one after the last.
+    most : int
+        Of a slab, about which it is thinned.
+    members : (m,) int64
+        Gets their places, slab after slab; there is room for the points of all slabs.
+    starts : (s + 1,) int64
+        Gets where each slab's begin.
+    """
+    used = 0
+    for slab in range(len(spans)):
+        starts[slab] = used
+        first, end = spans[slab]
+        part = plan[first:end]
+        is_row = np.zeros(len(part), np.bool_)
+        rows_kernel(part, noise_m, max(1, -(-len(part) // most)), is_row)
+        left = np.flatnonzero(~is_row)
+        for one in left[:: max(1, -(-left.size // most))]:
+            members[used] = first + one
+            used += 1
+    starts[len(spans)] = used
 
 
 @kernel

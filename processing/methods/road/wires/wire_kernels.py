@@ -12,6 +12,7 @@ from processing.core.arrays import Flags, Floats, Integers
 from processing.core.kernels import kernel
 
 Singles = NDArray[np.float32]
+Bins = NDArray[np.int32]
 
 _BACK = 8
 """Points before one that may be of the pulse before: four returns of each."""
@@ -25,6 +26,9 @@ _DIRECTIONS = 20
 _BIN, _SIDE = 0.05, 64
 """Directions are told apart by their tangents to this: a wire's points, off by a centimetre half a
 metre away, share a bin or lie in the next one. Bins along a side of a map, margins included."""
+
+_NO_BIN = 2 * _SIDE * _SIDE
+"""Stands for no direction in a map; the votes for it aren't looked at."""
 
 _OVERLAP = 1.15
 """Tangent up to which a direction counts in both maps, of the one axis and of the other."""
@@ -134,17 +138,21 @@ def _spans_about(
 def _near(
     points: Floats, point: int, spans: Integers, grid: WireGrid, every: int, found: Integers
 ) -> int:
-    """Points within the reach of a point, by their number, thinned; how many."""
-    count = 0
+    """Points within the reach of a point, by their number, thinned; how many.
+
+    ``found`` has room for one more than are told.
+    """
+    count, most = 0, found.size - 1
+    east, north, up = points[point, 0], points[point, 1], points[point, 2]
+    reach = grid.size_m * grid.size_m
     for number in range(9):
         for other in range(spans[number, 0], spans[number, 1], every):
-            east = points[other, 0] - points[point, 0]
-            north = points[other, 1] - points[point, 1]
-            up = points[other, 2] - points[point, 2]
-            off = east * east + north * north + up * up
-            if off <= grid.size_m * grid.size_m and count < found.size:
-                found[count] = other
-                count += 1
+            aside, ahead = points[other, 0] - east, points[other, 1] - north
+            above = points[other, 2] - up
+            # Without a branch, since a quarter of them are near, in no order.
+            found[count] = other
+            off = aside * aside + ahead * ahead + above * above
+            count += int((off <= reach) & (count < most))
     return count
 
 
@@ -202,11 +210,11 @@ def lines_kernel(
     directions : (n, 3) float64
         Unit vectors. Written for the points of these cells.
     """
-    found = np.empty(2 * _MOST_NEAR, np.int64)
+    found = np.empty(2 * _MOST_NEAR + 1, np.int64)
     # Metres about a point, so that single precision tells micrometres.
     offs = np.empty((4, found.size), np.float32)
-    bins = np.empty((found.size, 2), np.int64)
-    votes = np.zeros(2 * _SIDE * _SIDE, np.int32)
+    bins = np.empty((2, found.size), np.int32)
+    votes = np.zeros(_NO_BIN + 1, np.int32)
     spans = np.empty((9, 2), np.int64)
     for cell in range(some[0], some[1]):
         # Of the cells about it a sphere holds a sixth.
@@ -219,9 +227,7 @@ def lines_kernel(
                 _vote(offs, count, limits, bins, votes)
                 _best_line(offs, count, limits, (bins, votes), directions[point])
                 for one in range(count):
-                    for of_map in range(2):
-                        if bins[one, of_map] >= 0:
-                            votes[bins[one, of_map]] = 0
+                    votes[bins[0, one]] = votes[bins[1, one]] = 0
 
 
 @kernel
@@ -237,23 +243,27 @@ def _measure_offs(points: Floats, point: int, found: Integers, offs: Singles) ->
 
 
 @kernel
-def _vote(
-    offs: Singles, count: int, limits: LineLimits, bins: Integers, votes: NDArray[np.int32]
-) -> None:
-    """Count how many points about one lie in each direction from it, whichever way along it."""
+def _vote(offs: Singles, count: int, limits: LineLimits, bins: Bins, votes: Bins) -> None:
+    """Count how many points about one lie in each direction from it, whichever way along it.
+
+    Without a branch, so that several are divided at a time; what 0 gives isn't looked at.
+    """
+    near, steepest = (limits.reach_m / 5) ** 2, limits.steepest**2
     for one in range(count):
-        bins[one] = -1
         east, north, up = offs[0, one], offs[1, one], offs[2, one]
         level = east * east + north * north
-        if level + up * up < (limits.reach_m / 5) ** 2 or up * up > limits.steepest**2 * level:
-            continue
-        for of_map in range(2):
-            first, second = (east, north) if of_map == 0 else (north, east)
-            if abs(second) <= _OVERLAP * abs(first):
-                i = int(second / first / _BIN + _SIDE / 2)
-                j = int(up / first / _BIN + _SIDE / 2)
-                bins[one, of_map] = (of_map * _SIDE + i) * _SIDE + j
-                votes[bins[one, of_map]] += 1
+        is_apart = (level + up * up >= near) & (up * up <= steepest * level)
+        i = np.int32(np.divide(north, east) / _BIN + _SIDE / 2)
+        j = np.int32(np.divide(up, east) / _BIN + _SIDE / 2)
+        is_along = is_apart & (abs(north) <= _OVERLAP * abs(east))
+        bins[0, one] = i * _SIDE + j if is_along else _NO_BIN
+        i = np.int32(np.divide(east, north) / _BIN + _SIDE / 2)
+        j = np.int32(np.divide(up, north) / _BIN + _SIDE / 2)
+        is_along = is_apart & (abs(east) <= _OVERLAP * abs(north))
+        bins[1, one] = (_SIDE + i) * _SIDE + j if is_along else _NO_BIN
+    for one in range(count):
+        votes[bins[0, one]] += 1
+        votes[bins[1, one]] += 1
 
 
 @kernel
@@ -261,15 +271,15 @@ def _best_line(
     offs: Singles,
     count: int,
     limits: LineLimits,
-    voted: tuple[Integers, NDArray[np.int32]],
+    voted: tuple[Bins, Bins],
     direction: Floats,
 ) -> None:
     """Write the direction through a point that has the most on it, of those that others share."""
     bins, votes = voted
     most = 0
     for one in range(0, count, max(1, count // _DIRECTIONS)):
-        home = bins[one, 0] if bins[one, 0] >= 0 else bins[one, 1]
-        if home < 0:
+        home = bins[0, one] if bins[0, one] != _NO_BIN else bins[1, one]
+        if home == _NO_BIN:
             continue
         agreed = 0
         for i in range(-1, 2):
@@ -301,12 +311,12 @@ def _on_line(
     core = np.float32(limits.core_m**2)
     ring, free = np.float32(limits.ring_m**2), np.float32(limits.free_m**2)
     on, beside = np.int32(0), np.int32(0)
-    # Without a branch, so that several points are counted at a time.
+    # Without a branch and in single precision, so that eight points are counted at a time.
     for one in range(count):
         along = east[one] * way[0] + north[one] * way[1] + up[one] * way[2]
         off = square[one] - along * along
-        on += np.int32(off < core)
-        beside += np.int32((off > ring) & (off < free))
+        on = np.int32(on + (off < core))
+        beside = np.int32(beside + ((off > ring) & (off < free)))
     if on < limits.fewest or on <= most:
         return 0
     if beside > limits.beside * on:
@@ -330,25 +340,33 @@ def _on_neighbours(
 ) -> int:
     """How many of the points beside a line lie on two others along it: cables of one route."""
     core, ring, free = limits.core_m**2, limits.ring_m**2, limits.free_m**2
-    beside = np.empty((4, count))
-    number = 0
+    inside, number = np.empty(count + 1, np.int64), 0
     for one in range(count):
         along = offs[0, one] * way[0] + offs[1, one] * way[1] + offs[2, one] * way[2]
-        if ring < offs[3, one] - along * along < free:
-            beside[3, number] = along
-            for axis in range(3):
-                beside[axis, number] = offs[axis, one] - along * way[axis]
-            number += 1
+        off = offs[3, one] - along * along
+        inside[number] = one
+        number += int((ring < off) & (off < free))
+    beside = np.empty((4, number))
+    for one in range(number):
+        at = inside[one]
+        along = offs[0, at] * way[0] + offs[1, at] * way[1] + offs[2, at] * way[2]
+        beside[3, one] = along
+        for axis in range(3):
+            beside[axis, one] = offs[axis, at] - along * way[axis]
     total = 0
     for _ in range(2):
-        best, home = _fullest_neighbour(beside, number, core, limits.reach_m / 2)
+        best, home = _fullest_neighbour(beside, number, core, limits)
         if best < limits.fewest:
             break
         total += best
-        of_home, left = beside[:, home].copy(), 0
+        east, north, up = beside[0, home], beside[1, home], beside[2, home]
+        left = 0
         for one in range(number):
-            if _square_between(beside[:, one], of_home) >= core:
-                beside[:, left] = beside[:, one]
+            aside, ahead = beside[0, one] - east, beside[1, one] - north
+            above = beside[2, one] - up
+            if aside * aside + ahead * ahead + above * above >= core:
+                for axis in range(4):
+                    beside[axis, left] = beside[axis, one]
                 left += 1
         number = left
     return total
@@ -356,28 +374,31 @@ def _on_neighbours(
 
 @kernel
 def _fullest_neighbour(
-    beside: Floats, number: int, core: float, least_long_m: float
+    beside: Floats, number: int, core: float, limits: LineLimits
 ) -> tuple[int, int]:
-    """How many points lie on the line along the way that holds the most, and one of them."""
-    best, home = 0, 0
+    """How many points lie on the line along the way that holds the most, and one of them.
+
+    No line of fewer points than a wire has is told.
+    """
+    best, home = limits.fewest - 1, 0
+    easts, norths, ups, alongs = beside[0], beside[1], beside[2], beside[3]
     for seed in range(0, number, max(1, number // _BESIDE_SEEDS)):
-        on, low, high = 0, math.inf, -math.inf
+        east, north, up = easts[seed], norths[seed], ups[seed]
+        on = 0
+        # Without a branch, so that several points are counted at a time.
         for one in range(number):
-            if _square_between(beside[:, one], beside[:, seed]) < core:
-                on += 1
-                low, high = min(low, beside[3, one]), max(high, beside[3, one])
-        if on > best and high - low >= least_long_m:
+            aside, ahead, above = easts[one] - east, norths[one] - north, ups[one] - up
+            on += int(aside * aside + ahead * ahead + above * above < core)
+        if on <= best:
+            continue
+        low, high = math.inf, -math.inf
+        for one in range(number):
+            aside, ahead, above = easts[one] - east, norths[one] - north, ups[one] - up
+            if aside * aside + ahead * ahead + above * above < core:
+                low, high = min(low, alongs[one]), max(high, alongs[one])
+        if high - low >= limits.reach_m / 2:
             best, home = on, seed
     return best, home
-
-
-@kernel
-def _square_between(one: Floats, other: Floats) -> float:
-    """Of the distance between two places across a line."""
-    square = 0.0
-    for axis in range(3):
-        square += (one[axis] - other[axis]) ** 2
-    return square
 
 
 @kernel
@@ -400,7 +421,7 @@ def groups_kernel(
     group : (n,) int64
         Another point of the same group, or the point itself, from which all of them begin.
     """
-    found = np.empty(2 * _MOST_NEAR, np.int64)
+    found = np.empty(2 * _MOST_NEAR + 1, np.int64)
     spans = np.empty((9, 2), np.int64)
     for cell in range(some[0], some[1]):
         every = _spans_about(cell, cells, starts, grid, spans) // (6 * _MOST_NEAR) + 1

@@ -44,6 +44,46 @@ def test_a_row_goes_left_up_to_the_threshold_and_right_above(trees: Trees) -> No
     assert log_odds(trees, rows, SilentMonitor()).tolist() == [-1.5, 1.75, 3.75]
 
 
+@pytest.mark.parametrize("name", [FIRST_LOOK, *WITH_BEAMS])
+def test_words_of_rows_give_the_sums_of_a_walk_row_by_row_to_the_last_bit(name: str) -> None:
+    trees = read_trees(path_of(f"{MODELS}/{name}"))
+    random = np.random.default_rng(3)
+    columns = int(trees.features.max()) + 1
+    rows = random.normal(0, 2, (2 * 64 + 7, columns)).astype(np.float32)  # and part of a word
+    some = random.choice(np.flatnonzero(trees.features >= 0), len(rows))
+    # As large as a threshold goes left, a little larger right.
+    rows[np.arange(len(rows)), trees.features[some]] = trees.thresholds[some]
+    rows[1::2] = np.nextafter(rows[1::2], np.float32(np.inf))
+    rows[4] = np.nan
+    rows[5, ::2], rows[6, ::2] = np.inf, -np.inf
+    walked = [_walked(trees, row) for row in rows.astype(np.float64)]
+    assert log_odds(trees, rows, SilentMonitor()).tolist() == walked
+
+
+def test_rows_that_a_third_of_the_trees_finds_hopeless_are_asked_no_more() -> None:
+    """Three trees of a leaf each: the last ones say much for the claim."""
+    leaves = np.arange(3, dtype=np.int32)
+    none = np.full(3, -1, np.int32)
+    row = np.zeros((1, 1), np.float32)
+    for first, sum_of_all in ((-5.0, -5.0), (-4.0, 8.0)):
+        trees = Trees(none, np.array([first, 6.0, 6.0]), leaves, leaves, leaves, 0.0)
+        assert log_odds(trees, row, SilentMonitor()).tolist() == [sum_of_all]
+
+
+def _walked(trees: Trees, row: np.ndarray) -> float:
+    """A row down each tree, until it is hopeless."""
+    total = trees.base
+    for number, root in enumerate(trees.roots.tolist()):
+        if number == trees.roots.size // 3 and total < -4.0:
+            break
+        node = root
+        while trees.features[node] >= 0:
+            is_left = row[trees.features[node]] <= trees.thresholds[node]
+            node = trees.lefts[node] if is_left else trees.rights[node]
+        total += float(trees.thresholds[node])
+    return total
+
+
 def test_trees_come_back_from_a_file_as_they_were(trees: Trees, tmp_path: Path) -> None:
     write_trees(trees, tmp_path / "trees.onnx", 201)
     again = read_trees(tmp_path / "trees.onnx")
