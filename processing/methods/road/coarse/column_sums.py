@@ -18,7 +18,7 @@ from processing.core.kernels import kernel
 from processing.core.monitor import Monitor, PartMonitor
 from processing.methods.road.objects.columns import FoundColumns
 from processing.methods.road.objects.drive_chunks import chunks_of
-from processing.methods.road.objects.sparse_plan import CELL_M, TILE, SparsePlan
+from processing.methods.road.objects.sparse_plan import CELL_M, TILE, SparsePlan, cell_of
 from processing.recording.drive import Drive
 
 SLAB_M, LOWEST_M, SLABS = 0.4, 0.2, 32
@@ -172,15 +172,6 @@ class _ColumnsOfTiles(NamedTuple):
 
 
 @kernel
-def _tile_of(east: float, north: float, table: NDArray[np.int32]) -> int:
-    size_m = CELL_M * TILE
-    i, j = int(east // size_m), int(north // size_m)
-    if i < 0 or j < 0 or i >= table.shape[0] or j >= table.shape[1]:
-        return -1
-    return int(table[i, j])
-
-
-@kernel
 def middles_kernel(
     local: Floats,
     is_noise: NDArray[np.bool_],
@@ -199,7 +190,7 @@ def middles_kernel(
     """
     base, lean, ground = axes
     for point in range(len(local)):
-        tile = _tile_of(local[point, 0], local[point, 1], table)
+        tile = cell_of(local[point, 0], local[point, 1], table, 1)
         if is_noise[point] or tile < 0:
             continue
         for place in range(near.starts[tile], near.starts[tile + 1]):
@@ -275,7 +266,7 @@ def counts_kernel(
     base, lean, ground = axes
     slabs, low, high, highest = counted
     for point in range(len(local)):
-        tile = _tile_of(local[point, 0], local[point, 1], table)
+        tile = cell_of(local[point, 0], local[point, 1], table, 1)
         if is_noise[point] or tile < 0:
             continue
         for place in range(near.starts[tile], near.starts[tile + 1]):
