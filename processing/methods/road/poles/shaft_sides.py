@@ -12,22 +12,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from processing.core.arrays import Floats
+from processing.methods.road.objects.square_sections import square_share
 from processing.methods.road.poles.shafts import Shaft
 from processing.recording.drive import Drive
-
-_FEWEST = 12
-"""Points from which a section's shape is told: twice what is fitted to them, and more."""
-
-_SURE = 2.0
-"""Standard deviations taken off a section's corners: what noise alone makes."""
 
 _BEHIND = 0.2
 """Sine of the angle beyond its rim at which a point is on the side turned away: the head stands a
 metre beside the place of the vehicle that is known, and points are off by their noise."""
-
-_SQUARE = 0.1
-"""Of the radius by which corners of square posts, which go four times in and out about the axis,
-stand off a circle fitted to them; 0.14 by integration, less where edges are rounded."""
 
 
 @dataclass(frozen=True)
@@ -62,38 +53,6 @@ def seen_sides(drives: Sequence[Drive], shaft: Shaft, origin: Floats) -> SeenSid
     return SeenSides(
         square_share(beside, radii), _behind(towards_vehicle(drives, shaft, origin), beside)
     )
-
-
-def square_share(beside: Floats, radii: Floats) -> float:
-    """How far a section goes in and out four times about its axis, over what a square does.
-
-    Parameters
-    ----------
-    beside : (n, 2) float64
-        Points about the axis, m.
-    radii : (n,) float64
-        Of the circle at their heights.
-
-    Returns
-    -------
-    float
-        0 to 1: the amplitude of the radius' fourth harmonic less what noise alone makes.
-    """
-    if len(beside) < _FEWEST:
-        return 0.0
-    turn = np.arctan2(beside[:, 1], beside[:, 0])
-    off = np.hypot(beside[:, 0], beside[:, 1]) - radii
-    # A circle a little aside or too wide is none of it.
-    waves = [np.ones(len(off))]
-    for times in (1, 4):
-        waves += [np.cos(times * turn), np.sin(times * turn)]
-    design = np.column_stack(waves)
-    cofactors = np.linalg.inv(design.T @ design + 1e-6 * np.eye(len(waves)))
-    found = cofactors @ design.T @ off
-    scatter = float(((off - design @ found) ** 2).sum()) / (len(off) - len(waves))
-    unsure = float(np.sqrt(scatter * np.trace(cofactors[3:, 3:])))
-    sure = float(np.hypot(found[3], found[4])) - _SURE * unsure
-    return min(max(sure / float(np.median(radii)), 0.0) / _SQUARE, 1.0)
 
 
 def _behind(towards: Floats, beside: Floats) -> float:

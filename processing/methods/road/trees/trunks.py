@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from processing.core.arrays import Floats, Integers
-from processing.methods.road.poles.shaft_sides import square_share
+from processing.methods.road.objects.square_sections import square_share
 from processing.methods.road.trees.cone_kernels import FREE_SLAB_M
 from processing.methods.road.trees.stems import BREAST_M, EVENLY_M, HIGHEST_M, FittedStem
 
