@@ -16,6 +16,7 @@ from processing.methods.road.coarse.column_sums import (
     HIGH_SLAB,
     LOW_SLABS,
     LOWEST_M,
+    NEAR,
     NORTH,
     NORTH_NORTH,
     ON,
@@ -30,6 +31,9 @@ _MOST_GAP = 4
 
 _FEWEST = 3
 """Points of a slab that tell how far it spreads."""
+
+_HEAD_SLAB = 4
+"""From 1.8 m on hang plates of signs (道路標識設置基準), and crowns above walks."""
 
 
 class ColumnFacts(NamedTuple):
@@ -70,7 +74,11 @@ class ColumnFacts(NamedTuple):
     leaves : float
         Decimal logarithm of the points around it above for each one on it there.
     widens : float
-        How much more is around it in the upper half of what is above than in a trunk's height.
+        How much more is around it above than up to 2.6 m, decimal logarithm.
+    head_m, head_flat : float
+        Spread of what is within a metre of the axis above 1.8 m where it is greatest in plan,
+        standard deviation; and how much less it is in the other direction, 0 to 1: of plates and
+        walls nearly nothing.
     """
 
     points: float
@@ -91,6 +99,8 @@ class ColumnFacts(NamedTuple):
     crown: float
     leaves: float
     widens: float
+    head_m: float
+    head_flat: float
 
 
 def facts_of(sums: ColumnSums, column: int) -> ColumnFacts | None:
@@ -105,6 +115,7 @@ def facts_of(sums: ColumnSums, column: int) -> ColumnFacts | None:
     ring, around = slabs[:, RING], slabs[:, AROUND]
     wide, flat = _spread(slabs[:LOW_SLABS])
     above = slice(HIGH_SLAB, None)
+    head, head_flat = _head(slabs[_HEAD_SLAB:])
     return ColumnFacts(
         points=math.log10(on[: last + 1].sum()),
         per_m=math.log10(on[: last + 1].sum() / ((last - first + 1) * SLAB_M)),
@@ -124,6 +135,8 @@ def facts_of(sums: ColumnSums, column: int) -> ColumnFacts | None:
         crown=int(sums.high[column]).bit_count() / SECTORS,
         leaves=math.log10((1 + around[above].sum()) / (1 + on[above].sum())),
         widens=math.log10((1 + around[above].sum()) / (1 + around[:LOW_SLABS].sum())),
+        head_m=head,
+        head_flat=head_flat,
     )
 
 
@@ -159,6 +172,17 @@ def _thick(slabs: Floats, wide_m: float) -> float:
         return wide_m
     moments = _moments(slabs[is_free]) / (slabs[is_free, ON, None] - 1)
     return float(np.median(_deviations(moments)[0]))
+
+
+def _head(slabs: Floats) -> tuple[float, float]:
+    """Greatest standard deviation in plan of all that is near, and how much less the other is."""
+    sums = slabs[:, NEAR:].sum(axis=0)
+    if sums[0] < _FEWEST:
+        return 0.0, 0.0
+    east, north, *squares = sums[1:] / sums[0]
+    moments = np.array(squares) - (east * east, north * north, east * north)
+    wide, thin = _deviations(moments)
+    return float(wide), float(1.0 - thin / wide) if wide > 0 else 0.0
 
 
 def _moments(slabs: Floats) -> Floats:

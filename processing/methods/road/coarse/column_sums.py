@@ -55,9 +55,10 @@ _MOST_GAP = 4
 """Slabs without a point beyond which what follows is another thing."""
 
 # What is summed up of a slab: points on the axis, in the ring beside it and around it, and the
-# plan's first and second moments of those on it.
+# plan's first and second moments of those on it; then points up to the ring's rim, and theirs.
 ON, RING, AROUND, EAST, NORTH, EAST_EAST, NORTH_NORTH, EAST_NORTH = range(8)
-_SUMS = 8
+NEAR, NEAR_EAST = 8, 9
+_SUMS = 14
 
 
 class Axes(NamedTuple):
@@ -82,7 +83,7 @@ class ColumnSums:
     Attributes
     ----------
     axes : Axes
-    slabs : (k, SLABS, 8) float64
+    slabs : (k, SLABS, 14) float64
         By the names above.
     low, high : (k,) int64
         In which twelfths round the axis something stands, a bit each: beside it up to 2.6 m, and
@@ -281,26 +282,37 @@ def counts_kernel(
                 continue
             highest[column] = max(highest[column], up)
             slab = int((up - LOWEST_M) / SLAB_M)
-            if slab < SLABS and away < ON_M:
-                _add_moments(slabs[column, slab], east, north)
-            elif slab < SLABS and away > _BESIDE_M:
-                slabs[column, slab, RING] += away < _RING_M
-                slabs[column, slab, AROUND] += away < _AROUND_M
-                sector = _sector_of(east, north)
-                if slab >= HIGH_SLAB and away < _AROUND_M:
-                    high[column] |= sector
-                elif slab < HIGH_SLAB and away < _HEDGE_M:
-                    low[column] |= sector
+            if slab >= SLABS:
+                continue
+            _count(slabs[column, slab], east, north, away)
+            is_high = slab >= HIGH_SLAB
+            if _BESIDE_M < away < (_AROUND_M if is_high else _HEDGE_M):
+                bits = high if is_high else low
+                bits[column] |= _sector_of(east, north)
 
 
 @kernel
-def _add_moments(slab: Floats, east: float, north: float) -> None:
-    slab[ON] += 1
-    slab[EAST] += east
-    slab[NORTH] += north
-    slab[EAST_EAST] += east * east
-    slab[NORTH_NORTH] += north * north
-    slab[EAST_NORTH] += east * north
+def _count(slab: Floats, east: float, north: float, away: float) -> None:
+    """Add a place to the sums of a slab."""
+    if away < _RING_M:
+        slab[NEAR] += 1
+        _add_moments(slab, NEAR_EAST, east, north)
+    if away < ON_M:
+        slab[ON] += 1
+        _add_moments(slab, EAST, east, north)
+    elif away > _BESIDE_M:
+        slab[RING] += away < _RING_M
+        slab[AROUND] += away < _AROUND_M
+
+
+@kernel
+def _add_moments(slab: Floats, first: int, east: float, north: float) -> None:
+    """Add a place to the sums that begin at a number."""
+    slab[first] += east
+    slab[first + 1] += north
+    slab[first + 2] += east * east
+    slab[first + 3] += north * north
+    slab[first + 4] += east * north
 
 
 @kernel
