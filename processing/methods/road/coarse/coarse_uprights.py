@@ -38,6 +38,7 @@ from resources import path_of
 
 MODELS = "models/uprights"
 TREE, POLE = "tree", "pole"
+_KINDS = (TREE, POLE)
 
 _LEAST_CHANCE = 0.05
 """What is less likely either is left out."""
@@ -136,9 +137,6 @@ def chances_of(rows: NDArray[np.float32], *, is_scan: bool, monitor: Monitor) ->
     odds = [log_odds(_model(model_name(kind, is_scan=is_scan)), rows, monitor) for kind in _KINDS]
     chances: Floats = 1 / (1 + np.exp(-np.column_stack(odds)))
     return chances
-
-
-_KINDS = (TREE, POLE)
 
 
 def model_name(kind: str, *, is_scan: bool) -> str:
