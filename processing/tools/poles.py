@@ -132,7 +132,8 @@ def _of_sparse_drives(
     likely = [
         one
         for one in found
-        if one.pole >= parameters.least_confidence and one.top_m >= parameters.lowest_m
+        if one.pole >= max(parameters.least_confidence, one.tree)
+        and one.top_m >= parameters.lowest_m
     ]
     candidates = tuple(_coarse_candidate(one) for one in likely)
     return CandidateResult(candidates, sparse_note(len(likely), len(found)))

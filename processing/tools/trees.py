@@ -128,7 +128,9 @@ def _of_sparse_drives(
     drives: tuple[Drive, ...], parameters: TreeParameters, monitor: Monitor
 ) -> CandidateResult:
     found = coarse_uprights(drives, monitor)
-    likely = [one for one in found if one.tree >= parameters.least_confidence]
+    likely = [
+        one for one in found if one.tree >= parameters.least_confidence and one.tree > one.pole
+    ]
     candidates = tuple(_coarse_candidate(one) for one in likely)
     return CandidateResult(candidates, sparse_note(len(likely), len(found)))
 

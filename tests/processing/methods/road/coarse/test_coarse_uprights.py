@@ -121,6 +121,16 @@ def test_tools_say_what_sparse_things_lack(sparse: Drive) -> None:
     assert "点密度" in trees.note.ja
 
 
+def test_nothing_is_a_tree_and_a_pole_at_once(sparse: Drive) -> None:
+    every = PoleParameters(lowest_m=0.3, least_confidence=0.0)
+    poles = find_poles((sparse,), every, SilentMonitor()).candidates
+    trees = find_trees((sparse,), TreeParameters(least_confidence=0.0), SilentMonitor()).candidates
+    assert poles
+    assert trees
+    for pole in poles:
+        assert all(np.hypot(*(pole.xyz - tree.xyz)[0, :2]) > 0.9 for tree in trees)
+
+
 def test_a_cancel_is_felt_between_columns(sparse: Drive) -> None:
     class EndsEarly(SilentMonitor):
         asked = 0
