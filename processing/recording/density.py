@@ -13,7 +13,7 @@ import numpy as np
 from processing.core.arrays import Floats
 from processing.recording.drive import Drive
 
-PLACE_M = 0.4
+_PLACE_M = 0.4
 """Side of the cubes that points are counted in: as wide as a trunk."""
 
 _LOOKED_AT = 500_000
@@ -48,10 +48,10 @@ def is_single_scan(drive: Drive) -> bool:
 
     A handful of points is none: of it nothing is known.
     """
-    xyz = middle_points(drive)
-    if len(xyz) < _ENOUGH:
+    if _density_of(drive) > _FEW:
         return False
-    return points_a_place(xyz) <= _FEW and spread_of(xyz) <= _GATHERED
+    xyz = middle_points(drive)
+    return len(xyz) >= _ENOUGH and spread_of(xyz) <= _GATHERED
 
 
 def are_sparse(drives: Sequence[Drive]) -> bool:
@@ -59,14 +59,11 @@ def are_sparse(drives: Sequence[Drive]) -> bool:
 
     Not of drives without points.
     """
-    return bool(drives) and all(_is_sparse(drive) for drive in drives)
+    return bool(drives) and all(_density_of(drive) <= _SPARSE for drive in drives)
 
 
-def _is_sparse(drive: Drive) -> bool:
-    def count() -> float:
-        return points_a_place(middle_points(drive))
-
-    return drive.kept(_KEPT, count) <= _SPARSE
+def _density_of(drive: Drive) -> float:
+    return drive.kept(_KEPT, lambda: points_a_place(middle_points(drive)))
 
 
 def middle_points(drive: Drive) -> Floats:
@@ -90,7 +87,7 @@ def points_a_place(xyz: Floats) -> float:
     """
     if not len(xyz):
         return float("inf")
-    cubes = ((xyz - xyz.min(axis=0)) / PLACE_M).astype(np.int64) & _LAST_CUBE
+    cubes = ((xyz - xyz.min(axis=0)) / _PLACE_M).astype(np.int64) & _LAST_CUBE
     codes = (cubes[:, 0] << 2 * _BITS) | (cubes[:, 1] << _BITS) | cubes[:, 2]
     return float(np.median(np.unique(codes, return_counts=True)[1]))
 

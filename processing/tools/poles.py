@@ -6,8 +6,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from processing.core.monitor import Monitor
 from processing.core.parameters import least_confidence, length
 from processing.core.text import Text
@@ -112,14 +110,11 @@ def _candidate(pole: StreetPole) -> Candidate:
     is_mirror = pole.type == "mirror_pole"
     if is_mirror and math.isfinite(carried.mirror_deg):
         attributes["direction_deg"] = round(carried.mirror_deg) % 360
-    return Candidate(
+    return Candidate.at_foot(
         "mirror" if is_mirror else "pole",
-        "point",
-        pole.foot[None],
-        np.array([-1], np.int64),  # the foot lies on no measured point
+        pole.foot,
         pole.confidence,
         attributes,
-        pole.drives[:1],
         own_points=pole.points,
         own_drives=pole.drives,
     )
@@ -145,14 +140,11 @@ def _coarse_candidate(upright: CoarseUpright) -> Candidate:
         "height_m": round(upright.top_m, 2),
         "lean_deg": round(upright.lean_deg, 1),
     }
-    return Candidate(
+    return Candidate.at_foot(
         "pole",
-        "point",
-        upright.foot[None],
-        np.array([-1], np.int64),  # the foot lies on no measured point
+        upright.foot,
         upright.pole,
         attributes,
-        upright.drives[:1],
         own_points=upright.points,
         own_drives=upright.drives,
     )

@@ -205,6 +205,30 @@ class Candidate:
     own_points: NDArray[np.int64] | None = None
     own_drives: NDArray[np.int64] | None = None
 
+    @classmethod
+    def at_foot(
+        cls,
+        kind: str,
+        foot: NDArray[np.float64],
+        confidence: float,
+        attributes: Mapping[str, CandidateValue],
+        *,
+        own_points: NDArray[np.int64],
+        own_drives: NDArray[np.int64],
+    ) -> Candidate:
+        """Something upright as a point at its foot, (3,), which lies on no measured point."""
+        return cls(
+            kind,
+            "point",
+            foot[None],
+            np.array([-1], np.int64),
+            confidence,
+            attributes,
+            own_drives[:1],
+            own_points=own_points,
+            own_drives=own_drives,
+        )
+
 
 @dataclass(frozen=True)
 class CandidateResult:

@@ -6,8 +6,6 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from processing.core.monitor import Monitor
 from processing.core.parameters import least_confidence, length
 from processing.core.text import Text
@@ -64,8 +62,7 @@ def find_trees(
     """Street trees of a survey: one result for all heads and passes."""
     if are_sparse(drives):
         return _of_sparse_drives(drives, parameters, monitor)
-    settings = TreeSettings(parameters.thickest_m)
-    found = street_trees(drives, settings, monitor)
+    found = street_trees(drives, TreeSettings(parameters.thickest_m), monitor)
     trees = [one for one in found if one.confidence >= parameters.least_confidence]
     return CandidateResult(tuple(_candidate(one) for one in trees), _note(drives, found, trees))
 
@@ -111,14 +108,11 @@ def _candidate(tree: StreetTree) -> Candidate:
         "walk_clearance_m": tree.clearances.walk_m,
     }
     attributes |= {name: round(high, 2) for name, high in heights.items() if math.isfinite(high)}
-    return Candidate(
+    return Candidate.at_foot(
         "street_tree",
-        "point",
-        tree.foot[None],
-        np.array([-1], np.int64),  # the foot lies on no measured point
+        tree.foot,
         tree.confidence,
         attributes,
-        tree.drives[:1],
         own_points=tree.points,
         own_drives=tree.drives,
     )
@@ -140,14 +134,11 @@ def _coarse_candidate(upright: CoarseUpright) -> Candidate:
         "height_m": round(upright.highest_m, 2),
         "lean_deg": round(upright.lean_deg, 1),
     }
-    return Candidate(
+    return Candidate.at_foot(
         "street_tree",
-        "point",
-        upright.foot[None],
-        np.array([-1], np.int64),  # the foot lies on no measured point
+        upright.foot,
         upright.tree,
         attributes,
-        upright.drives[:1],
         own_points=upright.points,
         own_drives=upright.drives,
     )

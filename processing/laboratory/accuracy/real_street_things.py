@@ -199,7 +199,7 @@ def found_things(street: SearchedStreet, name: str) -> ThingScore:
     is_own = np.isin(street.label, street.labels.codes[name])
     things = _things(street.xyz[is_own], 0.0 if name == "signs" else _LEAST_HIGH_M)
     feet = np.array([one.xyz[0, :2] for one in street.candidates[name]]).reshape(-1, 2)
-    middles = np.array([_foot_of(one) for one in things]).reshape(-1, 2)
+    middles = np.array([foot_of(one) for one in things]).reshape(-1, 2)
     found, used = np.zeros(len(things), np.bool_), np.zeros(len(feet), np.bool_)
     of_foot, of_thing = pairs_within(feet, middles, REACH_M)
     found[of_thing] = used[of_foot] = True
@@ -233,7 +233,8 @@ def _things(xyz: Floats, least_high_m: float) -> list[Floats]:
     return [one for one in parts if len(one) >= _FEWEST and np.ptp(one[:, 2]) >= least_high_m]
 
 
-def _foot_of(thing: Floats) -> Floats:
+def foot_of(thing: Floats) -> Floats:
+    """(2,) where a thing of (n, 3) points stands: the middle of its lowest two metres."""
     low = thing[thing[:, 2] <= thing[:, 2].min() + 2.0]
     return np.asarray(np.median(low[:, :2], axis=0))
 
@@ -264,7 +265,8 @@ def _steps_along(wire: Candidate) -> Floats:
 def _cells(streets: Sequence[ThingScore]) -> list[str]:
     points = np.concatenate([one.points for one in streets])
     found = np.concatenate([one.found for one in streets])
-    wrong, in_leaves = (sum(getattr(one, name) for one in streets) for name in _FALSE)
+    wrong = sum(one.wrong for one in streets)
+    in_leaves = sum(one.in_leaves for one in streets)
     hits = int(found.sum())
     counts = BinaryConfusionMatrix(hits, wrong, found.size - hits, 0)
     f = counts.f_measure if hits else 0.0
@@ -287,8 +289,6 @@ def _wire_cells(streets: Sequence[WireScore]) -> list[str]:
         f"{wrong / 10:.0f} m",
     ]
 
-
-_FALSE = ("wrong", "in_leaves")
 
 _HEAD = ["data set", "things", "found, false, missed", "F", "of the false, in foliage"]
 _HEAD += [f"of {low} to {high - 1} points" for low, high in pairwise(_BANDS)]

@@ -45,10 +45,7 @@ from processing.laboratory.class_training.two_forests import (
 )
 from processing.laboratory.progress_lines import say
 from processing.laboratory.seed_ranges import seeds_of
-from processing.laboratory.simulate.assembly.street import Street
-from processing.laboratory.simulate.scene.chance import chance
-from processing.laboratory.simulate.spinning_head import spinning_scans
-from processing.laboratory.simulate.street.styles import style_of
+from processing.laboratory.simulate.spinning_head import SCANS, scanned_streets
 from processing.methods.classes.aerial_cells import aerial_cells
 from processing.methods.classes.class_models import SCAN_AGAIN, SCAN_ALONE, SCAN_CELL_M, scan_models
 from processing.methods.classes.drive_classes import shares_of_cells
@@ -66,10 +63,6 @@ _PLAN = ForestPlan(
 
 _CELLS = 250
 """Of each class and cloud that are learnt from."""
-
-_SCANS, _STREET_M, _AVENUES = 4, 160.0, 0.35
-_STYLES = ("urban",) * 7 + ("rural",) * 2 + ("highway",)
-"""Scans of a street, its length, and how often a street is an avenue or of a style."""
 
 _PLACES = ((1.0, 2.5), (2.5, 6.0))
 """Of a recording that is thinned: points in half of its places, at most, of its two variants."""
@@ -115,18 +108,15 @@ def _make(options: argparse.Namespace) -> None:
         itertools.chain.from_iterable(_thinned(scene, rng) for scene in scenes),
     )
     for number, cells in enumerate(clouds):
-        folds[number // _SCANS % FOLDS].append(SampledCells.of(cells, _CELLS, rng))
+        folds[number // SCANS % FOLDS].append(SampledCells.of(cells, _CELLS, rng))
     make_two_forests(folds, _PLAN)
     scan_models.cache_clear()
 
 
 def _spinning(seeds: Sequence[int]) -> Iterator[LabelledCells]:
     """Single scans of streets of any style."""
-    for seed in seeds:
-        random = chance(seed, "spin street")
-        style = style_of(_STYLES[int(random.integers(len(_STYLES)))])
-        street = Street(seed, style, _STREET_M, is_avenue=bool(random.random() < _AVENUES))
-        for scan in spinning_scans(street, _SCANS):
+    for _, scans in scanned_streets(seeds):
+        for scan in scans:
             yield labelled_scan_cells(scan.xyz, scan.labels)
 
 

@@ -16,22 +16,19 @@ from numpy.typing import NDArray
 from processing.core.arrays import Floats
 from processing.core.monitor import SilentMonitor
 from processing.laboratory.accuracy.road.road_scenes import cloud_of
-from processing.laboratory.simulate.assembly.street import Street
 from processing.laboratory.simulate.requests import StreetRequest
 from processing.laboratory.simulate.scanning.any_mounting import any_sensor, write_sensor
 from processing.laboratory.simulate.scanning.sensors import Sensor
 from processing.laboratory.simulate.scene.chance import chance
-from processing.laboratory.simulate.spinning_head import spinning_scans
-from processing.laboratory.simulate.street.styles import style_of
+from processing.laboratory.simulate.spinning_head import scanned_streets
 from processing.laboratory.simulate.streets import simulate_street
 from processing.project.importing.importing import ImportRequest, import_drives
 from processing.recording.drive import Drive
 
-_PROFILE_M, _SCAN_STREET_M, _SCANS = 100.0, 160.0, 4
-"""Length of a street that is driven along, of one on which single scans are made, and how many."""
+_PROFILE_M = 100.0
+"""Length of a street that is driven along."""
 
 _PROFILE_STYLES = ("urban", "urban", "rural", "urban", "highway", "rural")
-_SCAN_STYLES = ("urban",) * 7 + ("rural",) * 2 + ("highway",)
 _AVENUES = 0.35
 
 _PULSES, _TURNS_PER_S = (250.0, 1500.0), (15.0, 80.0)
@@ -134,16 +131,11 @@ def _log_uniform(random: Generator, bounds: tuple[float, float]) -> float:
 
 def scan_recordings(seeds: Sequence[int]) -> Iterator[CoarseRecording]:
     """Single scans of spinning heads on streets of seeds."""
-    for seed in seeds:
-        random = chance(seed, "spin street")
-        style = style_of(_SCAN_STYLES[int(random.integers(len(_SCAN_STYLES)))])
-        is_avenue = bool(random.random() < _AVENUES)
-        street = Street(seed, style, _SCAN_STREET_M, is_avenue=is_avenue)
-        scans = spinning_scans(street, _SCANS)
-        rows = street.within(-_SCAN_STREET_M, 2 * _SCAN_STREET_M)
+    for street, scans in scanned_streets(seeds):
+        rows = street.within(-street.length_m, 2 * street.length_m)
         things = [one for row in rows for one in street.section(row).things]
         kinds = {one.instance: one.kind for one in things}
         for number, scan in enumerate(scans):
-            name = f"{style.id} scan {seed}.{number}"
+            name = f"{street.style.id} scan {street.seed}.{number}"
             xyz = scan.xyz + _ORIGIN_M
             yield CoarseRecording(name, xyz, scan.labels, scan.instance, kinds)

@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 from processing.core.arrays import Floats, Integers
 from processing.core.monitor import SilentMonitor
 from processing.core.output_streams import write_every_character
+from processing.laboratory.accuracy.real_street_things import foot_of
 from processing.laboratory.noise_training.examples import Examples
 from processing.laboratory.noise_training.fitting import TreesSize, fit_trees
 from processing.laboratory.progress_lines import say
@@ -43,11 +44,9 @@ from processing.methods.road.coarse.coarse_uprights import (
     TREE,
     known_columns,
     model_name,
+    summed_columns,
 )
 from processing.methods.road.coarse.column_facts import ColumnFacts
-from processing.methods.road.coarse.column_sums import sum_columns
-from processing.methods.road.objects.columns import distinct_columns
-from processing.methods.road.objects.survey import survey_columns
 from processing.recording.density import are_sparse
 from resources import path_of
 
@@ -61,9 +60,9 @@ _POLE_LIKE = 66
 _FEWEST, _LEAST_HIGH_M = 20, 1.0
 """Points of a trunk or pole that is asked for, and how high they stand."""
 
-_LOW_M, _ON_M, _NEAR_M = 2.0, 0.5, 0.8
-"""From the lowest point: what tells where a thing stands; how near to it a column is its own, the
-one with the most points; and how near others count neither way."""
+_ON_M, _NEAR_M = 0.5, 0.8
+"""How near to a thing's foot a column is its own, the one with the most points; and how near others
+count neither way."""
 
 _NEARER = 2.0
 """Powers of ten in points that a metre nearer outweighs."""
@@ -113,11 +112,9 @@ def _judged(recording: CoarseRecording) -> list[tuple[ColumnFacts, int]]:
         drive = recording.drive(Path(position))
         if not are_sparse([drive]):
             return []
-        below, columns = survey_columns([drive], SilentMonitor())
-        columns = distinct_columns(columns)
-        sums = sum_columns([drive], below.plan, columns, SilentMonitor())
+        plan, _, sums = summed_columns([drive], SilentMonitor())
     told = known_columns(sums, SilentMonitor())
-    places = sums.axes.base[[number for number, _ in told]] + below.plan.origin[:2]
+    places = sums.axes.base[[number for number, _ in told]] + plan.origin[:2]
     codes = label_columns(places, [one.points for _, one in told], recording)
     return [
         (facts, int(code))
@@ -141,8 +138,7 @@ def label_columns(places: Floats, points: Sequence[float], recording: CoarseReco
     own: list[tuple[Floats, int]] = []
     for instance in np.unique(recording.instance[is_upright]).tolist():
         thing = recording.xyz[is_upright & (recording.instance == instance)]
-        low = thing[thing[:, 2] <= thing[:, 2].min() + _LOW_M]
-        middle = np.median(low[:, :2], axis=0)
+        middle = foot_of(thing)
         code = _CODES.get(recording.kinds.get(instance, ""), _OTHER)
         if len(thing) < _FEWEST or np.ptp(thing[:, 2]) < _LEAST_HIGH_M:
             code = _OTHER

@@ -6,6 +6,7 @@ highest beam is never seen: of a façade ten metres away some four metres.
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -30,6 +31,7 @@ from processing.laboratory.simulate.scanning.sensors import Sensor
 from processing.laboratory.simulate.scanning.simulated_passes import Driving, pass_of
 from processing.laboratory.simulate.scene.chance import chance
 from processing.laboratory.simulate.scene.mesh import Floats
+from processing.laboratory.simulate.street.styles import style_of
 
 _BEAMS = (16, 32, 40, 64, 64, 128)
 _LOWEST_DEG, _HIGHEST_DEG = (-30.0, -12.0), (1.0, 18.0)
@@ -43,6 +45,11 @@ _LOST = (0.0, 0.15)
 """Share of the pulses of which nothing is delivered."""
 
 _SPEED_M_S = 8.0
+
+SCANS = 4
+_STREET_M, _AVENUES = 160.0, 0.35
+_STYLES = ("urban",) * 7 + ("rural",) * 2 + ("highway",)
+"""Scans of a street, its length, and how often a street is an avenue or of a style."""
 
 
 @dataclass(frozen=True)
@@ -120,6 +127,15 @@ def any_spinning_head(random: Generator) -> SpinningHead:
         float(random.uniform(*_LOST)),
         sensor,
     )
+
+
+def scanned_streets(seeds: Sequence[int]) -> Iterator[tuple[Street, list[SpinningScan]]]:
+    """Streets of seeds of any style, each with single scans of it."""
+    for seed in seeds:
+        random = chance(seed, "spin street")
+        style = style_of(_STYLES[int(random.integers(len(_STYLES)))])
+        street = Street(seed, style, _STREET_M, is_avenue=bool(random.random() < _AVENUES))
+        yield street, spinning_scans(street, SCANS)
 
 
 def spinning_scans(street: Street, count: int) -> list[SpinningScan]:

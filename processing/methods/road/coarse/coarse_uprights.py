@@ -94,9 +94,7 @@ def coarse_uprights(drives: Sequence[Drive], monitor: Monitor) -> tuple[CoarseUp
     drives : sequence of Drive
         One or more; sparse ones, for of others too little is asked.
     """
-    below, columns = survey_columns(drives, PartMonitor(monitor, 0.0, 0.3))
-    columns = distinct_columns(columns)
-    sums = sum_columns(drives, below.plan, columns, PartMonitor(monitor, 0.3, 0.8))
+    plan, columns, sums = summed_columns(drives, PartMonitor(monitor, 0.0, 0.8))
     told = known_columns(sums, monitor)
     if not told:
         return ()
@@ -106,7 +104,17 @@ def coarse_uprights(drives: Sequence[Drive], monitor: Monitor) -> tuple[CoarseUp
     kept = _likeliest(sums.axes.base[numbers], chances)
     found = [(int(numbers[one]), told[one][1], chances[one]) for one in kept]
     part = PartMonitor(monitor, 0.8, 1.0)
-    return tuple(_standing(drives, below.plan, (columns, sums), found, part))
+    return tuple(_standing(drives, plan, (columns, sums), found, part))
+
+
+def summed_columns(
+    drives: Sequence[Drive], monitor: Monitor
+) -> tuple[SparsePlan, FoundColumns, ColumnSums]:
+    """The columns of drives, one of each thing, and what stands about them."""
+    below, columns = survey_columns(drives, PartMonitor(monitor, 0.0, 0.4))
+    columns = distinct_columns(columns)
+    sums = sum_columns(drives, below.plan, columns, PartMonitor(monitor, 0.4, 1.0))
+    return below.plan, columns, sums
 
 
 def known_columns(sums: ColumnSums, monitor: Monitor) -> list[tuple[int, ColumnFacts]]:

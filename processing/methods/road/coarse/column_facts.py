@@ -16,6 +16,7 @@ from processing.methods.road.coarse.column_sums import (
     HIGH_SLAB,
     LOW_SLABS,
     LOWEST_M,
+    MOST_GAP,
     NEAR,
     NORTH,
     NORTH_NORTH,
@@ -25,9 +26,6 @@ from processing.methods.road.coarse.column_sums import (
     SLAB_M,
     ColumnSums,
 )
-
-_MOST_GAP = 4
-"""Slabs without a point on the axis beyond which another thing begins."""
 
 _FEWEST = 3
 """Points of a slab that tell how far it spreads."""
@@ -147,7 +145,7 @@ def _last_slab(on: Floats) -> int:
         gap = 0 if points else gap + 1
         if points:
             last = slab
-        elif gap > _MOST_GAP and last >= 0:
+        elif gap > MOST_GAP and last >= 0:
             break
     return last
 
@@ -161,8 +159,7 @@ def _free_share(on: Floats, ring: Floats) -> float:
 def _spread(slabs: Floats) -> tuple[float, float]:
     """Greatest standard deviation across the axis, and how much less it is across that."""
     many = max(slabs[:, ON].sum() - np.count_nonzero(slabs[:, ON]), 1.0)
-    wide, thin = _deviations(_moments(slabs).sum(axis=0) / many)
-    return float(wide), float(1.0 - thin / wide) if wide > 0 else 0.0
+    return _wide_and_flat(_moments(slabs).sum(axis=0) / many)
 
 
 def _thick(slabs: Floats, wide_m: float) -> float:
@@ -181,6 +178,10 @@ def _head(slabs: Floats) -> tuple[float, float]:
         return 0.0, 0.0
     east, north, *squares = sums[1:] / sums[0]
     moments = np.array(squares) - (east * east, north * north, east * north)
+    return _wide_and_flat(moments)
+
+
+def _wide_and_flat(moments: Floats) -> tuple[float, float]:
     wide, thin = _deviations(moments)
     return float(wide), float(1.0 - thin / wide) if wide > 0 else 0.0
 

@@ -51,7 +51,7 @@ an axis, usual axes lean by 0.05, and few points don't say otherwise."""
 _MOST_COUNT = 4.0
 """More points of a slab place its middle no better: they are shaken together."""
 
-_MOST_GAP = 4
+MOST_GAP = 4
 """Slabs without a point beyond which what follows is another thing."""
 
 # What is summed up of a slab: points on the axis, in the ring beside it and around it, and the
@@ -189,23 +189,32 @@ def middles_kernel(
     axes : tuple
         Base, lean and ground of each.
     """
-    base, lean, ground = axes
     for point in range(len(local)):
         tile = cell_of(local[point, 0], local[point, 1], table, 1)
         if is_noise[point] or tile < 0:
             continue
         for place in range(near.starts[tile], near.starts[tile + 1]):
             column = near.columns[place]
-            up = local[point, 2] - ground[column]
+            east, north, up = _about_axis(local[point], axes, column)
             slab = int((up - LOWEST_M) / SLAB_M)
             if up < LOWEST_M or slab >= SLABS:
                 continue
-            east = local[point, 0] - base[column, 0] - lean[column, 0] * up
-            north = local[point, 1] - base[column, 1] - lean[column, 1] * up
             if east * east + north * north < within_m * within_m:
                 sums[column, slab, ON] += 1
                 sums[column, slab, EAST] += east
                 sums[column, slab, NORTH] += north
+
+
+@kernel
+def _about_axis(
+    place: Floats, axes: tuple[Floats, Floats, Floats], column: int
+) -> tuple[float, float, float]:
+    """East and north of an axis, and up from its ground."""
+    base, lean, ground = axes
+    up = place[2] - ground[column]
+    east = place[0] - base[column, 0] - lean[column, 0] * up
+    north = place[1] - base[column, 1] - lean[column, 1] * up
+    return east, north, up
 
 
 @kernel
@@ -223,7 +232,7 @@ def follow_kernel(sums: Floats, slabs: int, axes: Axes) -> None:
             points = sums[column, slab, ON]
             if points == 0:
                 gap += 1
-                if gap > _MOST_GAP and weight > 0:
+                if gap > MOST_GAP and weight > 0:
                     break
                 continue
             gap = 0
@@ -264,7 +273,6 @@ def counts_kernel(
     counted : tuple
         Slabs, low, high and highest of `ColumnSums`.
     """
-    base, lean, ground = axes
     slabs, low, high, highest = counted
     for point in range(len(local)):
         tile = cell_of(local[point, 0], local[point, 1], table, 1)
@@ -272,11 +280,9 @@ def counts_kernel(
             continue
         for place in range(near.starts[tile], near.starts[tile + 1]):
             column = near.columns[place]
-            up = local[point, 2] - ground[column]
+            east, north, up = _about_axis(local[point], axes, column)
             if up < LOWEST_M:
                 continue
-            east = local[point, 0] - base[column, 0] - lean[column, 0] * up
-            north = local[point, 1] - base[column, 1] - lean[column, 1] * up
             away = np.sqrt(east * east + north * north)
             if away > REACH_M:
                 continue
