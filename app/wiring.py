@@ -21,7 +21,7 @@ from app.window.window_parts import WindowParts, take_down
 from processing.core.errors import Unsuitable
 from processing.core.text import Text
 from processing.map.change import Change
-from processing.tools.registry import POINT_MAKERS, extractors, tools_of_drives
+from processing.tools.listed.registry import POINT_MAKERS, extractors, tools_of_drives
 from processing.tools.running.runner import check_needs
 from widgets.parts.job_view import JobView
 from widgets.parts.literal_text import literal

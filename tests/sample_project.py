@@ -10,7 +10,7 @@ from processing.project.importing.dropped_files import request_of_files
 from processing.project.importing.importing import import_drives
 from processing.project.project import Project
 from processing.tools.features import FEATURES
-from processing.tools.registry import point_tools
+from processing.tools.listed.registry import point_tools
 from processing.tools.running.runner import RunRequest, run
 from processing.tools.tool import FinishedColumns
 from resources import path_of

@@ -23,7 +23,7 @@ from processing.recording.columns.columns import column_path
 from processing.recording.columns.error_map import ERROR_MAP
 from processing.recording.drive import Drive
 from processing.scoring.points.confusion_matrix import BinaryConfusionMatrix
-from processing.tools.registry import asked_classes
+from processing.tools.listed.registry import asked_classes
 from processing.tools.tool import FinishedColumns
 
 _JUDGING = Text("Evaluation", "評価")

@@ -12,7 +12,7 @@ from processing.project.evaluation.mapped_map import mapped_of
 from processing.project.evaluation.run_evaluation import RunEvaluation, evaluate_runs, within_drives
 from processing.scoring.features.file_scores import FeatureScorer, FileScore
 from processing.scoring.features.mapped_features import MappedFile
-from processing.tools.registry import scorers
+from processing.tools.listed.registry import scorers
 
 
 class Evaluation:

@@ -13,7 +13,7 @@ from app.settings.language import system_language
 from processing.core.errors import OutOfRange
 from processing.core.text import Text
 from processing.operations.extraction import ExtractOperation, Extractor, extract
-from processing.tools.registry import extractors
+from processing.tools.listed.registry import extractors
 
 
 def command(arguments: argparse.Namespace) -> int:

@@ -11,7 +11,7 @@ from app.settings.language import system_language
 from processing.operations.new_points import NewPointsOperation, make_points
 from processing.operations.registration.register import RegisterOperation, register
 from processing.operations.run import RunOperation, run_operation
-from processing.tools.registry import COMPARISONS, POINT_MAKERS, REGISTRATIONS
+from processing.tools.listed.registry import COMPARISONS, POINT_MAKERS, REGISTRATIONS
 
 
 def command(arguments: argparse.Namespace) -> int:

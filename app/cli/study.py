@@ -31,7 +31,7 @@ from processing.project.evaluation.truth_of_file import coded_truth, truth_of_fi
 from processing.project.evaluation.truth_store import TRUTH
 from processing.recording.columns.ordering import read_chunk
 from processing.recording.drive import Drive
-from processing.tools.registry import asked_classes
+from processing.tools.listed.registry import asked_classes
 from processing.tools.running.runner import check_needs, tool_of
 
 _READING = 0.1

@@ -8,7 +8,7 @@ from app.cli.output import print_json, print_lines
 from app.cli.parameter_lines import parameter_lines
 from app.settings.language import system_language
 from processing.core.parameters import Parameter, parameters_of
-from processing.tools.registry import every_tool
+from processing.tools.listed.registry import every_tool
 from processing.tools.running.runner import any_tool
 from processing.tools.tool import Comparison, NewPoints, NewPointsTogether, SurveyCorrection, Tool
 

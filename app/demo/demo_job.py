@@ -27,7 +27,7 @@ from processing.project.project import is_project
 from processing.recording.drive import Drive
 from processing.recording.kinds import ImageKind
 from processing.tools.features import FEATURES
-from processing.tools.registry import point_tools
+from processing.tools.listed.registry import point_tools
 from processing.tools.waveform_classify import WAVEFORM_CLASSIFY
 from resources import path_of
 from widgets.shared.cursor import PickedPosition

@@ -22,7 +22,7 @@ from processing.project.additions import Additions, home_of
 from processing.project.importing.import_request import ImportRequest
 from processing.project.project import Project
 from processing.recording.drive import Drive
-from processing.tools.registry import POINT_MAKERS
+from processing.tools.listed.registry import POINT_MAKERS
 from processing.tools.running.runner import tool_of
 
 _TOOL_AND_DRIVE = Text("{tool}: {name}", "{tool}: {name}")

@@ -12,7 +12,7 @@ from processing.core.parameters import Parameter, parameters_of
 from processing.core.safe_write import write_safely
 from processing.core.text import Language, Text
 from processing.map.catalogue_file import read_catalogue
-from processing.tools.registry import every_tool
+from processing.tools.listed.registry import every_tool
 from processing.tools.tool import Comparison, NewPoints, NewPointsTogether, Tool
 from resources import path_of
 

@@ -10,7 +10,7 @@ from app.window.action import Action, grouped
 from app.window.window_parts import WindowParts
 from processing.core.text import Text
 from processing.operations.learn import LEARN
-from processing.tools.registry import TOOLS, extractors, tools_of_drives
+from processing.tools.listed.registry import TOOLS, extractors, tools_of_drives
 from processing.tools.tool import ToolButton
 from processing.tools.volume import VOLUME
 

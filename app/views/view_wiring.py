@@ -18,7 +18,7 @@ from processing.formats.format import Content
 from processing.formats.registry import FORMATS
 from processing.recording.camera_images.calibration import CameraOffset
 from processing.section.cut import Cut
-from processing.tools.registry import TOOLS
+from processing.tools.listed.registry import TOOLS
 from widgets.shared.view_settings import PointStyle
 
 _KEPT = Text("The camera offsets are kept.", "カメラの補正値を保存しました。")

@@ -24,7 +24,7 @@ from processing.operations.inputs import (
     opened_project,
 )
 from processing.operations.run import RunOperation, RunOutcome, run_in_project, run_to_file
-from processing.tools.registry import extractors
+from processing.tools.listed.registry import extractors
 from processing.tools.running.runner import tool_of
 
 _ENDING = ".geojson"

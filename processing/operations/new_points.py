@@ -26,7 +26,7 @@ from processing.recording.drive import Drive
 from processing.recording.recorded_together import recorded_together
 from processing.recording.vehicle_path.clock import ClockKind, kind_of
 from processing.recording.waveform_packets.descriptors import WaveformDescriptor
-from processing.tools.registry import POINT_MAKERS
+from processing.tools.listed.registry import POINT_MAKERS
 from processing.tools.running.runner import check_needs
 from processing.tools.tool import MadePoints, NewPoints, NewPointsTogether, Tool
 

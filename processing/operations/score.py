@@ -29,7 +29,7 @@ from processing.scoring.points.pairs_by_position import pairs_by_position
 from processing.scoring.points.point_scores import PointScore, PointScorer
 from processing.scoring.scorers import Scorer
 from processing.scoring.waveforms.flight_scores import EchoScorer, WaveScorer, rows_at
-from processing.tools.registry import scorer_of
+from processing.tools.listed.registry import scorer_of
 
 _ORDER, _POSITION = "order", "place"
 

@@ -38,7 +38,7 @@ from processing.operations.project_export import ExportOperation, WrittenFiles, 
 from processing.operations.run import RunOperation, RunOutcome, run_operation
 from processing.operations.written_values import json_text
 from processing.project.importing.import_request import ImportRequest
-from processing.tools.registry import every_tool
+from processing.tools.listed.registry import every_tool
 
 Place = str | Path
 _QUIET = SilentMonitor()

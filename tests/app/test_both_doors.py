@@ -40,7 +40,7 @@ from processing.project.volumes.epochs import epochs_of
 from processing.project.volumes.volume import KeptVolume, VolumeRequest
 from processing.project.volumes.volume_store import VolumeStore
 from processing.recording.drive import Drive
-from processing.tools.registry import TOOLS
+from processing.tools.listed.registry import TOOLS
 from resources import path_of
 from tests.journeys.earthwork_user import two_epochs
 

@@ -17,8 +17,8 @@ from app.window.window_parts import WindowParts
 from processing.core.monitor import Monitor
 from processing.project.importing.importing import ImportRequest
 from processing.recording.drive import Drive
+from processing.tools.listed.registry import TOOLS, extractors
 from processing.tools.normals import NormalsParameters
-from processing.tools.registry import TOOLS, extractors
 from processing.tools.tool import Candidate, CandidateResult, Finder, Needs
 from tests.app.conftest import shown_window
 from tests.builders import simulated_drive, write_laz, write_trajectory_csv

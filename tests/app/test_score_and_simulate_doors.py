@@ -34,7 +34,7 @@ from processing.project.importing.import_request import ImportRequest
 from processing.project.project import Project
 from processing.project.store.runs import Run
 from processing.scoring.features.file_scores import FileScore
-from processing.tools.registry import TOOLS
+from processing.tools.listed.registry import TOOLS
 from tests.app.score_answers import scored
 from tests.builders import write_laz, write_trajectory_csv
 from tests.noisy_street import noisy_street

@@ -32,7 +32,7 @@ from processing.recording.drive import Drive
 from processing.recording.kinds import ImageKind
 from processing.section.cut import Cut
 from processing.section.points_in_cut import points_in_cut
-from processing.tools.registry import TOOLS
+from processing.tools.listed.registry import TOOLS
 from processing.tools.running.runner import RunRequest, columns_of, run
 
 SILENT = SilentMonitor()

@@ -22,7 +22,7 @@ from processing.formats.format import Format
 from processing.formats.registry import FORMATS
 from processing.map.catalogue_file import read_catalogue
 from processing.recording.columns.point_features import POINT_FEATURES
-from processing.tools.registry import TOOLS
+from processing.tools.listed.registry import TOOLS
 from resources import path_of
 from tests.house_rules.manual_pages import LANGUAGES, MANUAL, Page, pages, read_page
 from tests.house_rules.sources import python_files, text_of

@@ -23,7 +23,7 @@ from installer.warm_kernels import (
     warm,
     warm_beside,
 )
-from processing.tools.registry import tools_of_drives
+from processing.tools.listed.registry import tools_of_drives
 
 
 @pytest.fixture

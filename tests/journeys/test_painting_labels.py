@@ -133,7 +133,7 @@ def test_two_strokes_while_a_tool_stores_its_columns_are_both_kept(painter, surv
 
 
 def _usual(tool: str):
-    from processing.tools.registry import TOOLS
+    from processing.tools.listed.registry import TOOLS
 
     return TOOLS[tool].parameters()
 

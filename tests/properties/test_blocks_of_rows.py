@@ -31,11 +31,11 @@ from processing.tools.curbs import CURBS
 from processing.tools.features import FEATURES, FeaturesParameters
 from processing.tools.ground import GROUND_TOOL, GroundParameters
 from processing.tools.gutters import GUTTERS
-from processing.tools.markings import MARKINGS
+from processing.tools.listed.registry import TOOLS, point_tools
 from processing.tools.noise import NOISE, NoiseParameters
 from processing.tools.normals import NORMALS, NormalsParameters
 from processing.tools.poles import POLES
-from processing.tools.registry import TOOLS, point_tools
+from processing.tools.road_map.markings import MARKINGS
 from processing.tools.running.blocks import JoinedResults, blocks_of
 from processing.tools.running.runner import RunRequest, columns_of, run
 from processing.tools.segments import SEGMENTS, SegmentsParameters, compute_segments

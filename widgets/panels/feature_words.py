@@ -10,7 +10,7 @@ from processing.core.text import Language, Text
 from processing.map.catalogue import AttributeField, Catalogue
 from processing.map.feature import AttributeValue, Feature, Status
 from processing.map.renewal.map_comparison import COMPARISON, COMPARISON_NAME
-from processing.tools.registry import TOOLS
+from processing.tools.listed.registry import TOOLS
 
 STATUS_NAMES: Mapping[Status, Text] = {
     Status.CANDIDATE: Text("Candidate", "候補"),

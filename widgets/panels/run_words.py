@@ -10,7 +10,7 @@ from processing.core.parameters import parameters_of
 from processing.core.text import Language, Text
 from processing.map.renewal.map_comparison import COMPARISON, COMPARISON_NAME
 from processing.project.store.runs import Run
-from processing.tools.registry import TOOLS
+from processing.tools.listed.registry import TOOLS
 from widgets.panels.feature_tally import RunOfTool, RunTally
 from widgets.panels.feature_words import words_of_value
 

@@ -12,7 +12,7 @@ from processing.map.catalogue import AttributeField, Catalogue, Geometry
 from processing.map.feature import AttributeValue, Feature, Position
 from processing.map.measured_fields import field_of
 from processing.map.measures import length_m, plan_area_m2, plan_length_m
-from processing.tools.registry import TOOLS
+from processing.tools.listed.registry import TOOLS
 
 _GUARDED = tuple("=+-@'＝＋－＠")
 _UNSEEN = ("Cc", "Cf", "Zl", "Zp", "Cn", "Cs")

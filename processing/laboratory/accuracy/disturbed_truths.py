@@ -15,7 +15,7 @@ import numpy as np
 from processing.formats.vectors.mapped_shapes import read_mapped
 from processing.scoring.features.file_scores import FeatureScorer
 from processing.scoring.features.mapped_features import MappedFeature, MappedFile
-from processing.tools.registry import scorers
+from processing.tools.listed.registry import scorers
 
 Disturbance = Callable[[MappedFile], MappedFile]
 

@@ -45,7 +45,7 @@ from processing.scoring.features.object_matches import (
     match_objects,
     shows_enough,
 )
-from processing.tools.registry import TOOLS
+from processing.tools.listed.registry import TOOLS
 from resources import path_of
 
 SEEDS = (792, 793)

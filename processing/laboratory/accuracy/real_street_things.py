@@ -30,7 +30,7 @@ from processing.project.importing.importing import import_drives
 from processing.recording.drive import Drive
 from processing.scoring.features.one_to_one import pairs_within
 from processing.scoring.points.confusion_matrix import BinaryConfusionMatrix
-from processing.tools.registry import TOOLS
+from processing.tools.listed.registry import TOOLS
 from processing.tools.running.runner import RunRequest, run
 from processing.tools.tool import Candidate, CandidateResult
 

@@ -29,7 +29,7 @@ from processing.operations.written_values import Table, toml_value
 from processing.project.importing.import_request import ImportRequest
 from processing.project.project import Project
 from processing.project.store.runs import Run
-from processing.tools.registry import TOOLS
+from processing.tools.listed.registry import TOOLS
 
 
 @dataclass(frozen=True)

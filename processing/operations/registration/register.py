@@ -28,8 +28,8 @@ from processing.operations.registration.registration_report import (
 )
 from processing.project.results.moved_points import write_moved_points
 from processing.recording.drive import Drive
+from processing.tools.listed.registry import REGISTRATIONS
 from processing.tools.register import RegisterParameters
-from processing.tools.registry import REGISTRATIONS
 from processing.tools.running.runner import check_needs
 from processing.tools.tool import SurveyCorrection, Tool
 

@@ -19,7 +19,7 @@ from processing.recording.columns.columns import ColumnWriter
 from processing.recording.columns.error_map import ERROR_MAP, map_errors
 from processing.recording.drive import Drive
 from processing.scoring.points.confusion_matrix import BinaryConfusionMatrix, is_one_of
-from processing.tools.registry import asked_classes
+from processing.tools.listed.registry import asked_classes
 from processing.tools.tool import FinishedColumns
 
 _AT_ONCE = 1 << 20
@@ -32,7 +32,7 @@ class ClassEvaluation:
     Attributes
     ----------
     tool : str
-        What was asked, a key of :func:`processing.tools.registry.asked_classes`.
+        What was asked, a key of :func:`processing.tools.listed.registry.asked_classes`.
     run : Run or None
         None: the classes as they stand now, corrections by hand and all.
     drives : tuple of str

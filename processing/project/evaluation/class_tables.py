@@ -17,7 +17,7 @@ from processing.core.safe_write import write_safely
 from processing.project.evaluation.class_evaluation import ClassEvaluation
 from processing.project.evaluation.parameter_study import ParameterStudy
 from processing.scoring.points.confusion_matrix import BinaryConfusionMatrix
-from processing.tools.registry import asked_classes
+from processing.tools.listed.registry import asked_classes
 
 _DIGITS = 6
 

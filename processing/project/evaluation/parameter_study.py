@@ -18,7 +18,7 @@ from processing.core.parameters import Parameter, ParameterValue, fill_parameter
 from processing.core.text import Text
 from processing.recording.drive import Drive
 from processing.scoring.points.confusion_matrix import BinaryConfusionMatrix, is_one_of
-from processing.tools.registry import asked_classes
+from processing.tools.listed.registry import asked_classes
 from processing.tools.running.run_shares import run_shares
 from processing.tools.running.runner import run_together, tool_of
 from processing.tools.tool import FinishedColumns
@@ -73,7 +73,7 @@ class StudyRequest:
     Attributes
     ----------
     tool : str
-        A key of :func:`processing.tools.registry.asked_classes`.
+        A key of :func:`processing.tools.listed.registry.asked_classes`.
     drives : tuple of Drive
         Counted together.
     fixed : mapping

@@ -22,7 +22,7 @@ from processing.recording.drive import Drive
 from processing.scoring.points.coded_points import CodedFile
 from processing.scoring.points.point_scores import PointScorer
 from processing.scoring.scorers import GROUND_SCORER
-from processing.tools.registry import scorers
+from processing.tools.listed.registry import scorers
 
 _AT_ONCE = 1_000_000
 _READING = 0.5

@@ -21,7 +21,7 @@ from processing.labels.label_column import labels_of
 from processing.recording.columns.ordering import read_chunk
 from processing.recording.drive import Drive
 from processing.scoring.points.confusion_matrix import is_one_of
-from processing.tools.registry import TOOLS
+from processing.tools.listed.registry import TOOLS
 from processing.tools.tool import FinishedColumns, Tool
 
 _CLASS = "classification"

@@ -28,7 +28,7 @@ from processing.core.errors import (
 from processing.core.monitor import Monitor
 from processing.core.parameters import parameters_of
 from processing.core.text import Text
-from processing.tools.registry import every_tool, register
+from processing.tools.listed.registry import every_tool, register
 from processing.tools.tool import Finder, PerDrive, PerPoint, SurveyFinder, Together, Tool
 
 _FORBIDDEN = ("PySide6", "shiboken6", "qtpy", "qtawesome", "vtk", "vtkmodules", "pyvista", "app")

@@ -21,7 +21,7 @@ from processing.recording.columns.columns import Columns
 from processing.recording.columns.ordering import read_chunk
 from processing.recording.drive import Drive
 from processing.recording.recorded_together import recorded_together, surveyed_together
-from processing.tools.registry import TOOLS, every_tool
+from processing.tools.listed.registry import TOOLS, every_tool
 from processing.tools.running.blocks import POINTS_PER_BLOCK, JoinedResults, blocks_of
 from processing.tools.tool import (
     CandidateResult,

@@ -18,7 +18,7 @@ from app.window.window_parts import WindowParts
 from processing.map.catalogue_file import read_catalogue
 from processing.project.importing.importing import ImportRequest
 from processing.section.stations import Stations
-from processing.tools.registry import TOOLS, asked_classes, every_tool, scorer_of, scorers
+from processing.tools.listed.registry import TOOLS, asked_classes, every_tool, scorer_of, scorers
 from resources import path_of
 from tests.app.added_tools.high_points import CROWN, HIGH_POINTS, OTHER, HighPointsParameters
 from tests.app.added_tools.highest_point import HIGHEST_POINT, HighestPointParameters

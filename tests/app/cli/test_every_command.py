@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from app.cli.terminal import BAD_INPUT, DONE, run_in_terminal
-from processing.tools.registry import every_tool
+from processing.tools.listed.registry import every_tool
 from tests.builders import write_laz, write_trajectory_csv
 from tests.noisy_street import noisy_street
 

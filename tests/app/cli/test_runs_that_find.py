@@ -25,8 +25,8 @@ from processing.map.feature import PointReference, Status
 from processing.project.importing.importing import ImportRequest
 from processing.project.project import Project
 from processing.recording.drive import Drive
+from processing.tools.listed.registry import TOOLS
 from processing.tools.normals import NormalsParameters
-from processing.tools.registry import TOOLS
 from processing.tools.tool import Candidate, CandidateResult, Finder, SurveyFinder
 from tests.builders import simulated_drive, write_laz, write_trajectory_csv
 from tests.processing.project.candidates import FINDER

@@ -9,7 +9,7 @@ import pytest
 from app.cli.terminal import BAD_INPUT, DONE, run_in_terminal
 from app.help.manual_site import command_of
 from processing.core.parameters import parameters_of
-from processing.tools.registry import every_tool
+from processing.tools.listed.registry import every_tool
 from tests.house_rules.manual_pages import LANGUAGES, read_page
 
 

@@ -21,8 +21,8 @@ from processing.operations.operation_files import read_operation, write_operatio
 from processing.project.importing.import_request import ImportRequest
 from processing.project.project import Project
 from processing.recording.drive import Drive
+from processing.tools.listed.registry import TOOLS, extractors
 from processing.tools.normals import NormalsParameters
-from processing.tools.registry import TOOLS, extractors
 from processing.tools.tool import Candidate, CandidateResult, Finder, Needs
 from tests.builders import simulated_drive, write_laz, write_trajectory_csv
 from tests.processing.project.candidates import FINDER

@@ -21,8 +21,8 @@ from processing.operations.run import RunOperation, run_operation
 from processing.project.importing.import_request import ImportRequest
 from processing.project.project import Project
 from processing.recording.drive import Drive
+from processing.tools.listed.registry import TOOLS
 from processing.tools.normals import NormalsParameters
-from processing.tools.registry import TOOLS
 from processing.tools.running.run_shares import run_shares
 from processing.tools.tool import Candidate, CandidateResult, Finder
 from tests.builders import simulated_drive, write_laz, write_trajectory_csv

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from processing.operations import scripting as zuka
 from processing.operations.operation_files import OPERATIONS
-from processing.tools.registry import every_tool
+from processing.tools.listed.registry import every_tool
 from tests.delivered_files import make_las
 
 

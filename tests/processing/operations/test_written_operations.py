@@ -36,7 +36,7 @@ from processing.operations.score import ScoreOperation
 from processing.operations.volume import VolumeOperation
 from processing.operations.volume_sides import VolumeSide
 from processing.project.importing.import_request import ImportRequest
-from processing.tools.registry import TOOLS
+from processing.tools.listed.registry import TOOLS
 
 NOISE_TOML = """\
 kind = "run"

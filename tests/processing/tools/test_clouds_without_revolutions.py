@@ -12,7 +12,7 @@ from processing.image.search.nearest import nearest_point
 from processing.project.importing.importing import ImportRequest, import_drives
 from processing.recording.drive import Drive
 from processing.recording.kinds import ImageKind
-from processing.tools.registry import TOOLS
+from processing.tools.listed.registry import TOOLS
 from processing.tools.running.runner import RunRequest, check_needs, columns_of, run
 from processing.tools.tool import Needs
 from tests.structured_scans import ptx_text, sphere_scan

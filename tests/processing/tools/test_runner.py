@@ -19,8 +19,8 @@ from processing.recording.columns.columns import COLUMN_TYPES, ColumnWriter
 from processing.recording.drive import Drive
 from processing.recording.drive_info import read_drive_info, write_drive_info
 from processing.recording.kinds import ImageKind
+from processing.tools.listed.registry import TOOLS, point_tools
 from processing.tools.normals import NORMALS, NormalsParameters
-from processing.tools.registry import TOOLS, point_tools
 from processing.tools.running.runner import RunRequest, check_needs, columns_of, run, tool_of
 from processing.tools.segments import SEGMENTS, SegmentsParameters
 from processing.tools.tool import Needs

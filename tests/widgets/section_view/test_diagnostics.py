@@ -16,7 +16,7 @@ from pytestqt.qtbot import QtBot
 from processing.core.text import Text
 from processing.methods.road.diagnostics import Diagnostic, DiagnosticTest
 from processing.recording.passes import passes_of
-from processing.tools.registry import TOOLS
+from processing.tools.listed.registry import TOOLS
 from tests.widgets.builders import OpenMap, imported_drive
 from tests.widgets.section_view.conftest import SectionViewUser, on_road, shown
 from widgets.section_view.picture.diagnostic_marks import DiagnosticMarks

@@ -28,7 +28,7 @@ from processing.project.evaluation.truth_store import Truth
 from processing.recording.columns.error_map import ERROR_MAP, ErrorMapValue
 from processing.scoring.points.asked_classes import NOISE_ASKED
 from processing.scoring.points.confusion_matrix import BinaryConfusionMatrix
-from processing.tools.registry import asked_classes
+from processing.tools.listed.registry import asked_classes
 from widgets.feature_drawing.swatch import SWATCH_PX, swatch_of
 from widgets.panels.class_evaluation.setting_words import moment_of, settings_words
 from widgets.panels.class_evaluation.truth_bar import TruthBar

@@ -10,7 +10,7 @@ from processing.core.parameters import Parameter, ParameterValue, parameters_of
 from processing.core.text import Language, Text
 from processing.project.evaluation.truth_store import Truth
 from processing.project.store.runs import Run
-from processing.tools.registry import TOOLS
+from processing.tools.listed.registry import TOOLS
 
 _MOMENT = Text("d MMM HH:mm", "M月d日 HH:mm")
 _NAMED_TRUTH = Text("{name}, {moment}", "{name}（{moment}）")

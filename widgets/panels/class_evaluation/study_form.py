@@ -23,7 +23,7 @@ from processing.project.evaluation.parameter_study import (
     steps_of,
     usual_range,
 )
-from processing.tools.registry import asked_classes
+from processing.tools.listed.registry import asked_classes
 from widgets.panels.run_words import name_of_tool
 from widgets.parts.number_field import NumberField, decimals_for
 

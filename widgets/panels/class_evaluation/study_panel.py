@@ -22,7 +22,7 @@ from typing_extensions import override
 from processing.core.parameters import ParameterValue
 from processing.core.text import Language
 from processing.project.evaluation.study_store import KeptStudy
-from processing.tools.registry import asked_classes
+from processing.tools.listed.registry import asked_classes
 from widgets.panels.class_evaluation.setting_words import (
     parameter_name,
     settings_words,

@@ -13,7 +13,7 @@ from processing.core.parameters import ParameterValue
 from processing.core.text import Language
 from processing.project.evaluation.parameter_study import ParameterStudy, StudyCell
 from processing.scoring.points.confusion_matrix import BinaryConfusionMatrix
-from processing.tools.registry import asked_classes
+from processing.tools.listed.registry import asked_classes
 from widgets.panels.class_evaluation.setting_words import parameter_name, value_words
 from widgets.panels.reliability_plot import PlotColours
 

@@ -22,7 +22,7 @@ from typing_extensions import override
 
 from processing.core.parameters import ParameterValue
 from processing.core.text import Language, Text
-from processing.tools.registry import tools_of_drives
+from processing.tools.listed.registry import tools_of_drives
 from processing.tools.tool import Tool
 from widgets.panels.processing.parameter_form import ParameterForm
 from widgets.panels.tree_items import children_of

@@ -11,7 +11,7 @@ from PySide6.QtGui import QColor, QFontMetricsF, QPainter, QPen, QPolygonF
 
 from processing.core.text import Language, Text
 from processing.methods.road.diagnostics import DiagnosticTest
-from processing.tools.registry import TOOLS
+from processing.tools.listed.registry import TOOLS
 from widgets.plane_view.viewport import PlaneViewport
 from widgets.section_view.picture.feed import SectionPicture
 from widgets.section_view.picture.frame import BOTTOM_PX, LEFT_PX

@@ -14,7 +14,7 @@ from processing.methods.road.diagnostics import Diagnostic
 from processing.methods.road.requested_position import RequestedPosition
 from processing.recording.drive import Drive
 from processing.section.cut import Cut
-from processing.tools.registry import TOOLS
+from processing.tools.listed.registry import TOOLS
 from processing.tools.tool import Tool
 from widgets.section_view.picture.section_position import SectionPosition
 

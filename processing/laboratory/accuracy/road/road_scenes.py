@@ -20,7 +20,7 @@ from processing.laboratory.simulate.streets import simulate_street
 from processing.project.importing.importing import ImportRequest, import_drives
 from processing.recording.drive import Drive
 from processing.scoring.features.mapped_features import MappedFeature, MappedFile
-from processing.tools.registry import TOOLS
+from processing.tools.listed.registry import TOOLS
 from processing.tools.running.run_shares import run_shares
 from processing.tools.running.runner import run
 from processing.tools.tool import Candidate, CandidateResult

@@ -16,7 +16,7 @@ from processing.laboratory.simulate.streets import simulate_street
 from processing.project.importing.importing import ImportRequest, import_drives
 from processing.recording.drive import Drive
 from processing.tools.classify import ClassifyParameters
-from processing.tools.registry import TOOLS, extractors
+from processing.tools.listed.registry import TOOLS, extractors
 from processing.tools.running.run_shares import run_shares
 from processing.tools.running.runner import run, run_together
 from processing.tools.tool import FinishedColumns

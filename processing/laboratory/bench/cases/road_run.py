@@ -17,7 +17,7 @@ from processing.core.monitor import SilentMonitor
 from processing.core.output_streams import write_every_character
 from processing.core.text import Text
 from processing.recording.drive import Drive
-from processing.tools.registry import TOOLS
+from processing.tools.listed.registry import TOOLS
 from processing.tools.running.runner import RunRequest, run
 
 ROAD_TOOLS = ("curbs", "gutters")

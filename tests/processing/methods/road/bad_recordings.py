@@ -24,7 +24,7 @@ from processing.laboratory.simulate.scene.materials import Material
 from processing.laboratory.simulate.scene.mesh import MeshBuilder, TriangleShape
 from processing.project.importing.importing import ImportRequest, import_drives
 from processing.recording.drive import Drive
-from processing.tools.registry import TOOLS
+from processing.tools.listed.registry import TOOLS
 from processing.tools.running.runner import RunRequest, run
 from processing.tools.tool import Candidate, CandidateResult
 

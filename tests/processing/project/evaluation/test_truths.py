@@ -33,7 +33,7 @@ from processing.project.store.runs import Run
 from processing.recording.columns.columns import ColumnWriter
 from processing.recording.columns.error_map import ERROR_MAP, ErrorMapValue
 from processing.recording.drive import Drive
-from processing.tools.registry import TOOLS
+from processing.tools.listed.registry import TOOLS
 from processing.tools.tool import FinishedColumns
 from tests.builders import simulated_drive, write_laz, write_trajectory_csv
 from tests.monitors import CancelledAfter

@@ -15,9 +15,9 @@ import pytest
 
 from processing.core.errors import Cancelled, UserError
 from processing.operations import scripting
+from processing.tools.listed.registry import TOOLS, every_tool
 from processing.tools.plugins.folders import FOLDERS, plugin_files
 from processing.tools.plugins.loading import load_plugin, load_plugins
-from processing.tools.registry import TOOLS, every_tool
 from tests.delivered_files import make_las
 from tests.house_rules.sources import ROOT
 from tests.monitors import CancelledAfter

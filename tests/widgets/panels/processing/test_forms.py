@@ -20,7 +20,7 @@ from processing.core.parameters import (
     switch,
 )
 from processing.core.text import Language, Text
-from processing.tools.registry import TOOLS
+from processing.tools.listed.registry import TOOLS
 from widgets.panels.processing.parameter_form import ParameterForm
 from widgets.panels.processing.processing_panel import ProcessingPanel
 from widgets.parts.number_field import NumberField

@@ -14,7 +14,7 @@ from pytestqt.qtbot import QtBot
 from processing.core.parameters import angle, count, length, parameters_of, switch
 from processing.core.text import Text
 from processing.recording.kinds import ImageKind
-from processing.tools.registry import TOOLS
+from processing.tools.listed.registry import TOOLS
 from processing.tools.tool import CandidateResult, Finder, Needs, Tool
 from resources import UnknownResource, path_of
 from widgets.panels.processing.parameter_form import ParameterForm

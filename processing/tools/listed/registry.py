@@ -19,11 +19,11 @@ from processing.tools.curbs import CURBS
 from processing.tools.features import FEATURES
 from processing.tools.ground import GROUND_TOOL
 from processing.tools.gutters import GUTTERS
-from processing.tools.markings import MARKINGS
 from processing.tools.noise import NOISE
 from processing.tools.normals import NORMALS
 from processing.tools.poles import POLES
 from processing.tools.register import REGISTER
+from processing.tools.road_map.markings import MARKINGS
 from processing.tools.segments import SEGMENTS
 from processing.tools.signs import SIGNS
 from processing.tools.template import TEMPLATE
