@@ -58,6 +58,13 @@ def test_no_folder_holds_more_than_22_files() -> None:
     assert {folder for folder in found if folder != "tests/journeys"} == set()
 
 
+def test_every_folder_of_code_is_a_package() -> None:
+    # A folder without ``__init__`` imports here and is left out of a frozen program.
+    files = set(python_files())
+    folders = {folder_of(name) for name in files if not name.startswith("tests/")}
+    assert {one for one in folders if f"{one}/__init__.py" not in files} == set()
+
+
 def test_no_folders_import_each_other() -> None:
     folders = folders_of(program_imports())
     assert mutual(folders) == []

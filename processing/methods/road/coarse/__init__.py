@@ -1,0 +1,1 @@
+"""Trunks and poles of sparse recordings, told in decimetres."""
