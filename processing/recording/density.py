@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from processing.core.arrays import Floats
+from processing.core.arrays import Floats, Integers
 from processing.recording.drive import Drive
 
 _PLACE_M = 0.4
@@ -25,15 +25,19 @@ _FEW = 3.0
 leaf. Nine of ten simulated single scans have no more; thin profiles 2 to 4, streets 9 to 48."""
 
 _SPARSE = 6.0
-"""Between thin profiles and streets: with no more points in half of the cubes, what is round and
-what is flat can't be told."""
+"""At the height of trunks: with no more points in half of the cubes, what is round and what is flat
+can't be told. Thin profiles and single scans have 2 to 4 there, streets 10 and more."""
+
+_TRUNKS = 2, 5
+"""Cubes above the lowest one in the same place, between which trunks and posts are: 0.8 to 2.4 m.
+Crowns, fronts and noise in the air fill most cubes of a dense street with a point or two."""
 
 _GATHERED = 0.38
 """The radius that holds half of the points over that which holds 95 %, at most. Along a path
 points lie evenly, which makes it 0.53; about one scanner their number falls with the squared
 distance. 95 % of simulated single scans of many heads have no more, streets 0.49 and more."""
 
-_KEPT = "points a place"
+_KEPT, _KEPT_AT_TRUNKS = "points a place", "points at trunks"
 
 _ENOUGH = 1_000
 """Points, at least: a turn of the smallest head has ten times as many."""
@@ -55,11 +59,15 @@ def is_single_scan(drive: Drive) -> bool:
 
 
 def are_sparse(drives: Sequence[Drive]) -> bool:
-    """Whether most places of each drive have too few points for the shape of what they are on.
+    """Whether trunks and posts of each drive have too few points for their shape.
 
     Not of drives without points.
     """
-    return bool(drives) and all(_density_of(drive) <= _SPARSE for drive in drives)
+    return bool(drives) and all(_density_at_trunks(drive) <= _SPARSE for drive in drives)
+
+
+def _density_at_trunks(drive: Drive) -> float:
+    return drive.kept(_KEPT_AT_TRUNKS, lambda: points_at_trunks(middle_points(drive)))
 
 
 def _density_of(drive: Drive) -> float:
@@ -87,9 +95,35 @@ def points_a_place(xyz: Floats) -> float:
     """
     if not len(xyz):
         return float("inf")
+    return float(np.median(_cubes_of(xyz)[1]))
+
+
+def points_at_trunks(xyz: Floats) -> float:
+    """The same of the cubes 0.8 to 2.4 m above the lowest one in each place.
+
+    Of all cubes where nothing stands so high.
+
+    Parameters
+    ----------
+    xyz : (n, 3) float64
+        m; finite.
+    """
+    if not len(xyz):
+        return float("inf")
+    codes, counts = _cubes_of(xyz)
+    first = np.flatnonzero(np.diff(codes >> _BITS, prepend=-1))
+    lowest = np.repeat(codes[first], np.diff(first, append=len(codes)))
+    above = codes - lowest
+    at_trunks = counts[(above >= _TRUNKS[0]) & (above <= _TRUNKS[1])]
+    return float(np.median(at_trunks if at_trunks.size else counts))
+
+
+def _cubes_of(xyz: Floats) -> tuple[Integers, Integers]:
+    """The numbers of cubes that have points, those of one place in plan upwards, and how many."""
     cubes = ((xyz - xyz.min(axis=0)) / _PLACE_M).astype(np.int64) & _LAST_CUBE
     codes = (cubes[:, 0] << 2 * _BITS) | (cubes[:, 1] << _BITS) | cubes[:, 2]
-    return float(np.median(np.unique(codes, return_counts=True)[1]))
+    numbers, counts = np.unique(codes, return_counts=True)
+    return numbers, counts
 
 
 def spread_of(xyz: Floats) -> float:

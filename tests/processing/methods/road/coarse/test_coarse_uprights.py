@@ -23,7 +23,7 @@ from processing.methods.road.objects.columns import FoundColumns
 from processing.methods.road.objects.survey import survey_columns
 from processing.project.importing.import_request import ImportRequest
 from processing.project.importing.importing import import_drives
-from processing.recording.density import are_sparse, points_a_place
+from processing.recording.density import are_sparse, points_a_place, points_at_trunks
 from processing.recording.drive import Drive
 from processing.tools.poles import PoleParameters, find_poles
 from processing.tools.trees import TreeParameters, find_trees
@@ -152,9 +152,19 @@ def test_a_dense_recording_is_left_to_the_exact_way(tmp_path: Path) -> None:
     assert all("diameter_m" in one.attributes for one in found)
 
 
+def test_noise_in_the_air_and_large_crowns_make_no_street_sparse(tmp_path: Path) -> None:
+    # Of all cubes with points most hold one or two, as phase noise of a dense scanner fills them.
+    dense = _street(0.08)
+    air = np.random.default_rng(7).uniform((0, -4, 3), (40, 10, 30), (60_000, 3)) + _ORIGIN
+    assert points_a_place(np.concatenate([dense, air])) <= 3
+    assert not are_sparse([_drive(np.concatenate([dense, air]), tmp_path)])
+
+
 def test_no_drives_and_no_points_are_not_sparse() -> None:
     assert not are_sparse([])
     assert np.isinf(points_a_place(np.empty((0, 3))))
+    assert np.isinf(points_at_trunks(np.empty((0, 3))))
+    assert points_at_trunks(np.zeros((5, 3))) == 5
 
 
 def test_a_sparse_recording_of_bare_ground_has_nothing_and_says_so(tmp_path: Path) -> None:
