@@ -53,6 +53,10 @@ _BEGINS = np.uint32((1 << 11) - 1)
 """The slabs up to 2.4 m, in which a column stands free: a pedestrian passes under what hangs
 higher."""
 
+_MOSTLY = 0.5
+"""Of the filled cells of a recording: where so many hold several points, single ones are of
+nothing, as phase scanners and dust give them, and don't stand beside anything."""
+
 _FOOT, _RAISED_SLABS = np.uint32((1 << 7) - 1), 12
 """The slabs up to 1.6 m, and how many stand free in a row of a column whose lower part a wall
 or a hedge before it hides: 2.4 m, longer than what hangs on fronts of houses."""
@@ -93,15 +97,20 @@ def find_columns(
     ground : (tiles, 16, 16) float32
         As :func:`ground_heights` found it.
     """
-    slabs = np.zeros((len(plan), TILE, TILE), np.uint32)
+    slabs, several = np.zeros((2, len(plan), TILE, TILE), np.uint32)
     for chunk in chunks_of(drives, plan.origin, monitor):
-        slabs_kernel(chunk.local, chunk.is_noise, plan.table, ground.reshape(-1), slabs.reshape(-1))
+        filled = slabs.reshape(-1), several.reshape(-1)
+        slabs_kernel(chunk.local, chunk.is_noise, plan.table, ground.reshape(-1), filled)
+    beside = _standing_beside(slabs, several)
     standing: list[tuple[Floats, int]] = []
     raised: list[tuple[Floats, int]] = []
 
     def of_tile(tile: int) -> tuple[list[tuple[Floats, int]], list[tuple[Floats, int]]]:
         monitor.check()
-        return _columns_of(plan.window(slabs, tile, _HALO + _APART_CELLS, 0))
+        margin = _HALO + _APART_CELLS
+        return _columns_of(
+            plan.window(slabs, tile, margin, 0), plan.window(beside, tile, margin, 0)
+        )
 
     for tile, both in enumerate(in_order(of_tile, range(len(plan)))):
         for found, here in zip((standing, raised), both, strict=True):
@@ -111,6 +120,15 @@ def find_columns(
                 if ((middle >= 0) & (middle < TILE)).all()
             ]
     return _on_ground(standing, plan, ground), _on_ground(raised, plan, ground)
+
+
+def _standing_beside(slabs: NDArray[np.uint32], several: NDArray[np.uint32]) -> NDArray[np.uint32]:
+    """In which slabs cells hold what something can't stand free beside."""
+    low, sure = np.bitwise_count(slabs & _BEGINS).sum(), np.bitwise_count(several & _BEGINS).sum()
+    if sure < _MOSTLY * low:
+        return slabs
+    # Two points of one thing may lie in slabs above each other.
+    return several | (slabs & ((slabs << np.uint32(1)) | (slabs >> np.uint32(1))))
 
 
 def distinct_columns(columns: FoundColumns) -> FoundColumns:
@@ -143,9 +161,10 @@ def slabs_kernel(
     is_noise: NDArray[np.bool_],
     table: NDArray[np.int32],
     ground: NDArray[np.float32],
-    slabs: NDArray[np.uint32],
+    filled: tuple[NDArray[np.uint32], NDArray[np.uint32]],
 ) -> None:
-    """Mark at which heights cells hold points."""
+    """Mark at which heights cells hold points, and at which several."""
+    slabs, several = filled
     for point in range(len(local)):
         if is_noise[point]:
             continue
@@ -156,32 +175,35 @@ def slabs_kernel(
         slab = int((local[point, 2] - low - LOWEST_M) / SLAB_M)
         if local[point, 2] - low >= LOWEST_M and slab < SLABS:
             cell = cell_of(local[point, 0], local[point, 1], table, TILE)
-            slabs[cell] |= np.uint32(1) << np.uint32(slab)
+            bit = np.uint32(1) << np.uint32(slab)
+            several[cell] |= slabs[cell] & bit
+            slabs[cell] |= bit
 
 
-def free_slabs(slabs: NDArray[np.uint32]) -> NDArray[np.uint32]:
+def free_slabs(slabs: NDArray[np.uint32], beside: NDArray[np.uint32]) -> NDArray[np.uint32]:
     """At which heights cells are filled without filled ones 0.6 m away on two opposite sides.
 
     Parameters
     ----------
-    slabs : (n, m) uint32
+    slabs, beside : (n, m) uint32
+        At which heights cells are filled, and at which they count as filled beside others.
 
     Returns
     -------
     (n, m) uint32
         0 along the margin of `_HALO` cells.
     """
-    tall = slabs | (slabs << np.uint32(1)) | (slabs >> np.uint32(1))
+    tall, walls = (one | (one << np.uint32(1)) | (one >> np.uint32(1)) for one in (slabs, beside))
     size = slabs.shape[0]
     inner = slice(_HALO, size - _HALO)
 
     def moved(step: tuple[int, int]) -> NDArray[np.uint32]:
-        part: NDArray[np.uint32] = tall[
+        part: NDArray[np.uint32] = walls[
             _HALO + step[0] : size - _HALO + step[0], _HALO + step[1] : size - _HALO + step[1]
         ]
         return part
 
-    beside = np.zeros((size - 2 * _HALO,) * 2, np.uint32)
+    hidden = np.zeros((size - 2 * _HALO,) * 2, np.uint32)
     ring = _ring_steps()
     half = len(ring) // 2
     for number in range(half):
@@ -191,9 +213,9 @@ def free_slabs(slabs: NDArray[np.uint32]) -> NDArray[np.uint32]:
         other = (
             other | moved(ring[number + half - 1]) | moved(ring[(number + half + 1) % len(ring)])
         )
-        beside |= one & other
+        hidden |= one & other
     free = np.zeros_like(slabs)
-    free[inner, inner] = tall[inner, inner] & ~beside
+    free[inner, inner] = tall[inner, inner] & ~hidden
     return free
 
 
@@ -205,13 +227,13 @@ def _ring_steps() -> list[tuple[int, int]]:
 
 
 def _columns_of(
-    slabs: NDArray[np.uint32],
+    slabs: NDArray[np.uint32], beside: NDArray[np.uint32]
 ) -> tuple[list[tuple[Floats, int]], list[tuple[Floats, int]]]:
     """Middles of columns in cells of the tile inside the window, and where they stand free.
 
     Those that stand free low, and those of which no foot was seen.
     """
-    free = free_slabs(slabs)
+    free = free_slabs(slabs, beside)
     low, run = _longest_run(free & _BEGINS), _longest_run(free)
     is_low = low >= _FEWEST_SLABS
     standing = _peaks(is_low, np.where(is_low, low + run, 0), free)

@@ -86,15 +86,40 @@ def test_a_cell_is_below_the_ground_if_a_layer_over_it_outweighs_what_lies_below
     around[2, 4] = 0.1
     for kernel in (votes_kernel, votes_kernel.py_func):  # type: ignore[attr-defined]
         level, found = heights.copy(), np.zeros((1, 3), np.bool_)
-        kernel(around, counts, np.array([0.35, 0.56]), level, found)
+        told = level, found, np.zeros((1, 3), np.float32)
+        points = np.zeros((5, 7), np.float32)
+        kernel((around, points), counts, np.array([0.35, 0.56]), told)
         assert found.tolist() == [[True, False, False]]
         assert level[0].tolist() == pytest.approx([4.1, 0.1, 0.1])
 
 
-def test_a_cell_is_sure_of_its_height_by_half_of_its_points() -> None:
-    counts = np.zeros((2, LAYERS), np.uint16)
-    counts[:, 0], counts[:, 1], counts[:, 5] = 60, 40, (90, 110)
+def test_a_cell_is_sure_of_its_height_by_the_layers_that_hold_most_of_its_points() -> None:
+    counts = np.zeros((3, LAYERS), np.uint16)
+    counts[:, 0], counts[:, 1], counts[:, 5] = 60, 40, (90, 110, 70)
+    counts[2, 9:20:3] = 60  # a crown: more than the ground, but looser
     for kernel in (sure_kernel, sure_kernel.py_func):  # type: ignore[attr-defined]
-        sure = np.full(2, np.inf, np.float32)
-        kernel(np.full(2, 0.1, np.float32), counts, sure)
-        assert np.isfinite(sure).tolist() == [True, False]
+        sure, points = np.full((2, 3), np.inf, np.float32)
+        kernel(np.full(3, 0.1, np.float32), counts, sure, points)
+        assert np.isfinite(sure).tolist() == [True, False, True]
+        assert points[0] == points[2] == 100
+
+
+@pytest.mark.parametrize(
+    ("below", "at_ground", "is_below"),
+    [
+        ((12, 4), 0, True),  # stray points in the shadow of a trunk
+        ((60, 80), 0, False),  # ground that was seen down there
+        ((3, 0), 800, True),  # the ground itself, and mixed points under it
+    ],
+)
+def test_stray_points_below_are_no_ground(
+    below: tuple[int, int], at_ground: int, is_below: bool
+) -> None:
+    counts = np.zeros((1, 1, LAYERS), np.uint16)
+    counts[0, 0, :2], counts[0, 0, 10], counts[0, 0, 20] = below, at_ground, 2_000
+    around, points = np.full((5, 5), 4.1, np.float32), np.full((5, 5), 1_000, np.float32)
+    around[2, 2] = np.inf
+    for kernel in (votes_kernel, votes_kernel.py_func):  # type: ignore[attr-defined]
+        told = np.full((1, 1), 0.1, np.float32), np.zeros((1, 1), np.bool_), np.zeros((1, 1))
+        kernel((around, points), counts, np.array([0.35, 0.56]), told)
+        assert told[1].tolist() == [[is_below]]
