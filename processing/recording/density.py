@@ -61,9 +61,12 @@ def is_single_scan(drive: Drive) -> bool:
 def are_sparse(drives: Sequence[Drive]) -> bool:
     """Whether trunks and posts of each drive have too few points for their shape.
 
-    Not of drives without points.
+    Few are where anything is, and at the height of trunks: large crowns and noise in the air make
+    the one low on a dense street, low leaves the other. Not of drives without points.
     """
-    return bool(drives) and all(_density_at_trunks(drive) <= _SPARSE for drive in drives)
+    return bool(drives) and all(
+        max(_density_of(drive), _density_at_trunks(drive)) <= _SPARSE for drive in drives
+    )
 
 
 def _density_at_trunks(drive: Drive) -> float:

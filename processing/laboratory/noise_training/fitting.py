@@ -14,17 +14,27 @@ from processing.laboratory.noise_training.examples import Examples, FeatureVecto
 from processing.methods.noise.trees import Trees, log_odds
 
 _BINS = 64
-_LEAST_IN_A_LEAF = 60
 _RIDGE = 5.0
 
 
 @dataclass(frozen=True)
 class TreesSize:
-    """How many trees of how many leaves, and how much each may say."""
+    """How many trees of how many leaves, and how much each may say.
+
+    Attributes
+    ----------
+    least_in_a_leaf : int
+        Examples.
+    signs : tuple of int
+        Of each feature whether more of it can only raise (1) or lower (−1) the odds, or either (0);
+        empty: either.
+    """
 
     trees: int
     leaves: int
     rate: float
+    least_in_a_leaf: int = 60
+    signs: tuple[int, ...] = ()
 
 
 def fit_trees(examples: Examples, shape: TreesSize) -> Trees:
@@ -43,7 +53,8 @@ def fit_trees(examples: Examples, shape: TreesSize) -> Trees:
         learning_rate=shape.rate,
         max_bins=_BINS,
         l2_regularization=_RIDGE,
-        min_samples_leaf=_LEAST_IN_A_LEAF,
+        min_samples_leaf=shape.least_in_a_leaf,
+        monotonic_cst=list(shape.signs) or None,
         early_stopping=False,
         random_state=0,
     )

@@ -2,18 +2,22 @@
 
 ``python -m processing.laboratory.road_training.tree_training``.
 
-Simulates avenues of ``--seeds`` and usual streets of ``--worn``, finds upright things on them
-without leaving any out, and fits `processing.methods.road.trees.tree_confidence.WEIGHTS` to which
-of them are trees; avenues of ``--check`` are not learnt from. ``--deliveries`` are further streets
-to learn from, recorded before. Prints the weights and how many things of each confidence are
-trees: of streets learnt from by weights that were fitted without the street itself.
+Needs the extra ``train``. Simulates streets of ``--seeds``: an avenue by a scanner of the
+catalogue, one by a scanner of any kind and mounting and a usual worn street take turns. Finds
+upright things on them without leaving any out, and fits the model of
+`processing.methods.road.trees.tree_confidence` to which of them are trees, and the weights of
+`processing.methods.road.trees.diameter_doubts` to how far their diameters are off. Prints how many
+things of each confidence are trees, each street by a model that was fitted without some streets,
+it among them; the same of ``--check``, which nothing is learnt from; and the weights.
 """
 
 from __future__ import annotations
 
+import argparse
 import json
 import sys
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -25,32 +29,40 @@ from processing.core.output_streams import write_every_character
 from processing.formats.vectors.mapped_shapes import read_mapped
 from processing.laboratory.accuracy.road.road_scenes import (
     RoadScene,
-    avenue_scenes,
+    avenue_options_of,
     cloud_of,
+    recorded_scene,
     worn_options_of,
 )
-from processing.laboratory.road_training.learned_confidence import (
-    LabelledThings,
-    WeightPrior,
-    learn_weights,
-)
-from processing.laboratory.road_training.training_streets import training_streets
+from processing.laboratory.noise_training.examples import Examples
+from processing.laboratory.noise_training.fitting import TreesSize, fit_trees
+from processing.laboratory.progress_lines import say
+from processing.laboratory.road_training.learned_confidence import LabelledThings, reliability
+from processing.laboratory.seed_ranges import seeds_of
+from processing.laboratory.simulate.scanning.any_mounting import any_sensor
+from processing.methods.noise.tree_files import write_trees
+from processing.methods.noise.trees import Trees, log_odds
+from processing.methods.road.trees.diameter_doubts import DiameterDoubts, doubts_of, wider
 from processing.methods.road.trees.stems import BREAST_M
 from processing.methods.road.trees.street_trees import StreetTree, TreeSettings, upright_things
-from processing.methods.road.trees.tree_confidence import TreeFacts, facts_of
-from processing.scoring.features.mapped_features import MappedFile
+from processing.methods.road.trees.tree_confidence import MODEL, SIGNS, TreeFacts, facts_of
+from processing.scoring.features.mapped_features import MappedFeature, MappedFile
 from processing.scoring.features.object_matches import is_in_span, positions_of, shows_enough
-from processing.scoring.features.trees import LEAST_TRUNK_POINTS
+from processing.scoring.features.trees import LEAST_ARC_DEG, LEAST_TRUNK_POINTS
 from processing.tools.trees import TreeParameters
+from resources import path_of
 
-EXPECTED = WeightPrior(
-    (-3.0, *TreeFacts(1.5, -6.0, -3.0, -3.0, -3.0, 2.0, 0.3, -2.0, 1.0, -1.0, -1.0, 0.5, 0.3)),
-    (3.0, *TreeFacts(1.5, 4.0, 3.0, 3.0, 3.0, 3.0, 0.5, 2.0, 1.0, 1.5, 1.0, 0.5, 0.3)),
-)
-"""What reasoning expects; a hundred trees leave some of it open."""
+_SEEDS = ",".join(f"{2001 + 2 * n},{2002 + 2 * n},{2101 + n}" for n in range(36))
+_CHECK = "9381-9389"
+_LENGTH_M, _KINDS, _FOLDS = 60.0, 3, 5
 
-_SEEDS, _USUAL, _CHECK = "600-615", "540-551", "620-623"
-"""Streets that the `WEIGHTS` were learnt from, avenues and others, and avenues to check with."""
+_SIZE = TreesSize(trees=150, leaves=6, rate=0.1, least_in_a_leaf=10, signs=SIGNS)
+
+_IN_95, _HELD = 0.95, 2e-3
+"""Which errors lie within, and how much small weights are held to nothing (L1 penalty of
+``QuantileRegressor``): chosen by streets left out, of whose errors 95 % lay within."""
+
+_LEAST_ERROR_M = 2e-4
 
 _POLE_LIKE = 66
 """Code of points of trunks (shared with poles)."""
@@ -62,16 +74,60 @@ _SAME_M = 0.8
 """A trunk so far from a true one is another thing: a post or a stake beside a tree."""
 
 
-def known_trees(scenes: Iterator[RoadScene]) -> LabelledThings:
+@dataclass(frozen=True)
+class KnownTrees:
+    """Upright things of known streets.
+
+    Attributes
+    ----------
+    things : LabelledThings
+        Their facts, and which are trees.
+    doubts : (k, d) float64
+        Of those of which a sixth and more of the trunk was seen, what makes diameters unsure.
+    errors : (k,) float64
+        How far each is off, over what the fit alone tells.
+    """
+
+    things: LabelledThings
+    doubts: Floats
+    errors: Floats
+
+
+def tree_scenes(seeds: Sequence[int], length_m: float = _LENGTH_M) -> Iterator[RoadScene]:
+    """Streets of seeds: an avenue, one by a scanner of any kind, and a worn street in turns."""
+    for number, seed in enumerate(seeds):
+        turn, kind = divmod(number, _KINDS)
+        if kind == _KINDS - 1:
+            request, is_any = worn_options_of(turn, seed, length_m), turn % 2 == 1
+        else:
+            request, is_any = avenue_options_of(turn + 2 * kind, seed, length_m), kind == 1
+        with recorded_scene(request, any_sensor(seed) if is_any else None) as scene:
+            yield scene
+
+
+def known_trees(scenes: Iterator[RoadScene]) -> KnownTrees:
     """All upright things on some streets; trees that nobody could tell left out."""
     rows: list[tuple[TreeFacts, bool, float, int]] = []
+    doubts: list[DiameterDoubts] = []
+    errors: list[float] = []
     for number, scene in enumerate(scenes):
-        rows += [(*one, 1.0, number) for one in _judge(scene, read_mapped(scene.truth("trees")))]
-        sys.stderr.write(f"{scene.name}: {len(rows)} upright things\n")
-    return LabelledThings.of(rows, len(TreeFacts._fields))
+        truth = read_mapped(scene.truth("trees"))
+        for one, which in _judged(scene, truth):
+            rows.append((facts_of(one.upright, one.crown), which is not None, 1.0, number))
+            if which is not None and shows_enough(truth, which, "arc_deg", LEAST_ARC_DEG):
+                off = abs(one.trunk.diameter_m - truth.number(which, "dbh_m"))
+                doubts.append(doubts_of(one.trunk.stems[0], one.trunk.diameter_m))
+                errors.append(max(off, _LEAST_ERROR_M) / one.trunk.fitted_within_m)
+        say(f"{scene.name}: {len(rows)} upright things")
+    return KnownTrees(
+        LabelledThings.of(rows, len(TreeFacts._fields)), np.array(doubts), np.array(errors)
+    )
 
 
-def _judge(scene: RoadScene, truth: MappedFile) -> Iterator[tuple[TreeFacts, bool]]:
+def _judged(
+    scene: RoadScene, truth: MappedFile
+) -> Iterator[tuple[StreetTree, MappedFeature | None]]:
+    """Upright things that are judged, and the tree that each is."""
     settings = TreeSettings(TreeParameters().thickest_m)
     found = upright_things(scene.drives, settings, SilentMonitor())
     feet = positions_of(truth.features)[:, :2]
@@ -91,7 +147,7 @@ def _judge(scene: RoadScene, truth: MappedFile) -> Iterator[tuple[TreeFacts, boo
         if off < _SAME_M:
             taken.add(which)
         if is_judged and not is_other_tree:
-            yield facts_of(one.upright, one.crown), off < _SAME_M
+            yield one, truth.features[which] if off < _SAME_M else None
 
 
 def _off(tree: StreetTree, feet: Floats) -> tuple[float, int]:
@@ -111,17 +167,68 @@ def _bark_of(delivery: Path) -> cKDTree:
     return cKDTree(cloud.xyz[is_bark])
 
 
+def fit_model(known: LabelledThings) -> Trees:
+    """Trees of decisions that give the log-odds of being a tree."""
+    rows = known.terms.astype(np.float32)
+    return fit_trees(Examples(rows, known.is_right, known.worth), _SIZE)
+
+
+def cross_validated(known: LabelledThings) -> Floats:
+    """(n,) each street's chances by a model that was fitted without it; 0 of a single one."""
+    found = np.zeros(known.is_right.size)
+    for fold in range(_FOLDS):
+        is_here = known.street % _FOLDS == fold
+        if is_here.any() and not is_here.all():
+            found[is_here] = _chances(fit_model(known.chosen(~is_here)), known.chosen(is_here))
+    return found
+
+
+def _chances(trees: Trees, things: LabelledThings) -> Floats:
+    odds = log_odds(trees, things.terms.astype(np.float32), SilentMonitor())
+    chances: Floats = 1 / (1 + np.exp(-odds))
+    return chances
+
+
+def fit_doubts(known: KnownTrees) -> Floats:
+    """(d + 1,) constant and weights of what widens the errors of diameters.
+
+    References
+    ----------
+    Koenker, Bassett 1978, Regression quantiles.
+    """
+    from sklearn.linear_model import QuantileRegressor
+
+    model = QuantileRegressor(quantile=_IN_95, alpha=_HELD, solver="highs")
+    model.fit(known.doubts, np.log(known.errors))
+    return np.array([model.intercept_, *model.coef_])
+
+
+def share_within(known: KnownTrees) -> float:
+    """Of diameters whose error is no greater than what is told with them."""
+    told = [wider(DiameterDoubts(*one)) for one in known.doubts.tolist()]
+    return float((known.errors <= told).mean())
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """The command."""
-    asked = training_streets(
-        "tree_training",
-        arguments,
-        avenue_scenes,
-        (_SEEDS, _CHECK),
-        others={"worn": (_USUAL, worn_options_of)},
+    parser = argparse.ArgumentParser(
+        prog="python -m processing.laboratory.road_training.tree_training"
     )
-    known, check = known_trees(asked.learnt), known_trees(asked.check)
-    sys.stdout.write(learn_weights(TreeFacts._fields, EXPECTED, known, check))
+    parser.add_argument("--seeds", default=_SEEDS, help="streets to learn from")
+    parser.add_argument("--check", default=_CHECK, help="streets to check with")
+    parser.add_argument("--length", type=float, default=_LENGTH_M, help="m of each")
+    asked = parser.parse_args(arguments)
+    known = known_trees(tree_scenes(seeds_of(asked.seeds), asked.length))
+    check = known_trees(tree_scenes(seeds_of(asked.check), asked.length))
+    model = fit_model(known.things)
+    write_trees(model, path_of("models") / Path(MODEL).relative_to("models"), len(SIGNS))
+    lines = [
+        reliability(known.things, cross_validated(known.things)),
+        reliability(check.things, _chances(model, check.things)),
+        "  ".join(f"{one:.2f}" for one in fit_doubts(known)),
+        f"within, as told: {share_within(known):.3f}, others {share_within(check):.3f}",
+    ]
+    sys.stdout.write("\n\n".join(lines) + "\n")
     return 0
 
 

@@ -16,6 +16,7 @@ from processing.core.arrays import Floats
 from processing.core.monitor import SilentMonitor
 from processing.laboratory.simulate.requests import StreetRequest
 from processing.laboratory.simulate.scanning.any_mounting import any_sensor, write_sensor
+from processing.laboratory.simulate.scanning.sensors import Sensor
 from processing.laboratory.simulate.streets import simulate_street
 from processing.project.importing.importing import ImportRequest, import_drives
 from processing.recording.drive import Drive
@@ -168,13 +169,8 @@ def simulated_scenes(
 ) -> Iterator[RoadScene]:
     """Streets of seeds, one after the other; each is gone when the next one is asked for."""
     for number, seed in enumerate(seeds):
-        options = request_of(number, seed, length_m)
-        name = f"{options.style} {options.sensor} {seed}" + (" twice" if options.passes > 1 else "")
-        with TemporaryDirectory(prefix="zuka-") as position:
-            folder = Path(position) / "street"
-            simulate_street(options, folder, SilentMonitor())
-            with opened_scene(name, folder) as scene:
-                yield scene
+        with recorded_scene(request_of(number, seed, length_m)) as scene:
+            yield scene
 
 
 def avenue_scenes(seeds: Sequence[int], length_m: float = LENGTH_M) -> Iterator[RoadScene]:
@@ -185,19 +181,30 @@ def avenue_scenes(seeds: Sequence[int], length_m: float = LENGTH_M) -> Iterator[
 def mounted_scenes(seeds: Sequence[int], length_m: float = LENGTH_M) -> Iterator[RoadScene]:
     """Streets of seeds that are recorded by heads of any height, tilt, rate and noise each."""
     for seed in seeds:
-        with TemporaryDirectory(prefix="zuka-") as position:
-            folder, own = Path(position) / "street", Path(position) / "sensor.toml"
-            sensor = any_sensor(seed)
+        sensor = any_sensor(seed)
+        style = "rural" if seed % _URBAN_OF else "urban"
+        request = StreetRequest(seed=seed, length_m=length_m, style=style, images=False)
+        heads = "one head" if len(sensor.heads) == 1 else "two heads"
+        name = f"{style}, {heads}, {sensor.turns_per_s:.0f}/s × {sensor.pulses} {seed}"
+        with recorded_scene(request, sensor, name) as scene:
+            yield scene
+
+
+@contextmanager
+def recorded_scene(
+    request: StreetRequest, sensor: Sensor | None = None, name: str = ""
+) -> Iterator[RoadScene]:
+    """A street that is made and recorded, by a sensor of its own where one is given."""
+    usual = f"{request.style} {request.sensor if sensor is None else 'any'} {request.seed}"
+    usual += " twice" if request.passes > 1 else ""
+    with TemporaryDirectory(prefix="zuka-") as position:
+        folder, own = Path(position) / "street", Path(position) / "sensor.toml"
+        if sensor is not None:
             write_sensor(sensor, own)
-            style = "rural" if seed % _URBAN_OF else "urban"
-            request = StreetRequest(
-                seed=seed, length_m=length_m, style=style, own_sensor=str(own), images=False
-            )
-            simulate_street(request, folder, SilentMonitor())
-            heads = "one head" if len(sensor.heads) == 1 else "two heads"
-            name = f"{style}, {heads}, {sensor.turns_per_s:.0f}/s × {sensor.pulses} {seed}"
-            with opened_scene(name, folder) as scene:
-                yield scene
+            request = replace(request, own_sensor=str(own))
+        simulate_street(request, folder, SilentMonitor())
+        with opened_scene(name or usual, folder) as scene:
+            yield scene
 
 
 def given_scenes(folders: Sequence[Path]) -> Iterator[RoadScene]:

@@ -53,10 +53,6 @@ _BEGINS = np.uint32((1 << 11) - 1)
 """The slabs up to 2.4 m, in which a column stands free: a pedestrian passes under what hangs
 higher."""
 
-_MOSTLY = 0.5
-"""Of the filled cells of a recording: where so many hold several points, single ones are of
-nothing, as phase scanners and dust give them, and don't stand beside anything."""
-
 _FOOT, _RAISED_SLABS = np.uint32((1 << 7) - 1), 12
 """The slabs up to 1.6 m, and how many stand free in a row of a column whose lower part a wall
 or a hedge before it hides: 2.4 m, longer than what hangs on fronts of houses."""
@@ -97,20 +93,19 @@ def find_columns(
     ground : (tiles, 16, 16) float32
         As :func:`ground_heights` found it.
     """
-    slabs, several = np.zeros((2, len(plan), TILE, TILE), np.uint32)
+    slabs, several, many = np.zeros((3, len(plan), TILE, TILE), np.uint32)
     for chunk in chunks_of(drives, plan.origin, monitor):
-        filled = slabs.reshape(-1), several.reshape(-1)
+        filled = slabs.reshape(-1), several.reshape(-1), many.reshape(-1)
         slabs_kernel(chunk.local, chunk.is_noise, plan.table, ground.reshape(-1), filled)
-    beside = _standing_beside(slabs, several)
     standing: list[tuple[Floats, int]] = []
     raised: list[tuple[Floats, int]] = []
 
     def of_tile(tile: int) -> tuple[list[tuple[Floats, int]], list[tuple[Floats, int]]]:
         monitor.check()
         margin = _HALO + _APART_CELLS
-        return _columns_of(
-            plan.window(slabs, tile, margin, 0), plan.window(beside, tile, margin, 0)
-        )
+        few, some, most = (plan.window(one, tile, margin, 0) for one in (slabs, several, many))
+        # Single points of noise don't stand beside what shows by many, as sparse walls do.
+        return _columns_of(free_slabs(few, few) | free_slabs(most, some))
 
     for tile, both in enumerate(in_order(of_tile, range(len(plan)))):
         for found, here in zip((standing, raised), both, strict=True):
@@ -120,15 +115,6 @@ def find_columns(
                 if ((middle >= 0) & (middle < TILE)).all()
             ]
     return _on_ground(standing, plan, ground), _on_ground(raised, plan, ground)
-
-
-def _standing_beside(slabs: NDArray[np.uint32], several: NDArray[np.uint32]) -> NDArray[np.uint32]:
-    """In which slabs cells hold what something can't stand free beside."""
-    low, sure = np.bitwise_count(slabs & _BEGINS).sum(), np.bitwise_count(several & _BEGINS).sum()
-    if sure < _MOSTLY * low:
-        return slabs
-    # Two points of one thing may lie in slabs above each other.
-    return several | (slabs & ((slabs << np.uint32(1)) | (slabs >> np.uint32(1))))
 
 
 def distinct_columns(columns: FoundColumns) -> FoundColumns:
@@ -161,10 +147,10 @@ def slabs_kernel(
     is_noise: NDArray[np.bool_],
     table: NDArray[np.int32],
     ground: NDArray[np.float32],
-    filled: tuple[NDArray[np.uint32], NDArray[np.uint32]],
+    filled: tuple[NDArray[np.uint32], NDArray[np.uint32], NDArray[np.uint32]],
 ) -> None:
-    """Mark at which heights cells hold points, and at which several."""
-    slabs, several = filled
+    """Mark at which heights cells hold points, at which two and more, at which three and more."""
+    slabs, several, many = filled
     for point in range(len(local)):
         if is_noise[point]:
             continue
@@ -176,6 +162,7 @@ def slabs_kernel(
         if local[point, 2] - low >= LOWEST_M and slab < SLABS:
             cell = cell_of(local[point, 0], local[point, 1], table, TILE)
             bit = np.uint32(1) << np.uint32(slab)
+            many[cell] |= several[cell] & bit
             several[cell] |= slabs[cell] & bit
             slabs[cell] |= bit
 
@@ -227,13 +214,17 @@ def _ring_steps() -> list[tuple[int, int]]:
 
 
 def _columns_of(
-    slabs: NDArray[np.uint32], beside: NDArray[np.uint32]
+    free: NDArray[np.uint32],
 ) -> tuple[list[tuple[Floats, int]], list[tuple[Floats, int]]]:
     """Middles of columns in cells of the tile inside the window, and where they stand free.
 
     Those that stand free low, and those of which no foot was seen.
+
+    Parameters
+    ----------
+    free : (n, m) uint32
+        At which heights cells stand free.
     """
-    free = free_slabs(slabs, beside)
     low, run = _longest_run(free & _BEGINS), _longest_run(free)
     is_low = low >= _FEWEST_SLABS
     standing = _peaks(is_low, np.where(is_low, low + run, 0), free)

@@ -12,6 +12,7 @@ import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,10 +60,34 @@ with the trunk (Tao et al. 2015, Segmenting tree crowns from terrestrial and mob
 Journal 110, eq. 2)."""
 
 
+_DIRECTIONS, _OFF_AXIS_M = 12, 0.5
+"""About the axis in which a crown is looked for, beyond what may be the trunk's own."""
+
+_FIRST_CELLS = 10.0
+"""Per cent of a crown's cells that are lower than where it begins as a whole."""
+
 _SLENDEREST, _SLENDER_ROOM_M = 80.0, 1.5
 """Height over diameter of slender trees that stand by themselves (Wang, Titus, LeMay 1998, Canadian
 Journal of Forest Research 28: those beyond 100 are blown over), and m that stakes add to a young
 one: what is higher belongs to another tree."""
+
+
+class CrownShape(NamedTuple):
+    """How what a trunk carries lies about its axis, cells included whose own shape isn't told.
+
+    Attributes
+    ----------
+    sides : float
+        Share of twelve directions in which some of it is.
+    off_m : float
+        How far the middle of its points lies from the axis in plan.
+    begins_m : float
+        Above the foot; a tenth of its cells are lower. 0 of nothing, as the others are.
+    """
+
+    sides: float
+    off_m: float
+    begins_m: float
 
 
 @dataclass(frozen=True)
@@ -91,6 +116,7 @@ class Crown:
         Where branches begin above the foot; NaN without any.
     underside : (n, 3) float64
         The lowest point of each 0.4 m of the plan, m about the plan's origin.
+    shape : CrownShape
     """
 
     cells: int
@@ -102,6 +128,7 @@ class Crown:
     spread_m: tuple[float, float]
     lowest_m: float
     underside: Floats
+    shape: CrownShape
 
 
 @dataclass(frozen=True)
@@ -249,9 +276,10 @@ class CrownShares:
         told = near[cells.is_told[near] & (cells.lowest[near, 2] < ends)]
         flat_share = float(cells.is_flat[told].mean()) if told.size else 1.0
         leafy = share[cells.is_told[share]]
+        shape = _shape_of(self._middles[share] - (*self._tops[number], foot), cells.counts[share])
         if leafy.size == 0:
             highest = cells.highest[self._about(number, _AXIS_M), 2].max(initial=foot + top)
-            return _bare(max(top, float(highest) - foot), flat_share)
+            return _bare(max(top, float(highest) - foot), flat_share, shape)
         dense = share[cells.counts[share] >= _FEWEST]
         inner = dense[self._is_inner(dense, number)]
         top_of = inner if inner.size else dense if dense.size else share
@@ -266,6 +294,7 @@ class CrownShares:
             spread_m=_spread(cells.lowest[share, :2], cells.highest[share, :2]),
             lowest_m=self._lowest(share, number) - foot,
             underside=_underside(cells, dense),
+            shape=shape,
         )
 
     def _is_inner(self, share: Integers, number: int) -> NDArray[np.bool_]:
@@ -350,7 +379,21 @@ class _PlanMoments:
         return float(np.hypot(*(middle - axis))) / max(math.sqrt(2 * spread), CELL_M)
 
 
-def _bare(height_m: float, flat_share: float = 1.0) -> Crown:
+def _shape_of(about: Floats, counts: Integers) -> CrownShape:
+    """The shape of cells about a trunk's axis and foot, (n, 3) float64 m, with so many points."""
+    if not len(about):
+        return CrownShape(0.0, 0.0, 0.0)
+    off = about[np.hypot(about[:, 0], about[:, 1]) > _OFF_AXIS_M]
+    turns = (np.arctan2(off[:, 1], off[:, 0]) + np.pi) / (2 * np.pi) * _DIRECTIONS
+    middle = np.average(about[:, :2], axis=0, weights=counts)
+    return CrownShape(
+        sides=np.unique(turns.astype(np.int64) % _DIRECTIONS).size / _DIRECTIONS,
+        off_m=float(np.hypot(*middle)),
+        begins_m=float(np.percentile(about[:, 2], _FIRST_CELLS)),
+    )
+
+
+def _bare(height_m: float, flat_share: float, shape: CrownShape) -> Crown:
     """Of what carries none."""
     return Crown(
         cells=0,
@@ -362,6 +405,7 @@ def _bare(height_m: float, flat_share: float = 1.0) -> Crown:
         spread_m=(0.0, 0.0),
         lowest_m=float("nan"),
         underside=np.empty((0, 3)),
+        shape=shape,
     )
 
 

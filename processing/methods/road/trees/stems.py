@@ -168,6 +168,12 @@ class FittedStem:
         )
 
     @property
+    def density(self) -> float:
+        """Points over what was seen of its surface, 1/m²."""
+        seen = self.radius_m * self.arc * (self.high_m - self.low_m)
+        return self.lines.size / max(seen, 1e-6)
+
+    @property
     def body(self) -> Floats:
         """(8,) as kernels have it, round."""
         body = np.zeros(NUMBERS)

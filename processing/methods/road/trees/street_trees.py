@@ -27,7 +27,7 @@ from processing.methods.road.trees.column_trunks import ColumnTrunk, column_trun
 from processing.methods.road.trees.crown_cells import StandingStems, crown_cells
 from processing.methods.road.trees.crowns import CROWN_M, Crown, CrownShares, UprightTrunk
 from processing.methods.road.trees.rises import rise_of
-from processing.methods.road.trees.tree_confidence import chance_of, facts_of
+from processing.methods.road.trees.tree_confidence import chances_of, facts_of
 from processing.methods.road.trees.trunks import Trunk, has_corners, is_round
 from processing.recording.drive import Drive
 
@@ -173,13 +173,17 @@ def _crowns(
     shares = CrownShares(cells, trunks, monitor)
     is_asked = np.ones(len(trunks), np.bool_)
     crowns = shares.crowns(is_asked, monitor)
-    chances = [chance_of(facts_of(*one)) for one in zip(trunks, crowns, strict=True)]
-    is_asked &= (np.array(chances) >= _LEAST_CHANCE) & _are_surest(feet, np.array(chances))
-    again = shares.crowns(is_asked, monitor)
-    return [
-        (again[k], chance_of(facts_of(one, again[k]))) if is_asked[k] else (crowns[k], chances[k])
-        for k, one in enumerate(trunks)
+    chances = _chances(trunks, crowns, monitor)
+    is_asked &= (chances >= _LEAST_CHANCE) & _are_surest(feet, chances)
+    shared = shares.crowns(is_asked, monitor)
+    crowns = [
+        new if asked else old for new, old, asked in zip(shared, crowns, is_asked, strict=True)
     ]
+    return list(zip(crowns, _chances(trunks, crowns, monitor).tolist(), strict=True))
+
+
+def _chances(trunks: Sequence[UprightTrunk], crowns: Sequence[Crown], monitor: Monitor) -> Floats:
+    return chances_of([facts_of(*one) for one in zip(trunks, crowns, strict=True)], monitor)
 
 
 def _are_surest(feet: Floats, chances: Floats) -> NDArray[np.bool_]:

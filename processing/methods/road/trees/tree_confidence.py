@@ -3,11 +3,19 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from functools import cache
 from typing import NamedTuple
 
-from processing.methods.road.logistic import chance_of_logit
+import numpy as np
+
+from processing.core.arrays import Floats
+from processing.core.monitor import Monitor
+from processing.methods.noise.tree_files import read_trees
+from processing.methods.noise.trees import Trees, log_odds
 from processing.methods.road.trees.cone_kernels import EVEN_NOISE_M
 from processing.methods.road.trees.crowns import Crown, UprightTrunk
+from resources import path_of
 
 _MOST_GAP_M = 1.5
 """A wider gap between stem and crown tells no more: another thing's crown hangs over a post."""
@@ -42,16 +50,11 @@ _HALF = 0.5
 """Of its circumference one scanner sees of any round thing; a second head shows no better what it
 is."""
 
-# Learnt by `python -m processing.laboratory.road_training.tree_training` from 1,482 upright things,
-# 182 of them trees, on avenues of seeds 600 to 615 and worn streets of seeds 540 to 551. Left out
-# one street at a time, 99 % of 110 given 0.9 and more were trees, 87 % of 30 from 0.7, 69 % of 32
-# from 0.5, 41 % of 27 from 0.3, 8 % of 61 from 0.1, 1 % of 1,222 below. Posts among the likely ones
-# are mostly lamps and poles that end within a crown; shrubs with stems of a metre are next.
-WEIGHTS = (
-    *(-5.75, 1.86, -7.72, -3.34, -2.91, -3.93, 2.09, 1.18, -3.68),
-    *(1.33, -3.38, -0.68, 0.27, 0.22),
-)
-"""A constant, and in the order of the facts."""
+_LEAST_TAPER, _MOST_TAPER = -0.02, 0.012
+"""Of the radius in a metre about the height of the tape: more is no surer. Steel posts have 0,
+concrete ones 0.007 (JIS A 5373: 1 : 75 of the diameter)."""
+
+MODEL = "models/uprights/trunk_tree.onnx"
 
 
 class TreeFacts(NamedTuple):
@@ -87,6 +90,20 @@ class TreeFacts(NamedTuple):
         How much denser points lie about its axis above than beside it, as a power of two, −3 to 3.
     lean_deg : float
         From the vertical, up to 6: posts are set plumb, trunks seldom grow so.
+    taper : float
+        What the stem's radius loses in a metre, −0.02 to 0.012.
+    free : float
+        Slabs of 0.2 m in which the stem stands free.
+    sides : float
+        Share of twelve directions in which something of the crown is.
+    off_m : float
+        How far the middle of the crown's points lies from the axis, m.
+    begins_m : float
+        Where the crown begins, but for a tenth of it, m.
+    height_m : float
+        Of the highest point above the foot.
+    diameter_m : float
+        Of the trunk.
     """
 
     filled: float
@@ -102,6 +119,17 @@ class TreeFacts(NamedTuple):
     slender: float
     core: float
     lean_deg: float
+    taper: float
+    free: float
+    sides: float
+    off_m: float
+    begins_m: float
+    height_m: float
+    diameter_m: float
+
+
+SIGNS = (1, -1, -1, -1, -1, 1, 1, -1, 1, -1, -1, 0, 1, 1, 1, 1, -1, 0, 0, 0)
+"""Which facts can only speak for a tree (1) or against one (−1)."""
 
 
 def facts_of(upright: UprightTrunk, crown: Crown) -> TreeFacts:
@@ -123,10 +151,29 @@ def facts_of(upright: UprightTrunk, crown: Crown) -> TreeFacts:
         slender=max(0.0, crown.height_m / upright.trunk.diameter_m / _SLENDER - 1.0),
         core=max(-_MOST_CORE, min(upright.rise.core, _MOST_CORE)),
         lean_deg=min(upright.trunk.lean_deg, _MOST_LEAN_DEG),
+        taper=max(_LEAST_TAPER, min(stem.taper, _MOST_TAPER)),
+        free=stem.free_slabs,
+        sides=crown.shape.sides,
+        off_m=crown.shape.off_m,
+        begins_m=crown.shape.begins_m,
+        height_m=crown.height_m,
+        diameter_m=upright.trunk.diameter_m,
     )
 
 
-def chance_of(facts: TreeFacts) -> float:
-    """The chance of being a tree, 0 to 1."""
-    logit = sum(weight * fact for weight, fact in zip(WEIGHTS, (1.0, *facts), strict=True))
-    return chance_of_logit(logit)
+def chances_of(facts: Sequence[TreeFacts], monitor: Monitor) -> Floats:
+    """The chances of being trees, (n,) float64 of 0 to 1.
+
+    By trees of decisions that `python -m processing.laboratory.road_training.tree_training` learns
+    (Friedman 2001, Greedy function approximation: a gradient boosting machine).
+    """
+    if not facts:
+        return np.zeros(0)
+    odds = log_odds(_model(), np.array(facts, np.float32), monitor)
+    chances: Floats = 1 / (1 + np.exp(-odds))
+    return chances
+
+
+@cache
+def _model() -> Trees:
+    return read_trees(path_of(MODEL))

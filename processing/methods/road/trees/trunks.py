@@ -15,6 +15,7 @@ import numpy as np
 from processing.core.arrays import Floats, Integers
 from processing.methods.road.objects.square_sections import square_share
 from processing.methods.road.trees.cone_kernels import FREE_SLAB_M
+from processing.methods.road.trees.diameter_doubts import doubts_of, wider
 from processing.methods.road.trees.stems import BREAST_M, EVENLY_M, HIGHEST_M, FittedStem
 
 _SAME_M = 0.06
@@ -116,7 +117,15 @@ class Trunk:
 
     @property
     def diameter_within_m(self) -> float:
-        """The diameter is off by no more in 95 of 100 cases, m."""
+        """The diameter is off by no more in 95 of 100 cases, m.
+
+        By what else may be wrong with the thickest stem wider than by its points and bark.
+        """
+        return self.fitted_within_m * wider(doubts_of(self.stems[0], self.diameter_m))
+
+    @property
+    def fitted_within_m(self) -> float:
+        """The same, were all stems found and nothing beside them taken for bark."""
         wide = [2 * stem.radius_m for stem in self.stems]
         share = 1.0 if len(wide) == 1 else _STEMS_SHARE
         random = sum((2 * stem.deviation_m) ** 2 for stem in self.stems)
@@ -171,7 +180,7 @@ def trunks_of(stems: Sequence[FittedStem]) -> tuple[Trunk, ...]:
 
     Notes
     -----
-    1. Pieces on one axis are one stem: the better seen counts.
+    1. Pieces on one axis are one stem, as high as they reach: the better seen counts.
     2. A stem inside a wider one that ends lower has a guard about it.
     3. Where a trunk forks above 1.2 m it is the trunk that counts, not what begins there.
     4. What points lie about more loosely or more sparsely than about another stem is none, and what
@@ -270,13 +279,7 @@ def _is_loose(stem: FittedStem, others: Sequence[FittedStem]) -> bool:
 
 def _is_sparse(stem: FittedStem, others: Sequence[FittedStem]) -> bool:
     """Whether a neighbour shows many times as many points on the same surface."""
-    return any(_density(stem) < _SPARSE * _density(one) for one in others if one.arc >= _ROUND)
-
-
-def _density(stem: FittedStem) -> float:
-    """Points on a stem over what was seen of its surface."""
-    seen = stem.radius_m * stem.arc * (stem.high_m - stem.low_m)
-    return stem.lines.size / max(seen, 1e-6)
+    return any(stem.density < _SPARSE * one.density for one in others if one.arc >= _ROUND)
 
 
 def _is_of_crown(stem: FittedStem, others: Sequence[FittedStem]) -> bool:
@@ -287,7 +290,7 @@ def _is_of_crown(stem: FittedStem, others: Sequence[FittedStem]) -> bool:
         one.low_m <= BREAST_M
         and one.high_m >= stem.low_m
         and one.noise_m < stem.noise_m
-        and _density(one) > _DENSER * _density(stem)
+        and one.density > _DENSER * stem.density
         for one in others
     )
 
@@ -333,6 +336,7 @@ def _without_stakes(trees: Sequence[list[FittedStem]]) -> list[list[FittedStem]]
 
     What ends below the tape is one too where another goes on, however thick it seems.
     """
+    trees = [tree for tree in trees if not _is_through_stakes(tree, trees)]
     tops = [max(stem.high_m for stem in tree) for tree in trees]
     lowest = BREAST_M if max(tops, default=0.0) > BREAST_M + _ENDS_M else 0.0
     trees = [tree for tree, top in zip(trees, tops, strict=True) if top >= lowest]
@@ -342,9 +346,22 @@ def _without_stakes(trees: Sequence[list[FittedStem]]) -> list[list[FittedStem]]
     return [max(trees, key=lambda tree: max(stem.high_m for stem in tree))]
 
 
+def _is_through_stakes(tree: Sequence[FittedStem], others: Sequence[list[FittedStem]]) -> bool:
+    """Whether a thinner stem among its points is rounder, tighter and goes on where it ends."""
+    wide = tree[0]
+    return any(
+        one is not tree
+        and one[0].radius_m < wide.radius_m
+        and one[0].arc > wide.arc
+        and one[0].high_m >= wide.high_m + _ENDS_M
+        and wide.noise_m > _LOOSE * one[0].noise_m
+        for one in others
+    )
+
+
 def _is_thicker_than_stakes(tree: Sequence[FittedStem]) -> bool:
     thickest = Trunk((tree[0],), ())
-    return thickest.diameter_m - thickest.diameter_within_m > _STAKE_M
+    return thickest.diameter_m - thickest.fitted_within_m > _STAKE_M
 
 
 def _is_stay(stem: FittedStem, others: Sequence[FittedStem], clump: Sequence[FittedStem]) -> bool:
@@ -372,12 +389,15 @@ def _without_pieces(stems: Sequence[FittedStem]) -> list[FittedStem]:
     kept: list[FittedStem] = []
     for stem in stems:
         middle = (stem.low_m + stem.high_m) / 2
-        same = any(
-            np.hypot(*(stem.middle_at(middle) - one.middle_at(middle))) < _SAME_M
-            and abs(stem.radius_m - one.radius_m) < _SAME_M / 2
-            for one in kept
-        )
-        if not same:
+        for number, one in enumerate(kept):
+            if (
+                np.hypot(*(stem.middle_at(middle) - one.middle_at(middle))) < _SAME_M
+                and abs(stem.radius_m - one.radius_m) < _SAME_M / 2
+            ):
+                low, high = min(one.low_m, stem.low_m), max(one.high_m, stem.high_m)
+                kept[number] = replace(one, low_m=low, high_m=high)
+                break
+        else:
             kept.append(stem)
     return kept
 

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from processing.core.arrays import Floats
+from processing.methods.road.trees.diameter_doubts import doubts_of, wider
 from processing.methods.road.trees.rises import followed, rise_of
 from processing.methods.road.trees.stems import stems_of
 from processing.methods.road.trees.trunks import Trunk, trunk_of, trunks_of
@@ -220,3 +221,29 @@ def test_a_slender_trunk_of_which_few_points_were_measured_is_found() -> None:
     radius = 0.04 + random.normal(0.0, 0.003, up.size)
     trunk = trunk_in(np.column_stack([radius * np.cos(turn), radius * np.sin(turn), up]))
     assert trunk.diameter_m == pytest.approx(0.08, abs=0.02)
+
+
+def test_a_circle_through_stakes_is_no_trunk_beside_one_that_goes_on() -> None:
+    # A tripod of stakes hides the middle of the stem: its circles run through all four.
+    whole = stems_of(np.vstack([bark(0.09, 0.2, 0.9), bark(0.09, 1.6, 4.0)]), MOST_M)
+    (stem,) = {round(one.radius_m, 2): one for one in whole}.values()
+    wide = replace(stem, radius_m=0.3, arc=0.34, noise_m=2.2 * stem.noise_m, low_m=0.9, high_m=1.5)
+    trunk = trunk_of([wide, *whole])
+    assert trunk is not None
+    assert trunk.diameter_m == pytest.approx(0.09, abs=0.01)
+    assert trunk.stems[0].low_m < 0.5
+    assert trunk.stems[0].high_m > 2.5
+
+
+def test_a_crowded_short_or_thinly_measured_stem_has_a_wider_error() -> None:
+    stem = trunk_in(bark(0.2, 0.2, 4.0)).stems[0]
+    sure = wider(doubts_of(stem, 0.2))
+    crowded = replace(stem, free_slabs=2)
+    short = replace(stem, low_m=1.0, high_m=1.6)
+    thin = replace(stem, lines=stem.lines[::20])
+    assert sure < 1.5
+    for one in (crowded, short, thin):
+        assert wider(doubts_of(one, 0.2)) > 1.5 * sure
+    trunk = Trunk((crowded,), ())
+    assert trunk.diameter_within_m > 1.5 * Trunk((stem,), ()).diameter_within_m
+    assert trunk.fitted_within_m == pytest.approx(Trunk((stem,), ()).fitted_within_m)
