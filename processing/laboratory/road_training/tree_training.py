@@ -56,7 +56,7 @@ _SEEDS = ",".join(f"{2001 + 2 * n},{2002 + 2 * n},{2101 + n}" for n in range(36)
 _CHECK = "9381-9389"
 _LENGTH_M, _KINDS, _FOLDS = 60.0, 3, 5
 
-_SIZE = TreesSize(trees=150, leaves=6, rate=0.1, least_in_a_leaf=10, signs=SIGNS)
+_SIZE = TreesSize(trees=200, leaves=4, rate=0.1, least_in_a_leaf=20, signs=SIGNS)
 
 _IN_95, _HELD = 0.95, 2e-3
 """Which errors lie within, and how much small weights are held to nothing (L1 penalty of
