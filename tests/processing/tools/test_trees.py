@@ -206,7 +206,7 @@ def test_the_ledger_of_trees_says_what_is_true(told: RunOutcome, tmp_path: Path)
         assert float(row["樹高 [m]"]) == pytest.approx(height_m, abs=0.4)
         assert int(row["幹の数"]) == stems
         assert float(row["枝下高 [m]"]) > 1.4
-        assert float(row["胸高直径の誤差範囲（95 %） [m]"]) < 0.08
+        assert float(row["胸高直径の誤差範囲（95 %） [m]"]) < 0.1
 
 
 def _place_of(tree: Candidate) -> Position:
