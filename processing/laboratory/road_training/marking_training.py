@@ -24,8 +24,10 @@ from processing.laboratory.road_training.learned_confidence import (
     WeightPrior,
     learn_weights,
 )
-from processing.laboratory.road_training.pole_training import training_options_of
-from processing.laboratory.road_training.training_streets import training_streets
+from processing.laboratory.road_training.training_streets import (
+    training_options_of,
+    training_streets,
+)
 from processing.methods.road.markings.marking_confidence import MarkingFacts
 from processing.methods.road.markings.street_markings import seen_markings
 from processing.scoring.features.line_positions import PolylineIndex, middle_positions

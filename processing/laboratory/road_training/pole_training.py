@@ -2,18 +2,18 @@
 
 ``python -m processing.laboratory.road_training.pole_training``.
 
-Simulates streets of ``--seeds``, half of them worn and less exactly driven, and ``--avenues``,
-finds all shafts on them and fits the weights of
+Needs the extra ``train``. Simulates the streets of ``--seeds`` (avenues and usual ones, by scanners
+of the catalogue and of any kind, in turns), finds all shafts on them and fits the models of
 `processing.methods.road.poles.pole_confidence` to which of them are poles, of low and of high ones
-apart; streets of ``--check`` are not learnt from. Prints the weights and how many shafts of each
-confidence are right: of streets learnt from by weights that were fitted without the street itself.
+apart; streets of ``--check`` are not learnt from. Prints how many shafts of each confidence are
+right: of streets learnt from by models that were fitted without some streets, it among them.
 """
 
 from __future__ import annotations
 
+import argparse
 import sys
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -24,23 +24,14 @@ from processing.core.monitor import SilentMonitor
 from processing.core.output_streams import write_every_character
 from processing.core.text import Text
 from processing.formats.vectors.mapped_shapes import read_mapped
-from processing.laboratory.accuracy.road.road_scenes import (
-    RoadScene,
-    avenue_options_of,
-    options_of,
-    simulated_scenes,
-    worn_options_of,
-)
-from processing.laboratory.road_training.learned_confidence import (
-    LabelledThings,
-    WeightPrior,
-    learn_weights,
-)
-from processing.laboratory.road_training.training_streets import training_streets
-from processing.laboratory.simulate.requests import StreetRequest
+from processing.laboratory.accuracy.road.road_scenes import RoadScene
+from processing.laboratory.noise_training.fitting import TreesSize
+from processing.laboratory.road_training.boosted_confidence import learn_model
+from processing.laboratory.road_training.learned_confidence import LabelledThings
+from processing.laboratory.road_training.varied_streets import varied_streets
 from processing.methods.road.objects.column_points import points_about
 from processing.methods.road.objects.survey import survey_columns
-from processing.methods.road.poles.pole_confidence import PoleFacts, facts_of, is_low
+from processing.methods.road.poles.pole_confidence import MODELS, SIGNS, PoleFacts, facts_of, is_low
 from processing.methods.road.poles.roofs import fellows_of
 from processing.methods.road.poles.shaft_kernels import FREE
 from processing.methods.road.poles.shaft_sides import seen_sides
@@ -54,43 +45,13 @@ from processing.methods.road.poles.surroundings import surroundings_of
 from processing.scoring.features.object_matches import positions_of
 from processing.scoring.features.poles import POLES
 
-EXPECTED_LOW = WeightPrior(
-    (
-        *(0.0, -3, 3, -5, 4, 3, 1.5, 1, -2, -8, -8, -4, -0.1),
-        *(-1, -0.5, 1, -0.1, 0.1, 0.1, 0.1, -2, -8, -3, -5),
-    ),
-    (
-        *(4.0, 3, 3, 5, 4, 4, 1.5, 3, 2, 6, 6, 3, 0.1),
-        *(2, 1, 1, 0.1, 0.1, 0.1, 0.1, 2, 8, 3, 5),
-    ),
-)
-EXPECTED_HIGH = WeightPrior(
-    (
-        *(0.0, -3, 2, -4, 3, 3, 1, 1, -2, -1, -4, -2, -4),
-        *(-1, -1, 1, -3, 2, 2, 3, -1, -5, -5, -5),
-    ),
-    (
-        *(4.0, 3, 2, 4, 3, 4, 1.5, 3, 2, 2, 5, 2, 3),
-        *(2, 2, 2, 3, 2, 2, 3, 2, 5, 5, 5),
-    ),
-)
-"""A constant, and in the order of `PoleFacts`: tens of streets have few poles of each kind, so much
-is left to what reasoning expects."""
-
-_SEEDS, _AVENUES, _CHECK = "900-917", "600-615", "918-923"
-"""Streets that the weights were learnt from, usual ones and avenues, and others to check with."""
+_SIZE = TreesSize(trees=200, leaves=4, rate=0.1, least_in_a_leaf=20, signs=SIGNS)
 
 _NOISE_CODES = (7, 18)
 
 _ON_M, _NEAR_M = 0.25, 0.6
 """How near to a true pole a shaft is its own, and how near it counts neither way: a second cone
 through its plates, which the surer one displaces."""
-
-
-def training_options_of(_number: int, seed: int, length_m: float) -> StreetRequest:
-    """Styles and sensors by seed; every other street is worn and less exactly driven."""
-    make = worn_options_of if seed % 2 else options_of
-    return replace(make(seed % 12, seed, length_m), seed=seed)
 
 
 def label_shafts(shafts: Sequence[Shaft], true: Floats, usual_m: float) -> list[bool | None]:
@@ -166,22 +127,15 @@ def _is_noise(shaft: Shaft, codes: Sequence[NDArray[np.uint8]]) -> bool:
     return float(np.isin(told, _NOISE_CODES).mean()) > 0.5
 
 
-def _scenes(seeds: Sequence[int], length_m: float) -> Iterator[RoadScene]:
-    return simulated_scenes(seeds, length_m, training_options_of)
-
-
 def main(arguments: Sequence[str] | None = None) -> int:
     """The command."""
-    asked = training_streets(
-        "pole_training",
-        arguments,
-        _scenes,
-        (_SEEDS, _CHECK),
-        others={"avenues": (_AVENUES, avenue_options_of)},
+    parser = argparse.ArgumentParser(
+        prog="python -m processing.laboratory.road_training.pole_training"
     )
+    asked = varied_streets(parser, arguments)
     known, check = known_shafts(asked.learnt), known_shafts(asked.check)
-    for low, expected in ((True, EXPECTED_LOW), (False, EXPECTED_HIGH)):
-        sys.stdout.write(learn_weights(PoleFacts._fields, expected, known[low], check[low]))
+    for low, model in MODELS.items():
+        sys.stdout.write(f"{learn_model(model, known[low], check[low], _SIZE)}\n\n")
     return 0
 
 

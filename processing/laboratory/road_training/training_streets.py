@@ -5,13 +5,15 @@ from __future__ import annotations
 import argparse
 import itertools
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from processing.laboratory.accuracy.road.road_scenes import (
     RoadScene,
     given_scenes,
+    options_of,
     simulated_scenes,
+    worn_options_of,
 )
 from processing.laboratory.seed_ranges import seeds_of
 from processing.laboratory.simulate.requests import StreetRequest
@@ -68,3 +70,9 @@ def training_streets(
         itertools.chain(laid, *more, given_scenes(asked.deliveries)),
         scenes(seeds_of(asked.check), asked.length),
     )
+
+
+def training_options_of(_number: int, seed: int, length_m: float) -> StreetRequest:
+    """Styles and sensors by seed; every other street is worn and less exactly driven."""
+    make = worn_options_of if seed % 2 else options_of
+    return replace(make(seed % 12, seed, length_m), seed=seed)

@@ -29,19 +29,13 @@ from processing.core.output_streams import write_every_character
 from processing.formats.vectors.mapped_shapes import read_mapped
 from processing.laboratory.accuracy.road.road_scenes import (
     RoadScene,
-    avenue_options_of,
     cloud_of,
-    recorded_scene,
-    worn_options_of,
 )
-from processing.laboratory.noise_training.examples import Examples
-from processing.laboratory.noise_training.fitting import TreesSize, fit_trees
+from processing.laboratory.noise_training.fitting import TreesSize
 from processing.laboratory.progress_lines import say
-from processing.laboratory.road_training.learned_confidence import LabelledThings, reliability
-from processing.laboratory.seed_ranges import seeds_of
-from processing.laboratory.simulate.scanning.any_mounting import any_sensor
-from processing.methods.noise.tree_files import write_trees
-from processing.methods.noise.trees import Trees, log_odds
+from processing.laboratory.road_training.boosted_confidence import learn_model
+from processing.laboratory.road_training.learned_confidence import LabelledThings
+from processing.laboratory.road_training.varied_streets import varied_streets
 from processing.methods.road.trees.diameter_doubts import DiameterDoubts, doubts_of, wider
 from processing.methods.road.trees.stems import BREAST_M
 from processing.methods.road.trees.street_trees import StreetTree, TreeSettings, upright_things
@@ -50,11 +44,6 @@ from processing.scoring.features.mapped_features import MappedFeature, MappedFil
 from processing.scoring.features.object_matches import is_in_span, positions_of, shows_enough
 from processing.scoring.features.trees import LEAST_ARC_DEG, LEAST_TRUNK_POINTS
 from processing.tools.trees import TreeParameters
-from resources import path_of
-
-_SEEDS = ",".join(f"{2001 + 2 * n},{2002 + 2 * n},{2101 + n}" for n in range(36))
-_CHECK = "9381-9389"
-_LENGTH_M, _KINDS, _FOLDS = 60.0, 3, 5
 
 _SIZE = TreesSize(trees=200, leaves=4, rate=0.1, least_in_a_leaf=20, signs=SIGNS)
 
@@ -91,18 +80,6 @@ class KnownTrees:
     things: LabelledThings
     doubts: Floats
     errors: Floats
-
-
-def tree_scenes(seeds: Sequence[int], length_m: float = _LENGTH_M) -> Iterator[RoadScene]:
-    """Streets of seeds: an avenue, one by a scanner of any kind, and a worn street in turns."""
-    for number, seed in enumerate(seeds):
-        turn, kind = divmod(number, _KINDS)
-        if kind == _KINDS - 1:
-            request, is_any = worn_options_of(turn, seed, length_m), turn % 2 == 1
-        else:
-            request, is_any = avenue_options_of(turn + 2 * kind, seed, length_m), kind == 1
-        with recorded_scene(request, any_sensor(seed) if is_any else None) as scene:
-            yield scene
 
 
 def known_trees(scenes: Iterator[RoadScene]) -> KnownTrees:
@@ -167,28 +144,6 @@ def _bark_of(delivery: Path) -> cKDTree:
     return cKDTree(cloud.xyz[is_bark])
 
 
-def fit_model(known: LabelledThings) -> Trees:
-    """Trees of decisions that give the log-odds of being a tree."""
-    rows = known.terms.astype(np.float32)
-    return fit_trees(Examples(rows, known.is_right, known.worth), _SIZE)
-
-
-def cross_validated(known: LabelledThings) -> Floats:
-    """(n,) each street's chances by a model that was fitted without it; 0 of a single one."""
-    found = np.zeros(known.is_right.size)
-    for fold in range(_FOLDS):
-        is_here = known.street % _FOLDS == fold
-        if is_here.any() and not is_here.all():
-            found[is_here] = _chances(fit_model(known.chosen(~is_here)), known.chosen(is_here))
-    return found
-
-
-def _chances(trees: Trees, things: LabelledThings) -> Floats:
-    odds = log_odds(trees, things.terms.astype(np.float32), SilentMonitor())
-    chances: Floats = 1 / (1 + np.exp(-odds))
-    return chances
-
-
 def fit_doubts(known: KnownTrees) -> Floats:
     """(d + 1,) constant and weights of what widens the errors of diameters.
 
@@ -214,17 +169,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(
         prog="python -m processing.laboratory.road_training.tree_training"
     )
-    parser.add_argument("--seeds", default=_SEEDS, help="streets to learn from")
-    parser.add_argument("--check", default=_CHECK, help="streets to check with")
-    parser.add_argument("--length", type=float, default=_LENGTH_M, help="m of each")
-    asked = parser.parse_args(arguments)
-    known = known_trees(tree_scenes(seeds_of(asked.seeds), asked.length))
-    check = known_trees(tree_scenes(seeds_of(asked.check), asked.length))
-    model = fit_model(known.things)
-    write_trees(model, path_of("models") / Path(MODEL).relative_to("models"), len(SIGNS))
+    asked = varied_streets(parser, arguments)
+    known, check = known_trees(asked.learnt), known_trees(asked.check)
     lines = [
-        reliability(known.things, cross_validated(known.things)),
-        reliability(check.things, _chances(model, check.things)),
+        learn_model(MODEL, known.things, check.things, _SIZE),
         "  ".join(f"{one:.2f}" for one in fit_doubts(known)),
         f"within, as told: {share_within(known):.3f}, others {share_within(check):.3f}",
     ]

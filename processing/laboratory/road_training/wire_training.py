@@ -26,8 +26,10 @@ from processing.laboratory.road_training.learned_confidence import (
     WeightPrior,
     learn_weights,
 )
-from processing.laboratory.road_training.pole_training import training_options_of
-from processing.laboratory.road_training.training_streets import training_streets
+from processing.laboratory.road_training.training_streets import (
+    training_options_of,
+    training_streets,
+)
 from processing.methods.road.objects.survey import survey_ground
 from processing.methods.road.wires.spans import spans_of
 from processing.methods.road.wires.wire_confidence import WireFacts, facts_of
