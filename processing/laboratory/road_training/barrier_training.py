@@ -48,8 +48,10 @@ from processing.scoring.features.line_positions import PolylineIndex
 
 def _expected(**others: float) -> ChanceTerms:
     usual = ChanceTerms(
-        -2, -1, -2, 0.5, 1, 1.5, -1, 1, 0.5, 1, -2, -2, 0.1, 1, -1, -1, -1, -3, -1.5, 1
-    )
+        short=-2, tall=-1, high=-2, batter=0.5, full=1, even=1.5, over=-1, fill=1, low=0.5, rows=1,
+        rough=-2, lean=-2, toe=0.1, through=1, free=-1, hidden=-1, roofed=-1, rise=-1, across=-3,
+        far=-1.5, long=1,
+    )  # fmt: skip
     return usual._replace(**others)
 
 
@@ -73,6 +75,9 @@ _SEEDS, _CHECK = "9310-9333", "9340-9345"
 _STYLES = ("urban", "rural", "highway")
 _NEAR_M = 0.25
 """A window shows a barrier if most of it lies so near to one: a beam hangs before its posts."""
+
+_BESIDE_SHARE, _SAME_TOP_M, _GLASS_M = 0.3, 0.25, 1.6
+"""Height of the clear panes on noise walls, which aren't measured."""
 
 
 class KnownWindow(NamedTuple):
@@ -100,20 +105,35 @@ def known_windows(scenes: Iterator[RoadScene]) -> list[KnownWindow]:
 
 
 def judge_windows(scene: RoadScene) -> Iterator[tuple[WindowFacts, bool]]:
-    """The windows on a street, but for those on barriers that stand on walls."""
+    """The windows on a street, but for those on barriers that stand on walls.
+
+    Of the tops that a window on a barrier may have, the one nearest to the true height is right;
+    nothing is learnt from the others. Those of other windows are all wrong.
+    """
     seen = seen_strips(scene.drives, SilentMonitor())
     true = read_mapped(scene.truth("barriers")).features
-    index = PolylineIndex([one.xyz for one in true if one.facts["type"] != OTHER])
+    known = [one for one in true if one.facts["type"] != OTHER]
+    index = PolylineIndex([one.xyz for one in known])
     others = PolylineIndex([one.xyz for one in true if one.facts["type"] == OTHER])
     for profile, windows in seen.strips:
         nodes = np.column_stack([profile.nodes, np.zeros(len(profile.nodes))]) + seen.origin
-        near = index.nearest(nodes, _NEAR_M).line >= 0
+        near = index.nearest(nodes, _NEAR_M).line
         beside = others.nearest(nodes, 2 * _NEAR_M).line >= 0
         for window in windows:
             first = int(window.first * COLUMN_M * 2)
             part = slice(first, max(first + 1, int(window.last * COLUMN_M * 2)))
-            if not beside[part].mean() > 0.3:
-                yield window.facts, bool(near[part].mean() > 0.5)
+            if beside[part].mean() > _BESIDE_SHARE:
+                continue
+            on = near[part][near[part] >= 0]
+            if on.size <= (part.stop - part.start) / 2:
+                yield from ((one, False) for one in window.options)
+                continue
+            facts = known[int(np.bincount(on).argmax())].facts
+            high = float(str(facts["height_m"]))
+            best = min(window.options, key=lambda one: abs(one.top - high))
+            lower = _GLASS_M if facts["type"] == "noise_barrier" else _SAME_TOP_M
+            if -lower < best.top - high < _SAME_TOP_M:
+                yield best, True
 
 
 def _labelled(known: Sequence[KnownWindow], group: BarrierGroup) -> LabelledThings:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Literal, NamedTuple
 
 from processing.methods.road.barriers.barrier_facts import WindowFacts
@@ -15,7 +15,7 @@ noise walls up to 4 m; houses are higher."""
 _RAILS_ROWS = 0.2
 """From which difference of its layers on a strip is one of rails."""
 
-_THROUGH = 0.25
+_THROUGH = 0.15
 """From which share of the ground seen behind it a sheet can be seen through."""
 
 SCREEN_M = 1.6
@@ -55,6 +55,7 @@ class ChanceTerms(NamedTuple):
     through: float
     free: float
     hidden: float
+    roofed: float
     rise: float
     across: float
     far: float
@@ -64,35 +65,36 @@ class ChanceTerms(NamedTuple):
 # Learnt by `processing.laboratory.road_training.barrier_training`.
 _WEIGHTS: Mapping[BarrierGroup, tuple[float, ChanceTerms]] = {
     "rails": (
-        -5.12,
+        -7.61,
         ChanceTerms(
-            short=-2.35, tall=-3.36, high=-4.41, batter=0.58, full=3.27, even=2.01, over=0.0,
-            fill=2.15, low=-0.35, rows=4.76, rough=-1.32, lean=-2.84, toe=0.85, through=0.0,
-            free=-1.65, hidden=-0.57, rise=-1.64, across=-6.01, far=-1.64, long=3.04,
+            short=-5.86, tall=-4.99, high=-4.53, batter=0.28, full=3.72, even=3.49, over=-0.74,
+            fill=3.67, low=-0.83, rows=4.26, rough=-0.85, lean=-3.49, toe=0.81, through=0.0,
+            free=-2.25, hidden=-0.57, roofed=0.0, rise=-1.68, across=-6.25, far=-1.39, long=4.03,
         ),
     ),
     "nets": (
-        -5.33,
+        -4.70,
         ChanceTerms(
-            short=-3.97, tall=-2.16, high=-2.88, batter=0.0, full=2.74, even=1.25, over=-1.63,
-            fill=0.0, low=0.64, rows=3.26, rough=-0.71, lean=-10.36, toe=0.0, through=2.54,
-            free=0.0, hidden=0.0, rise=-2.47, across=-6.51, far=0.0, long=0.97,
+            short=-5.30, tall=-2.11, high=-4.38, batter=0.0, full=2.51, even=0.95, over=-2.40,
+            fill=0.0, low=0.0, rows=2.51, rough=-1.16, lean=-13.53, toe=0.0, through=2.85,
+            free=-0.18, hidden=0.0, roofed=0.0, rise=-2.35, across=-5.73, far=0.0, long=1.93,
         ),
     ),
     "walls": (
-        -3.16,
+        -5.76,
         ChanceTerms(
-            short=-0.14, tall=-16.85, high=-2.00, batter=1.59, full=0.0, even=0.0, over=-0.90,
-            fill=1.64, low=0.0, rows=4.63, rough=-1.97, lean=0.0, toe=0.30, through=2.48,
-            free=-1.83, hidden=-2.28, rise=-1.03, across=-4.20, far=0.0, long=2.48,
+            short=-3.69, tall=-17.66, high=-2.00, batter=2.66, full=1.08, even=0.0, over=-1.38,
+            fill=1.48, low=0.42, rows=5.03, rough=-0.95, lean=0.0, toe=0.96, through=5.72,
+            free=-0.19, hidden=-3.27, roofed=-2.10, rise=-0.09, across=-4.13, far=0.0, long=2.67,
         ),
     ),
     "screens": (
-        -3.84,
+        -4.86,
         ChanceTerms(
-            short=-2.00, tall=2.07, high=-7.27, batter=0.0, full=1.30, even=0.0, over=-5.05,
-            fill=0.0, low=0.0, rows=0.55, rough=-6.04, lean=-12.55, toe=0.0, through=0.0,
-            free=-4.09, hidden=2.73, rise=-0.57, across=-3.96, far=0.0, long=1.91,
+            short=-2.00, tall=3.19, high=-7.21, batter=0.0, full=0.66, even=0.11, over=-2.73,
+            fill=0.48, low=0.0, rows=1.59, rough=-7.64, lean=-8.56, toe=0.0, through=0.0,
+            free=-1.52, hidden=3.34, roofed=-4.11, rise=-1.51, across=-4.59, far=-0.41,
+            long=3.25,
         ),
     ),
 }  # fmt: skip
@@ -123,3 +125,10 @@ def chance_of(facts: WindowFacts) -> float:
     constant, weights = _WEIGHTS[group_of(facts)]
     terms = terms_of(facts)
     return chance_of_logit(constant + sum(a * b for a, b in zip(weights, terms, strict=True)))
+
+
+def likeliest(options: Sequence[WindowFacts]) -> tuple[WindowFacts, float]:
+    """The likeliest of several facts of one place, and its chance."""
+    chances = [chance_of(one) for one in options]
+    best = max(range(len(options)), key=chances.__getitem__)
+    return options[best], chances[best]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 from processing.core.arrays import Floats
 from processing.methods.road.barriers.fact_kernels import (
     LOW_LAYER,
+    MOST_TOPS,
     RAIL_LAYER,
-    FilledLayers,
     LayerSums,
+    ends_kernel,
     layers_kernel,
     leaning_kernel,
     tops_kernel,
@@ -39,7 +40,9 @@ _ROUGH_M, _TOE_M, _FAR_M = 0.05, 0.1, 20.0
 _MOST_ROUGH, _MOST_RISE_M = 2.0, 1.5
 _LEAST_BESIDE_M = 0.7
 
-_SAME_TOP_M = 0.11
+_HIGH_BITS = np.uint32((1 << SLABS) - (1 << round((2.6 - LOWEST_M) / SLAB_M)))
+
+_SAME_TOP_M, _MOST_WINDOWS = 0.11, 24
 _SHORTEST_M, _DOUBLINGS = 3.0, 4
 """From 3 m to 48 m: garden walls and vehicles end after some metres, barriers go on."""
 
@@ -74,6 +77,8 @@ class WindowFacts(NamedTuple):
     free, hidden : float
         Share of its nodes with something beside it as high as it is, on the freer and the other
         side.
+    roofed : float
+        Share of its nodes with something higher than 2.6 m beside it: houses, crowns.
     rise : float
         How much higher the ground is on one side than on the other, m.
     across : float
@@ -97,6 +102,7 @@ class WindowFacts(NamedTuple):
     through: float
     free: float
     hidden: float
+    roofed: float
     rise: float
     across: float
     far: float
@@ -110,15 +116,13 @@ class FactWindow(NamedTuple):
     ----------
     first, last : int
         Its first column and the one after its last.
-    facts : WindowFacts
-    layers : (96,) float64
-        The share of its columns that each layer fills.
+    options : tuple of WindowFacts
+        One for each layer that may be the top of what stands there.
     """
 
     first: int
     last: int
-    facts: WindowFacts
-    layers: Floats
+    options: tuple[WindowFacts, ...]
 
 
 class VehicleWay:
@@ -149,35 +153,51 @@ class VehicleWay:
 def windows_of(profile: StripProfile, way: VehicleWay) -> list[FactWindow]:
     """The windows of a strip, one for a short one; none where nothing stands."""
     windows = list(_windows_alone(profile, way))
-    found: list[FactWindow] = []
-    start = 0
-    for number in range(1, len(windows) + 1):
-        if number < len(windows) and _goes_on(windows[number - 1], windows[number]):
-            continue
-        here = windows[start:number]
-        ahead_m = (here[-1].last - here[0].first) * COLUMN_M
-        long = min(max(math.log2(ahead_m / _SHORTEST_M), 0.0) / _DOUBLINGS, 1.0)
-        found += [one._replace(facts=one.facts._replace(long=long)) for one in here]
-        start = number
-    return found
+    return [
+        one._replace(
+            options=tuple(
+                facts._replace(long=_long_of(windows, number, facts.top)) for facts in one.options
+            )
+        )
+        for number, one in enumerate(windows)
+    ]
 
 
-def _goes_on(one: FactWindow, other: FactWindow) -> bool:
-    """Whether what stands in a window goes on in the next."""
-    is_next = other.first <= one.first + STRIDE
-    return is_next and abs(one.facts.top - other.facts.top) <= _SAME_TOP_M
+def _long_of(windows: Sequence[FactWindow], number: int, top: float) -> float:
+    """How far something goes on about a window with the same top, as a fact."""
+    ends = []
+    for step in (-1, 1):
+        at, high = number, top
+        for _ in range(_MOST_WINDOWS):
+            if not 0 <= at + step < len(windows):
+                break
+            if abs(windows[at + step].first - windows[at].first) > STRIDE:
+                break
+            others = [abs(one.top - high) for one in windows[at + step].options]
+            if min(others) > _SAME_TOP_M:
+                break
+            at += step
+            high = windows[at].options[int(np.argmin(others))].top
+        ends.append(at)
+    long_m = (windows[ends[1]].last - windows[ends[0]].first) * COLUMN_M
+    return min(max(math.log2(long_m / _SHORTEST_M), 0.0) / _DOUBLINGS, 1.0)
 
 
 def _windows_alone(profile: StripProfile, way: VehicleWay) -> Iterator[FactWindow]:
     columns = len(profile.counts)
     across, far = _to_way(profile, way)
+    tops = np.zeros(MOST_TOPS, np.int64)
     for start in range(0, max(1, columns - WINDOW + STRIDE), STRIDE):
         last = min(start + WINDOW, columns)
         first = max(0, last - WINDOW)
+        window = _ProfileWindow.of(profile, first, last)
+        if float(window.share[RAIL_LAYER:].max()) < _LEAST_SHARE:
+            continue
         node = min(int((first + last) / 2 * COLUMN_M / STEP_M), len(across) - 1)
-        found = facts_between(profile, first, last, (float(across[node]), float(far[node])))
-        if found is not None:
-            yield FactWindow(first, last, *found)
+        to_way = (float(across[node]), float(far[node]))
+        count = tops_kernel(window.share, tops)
+        options = tuple(window.facts(top, to_way) for top in tops[:count].tolist())
+        yield FactWindow(first, last, options)
 
 
 def _to_way(profile: StripProfile, way: VehicleWay) -> tuple[Floats, Floats]:
@@ -191,53 +211,70 @@ def _to_way(profile: StripProfile, way: VehicleWay) -> tuple[Floats, Floats]:
     return across, np.minimum(far, 1.0)
 
 
-def facts_between(
-    profile: StripProfile, first: int, last: int, to_way: tuple[float, float]
-) -> tuple[WindowFacts, Floats] | None:
-    """Facts of the columns of a strip, and the share of them that each layer fills."""
-    columns = slice(first, last)
-    filled = np.zeros((last - first, LAYERS), np.bool_)
-    share = np.zeros(LAYERS)
-    layers_kernel(profile.counts[columns], filled, share)
-    most = float(share[RAIL_LAYER:].max())
-    if most < _LEAST_SHARE:
-        return None
-    full, even, over, top = tops_kernel(FilledLayers(filled, share / most))
-    layers = np.minimum(share / most, 1.0)
-    inside = layers[LOW_LAYER : top + 1]
-    nodes = slice(int(first * COLUMN_M / STEP_M), int(np.ceil(last * COLUMN_M / STEP_M)) + 1)
-    free, hidden = _beside(profile, nodes, top)
-    levels = profile.levels[nodes]
-    rises = np.abs(levels[:, 0] - levels[:, 1])
-    known = rises[np.isfinite(rises)]
-    sums = LayerSums(profile.counts[columns], profile.aside[columns], profile.squares[columns])
-    rough, lean, toe = leaning_kernel(sums, filled, top)
-    facts = WindowFacts(
-        top=(top + 1) * LAYER_M,
-        full=full,
-        even=even,
-        over=over,
-        fill=float(inside.mean()),
-        low=float(layers[LOW_LAYER:RAIL_LAYER].mean()),
-        rows=float(inside.std()),
-        rough=min(rough / _ROUGH_M, _MOST_ROUGH),
-        lean=min(abs(lean), 1.0),
-        toe=min(toe / _TOE_M, 1.5),
-        through=float(profile.lit[nodes].mean(axis=0).min()),
-        free=free,
-        hidden=hidden,
-        rise=min(float(np.median(known)), _MOST_RISE_M) if known.size else 0.0,
-        across=to_way[0],
-        far=to_way[1],
-    )
-    return facts, share
+def facts_below(profile: StripProfile, first: int, last: int, top_m: float) -> WindowFacts:
+    """Facts of the columns of a strip whose top is known, wherever the vehicle drove."""
+    top = max(round(top_m / LAYER_M) - 1, RAIL_LAYER)
+    return _ProfileWindow.of(profile, first, last).facts(top, (0.0, 0.5))
 
 
-def _beside(profile: StripProfile, nodes: slice, top: int) -> tuple[float, float]:
-    """Share of nodes with something beside them, on the freer side and on the other."""
+class _ProfileWindow(NamedTuple):
+    """Columns of a strip: its profile, which cells are filled, and the share of each layer."""
+
+    profile: StripProfile
+    first: int
+    last: int
+    filled: NDArray[np.bool_]
+    share: Floats
+
+    @staticmethod
+    def of(profile: StripProfile, first: int, last: int) -> _ProfileWindow:
+        filled = np.zeros((last - first, LAYERS), np.bool_)
+        share = np.zeros(LAYERS)
+        layers_kernel(profile.counts[first:last], filled, share)
+        return _ProfileWindow(profile, first, last, filled, share)
+
+    def facts(self, top: int, to_way: tuple[float, float]) -> WindowFacts:
+        """Its facts if a layer is its top."""
+        profile, columns = self.profile, slice(self.first, self.last)
+        most = max(float(self.share[RAIL_LAYER : top + 1].max()), 1e-9)
+        layers = np.minimum(self.share / most, 1.0)
+        inside = layers[LOW_LAYER : top + 1]
+        full, even, over = ends_kernel(self.filled, top)
+        nodes = slice(
+            int(self.first * COLUMN_M / STEP_M), int(np.ceil(self.last * COLUMN_M / STEP_M)) + 1
+        )
+        free, hidden, roofed = _beside(profile, nodes, top)
+        rises = np.abs(profile.levels[nodes, 0] - profile.levels[nodes, 1])
+        known = rises[np.isfinite(rises)]
+        sums = LayerSums(profile.counts[columns], profile.aside[columns], profile.squares[columns])
+        rough, lean, toe = leaning_kernel(sums, self.filled, top)
+        return WindowFacts(
+            top=(top + 1) * LAYER_M,
+            full=full,
+            even=even,
+            over=over,
+            fill=float(inside.mean()),
+            low=float(layers[LOW_LAYER:RAIL_LAYER].mean()),
+            rows=float(inside.std()),
+            rough=min(rough / _ROUGH_M, _MOST_ROUGH),
+            lean=min(abs(lean), 1.0),
+            toe=min(toe / _TOE_M, 1.5),
+            through=float(profile.lit[nodes].mean(axis=0).min()),
+            free=free,
+            hidden=hidden,
+            roofed=roofed,
+            rise=min(float(np.median(known)), _MOST_RISE_M) if known.size else 0.0,
+            across=to_way[0],
+            far=to_way[1],
+        )
+
+
+def _beside(profile: StripProfile, nodes: slice, top: int) -> tuple[float, float, float]:
+    """Share of nodes with something beside them, on the freer side and on the other; or high."""
     high_m = max((top + 1) * LAYER_M, _LEAST_BESIDE_M)
     low, high = (round((one - LOWEST_M) / SLAB_M) for one in (RAIL_LAYER * LAYER_M, high_m))
     band = np.uint32((1 << min(high, SLABS - 1)) - 1) & ~np.uint32((1 << low) - 1)
     beside: NDArray[np.bool_] = (profile.filled[nodes] & band) > 0
     shares = beside.mean(axis=0)
-    return float(shares.min()), float(shares.max())
+    is_high: NDArray[np.bool_] = (profile.filled[nodes] & _HIGH_BITS) > 0
+    return float(shares.min()), float(shares.max()), float(is_high.any(axis=1).mean())

@@ -8,12 +8,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from processing.core.arrays import Floats, Integers
+from processing.core.arrays import Flags, Floats, Integers
 from processing.methods.road.barriers.barrier_facts import (
-    FactWindow,
     VehicleWay,
     WindowFacts,
-    facts_between,
+    facts_below,
 )
 from processing.methods.road.barriers.barrier_types import (
     BarrierLayers,
@@ -23,6 +22,7 @@ from processing.methods.road.barriers.barrier_types import (
     rails_of,
     type_of,
 )
+from processing.methods.road.barriers.fact_kernels import RAIL_LAYER
 from processing.methods.road.barriers.strip_kernels import STEP_M
 from processing.methods.road.barriers.strip_profiles import (
     COLUMN_M,
@@ -36,6 +36,9 @@ _LEAST_CHANCE = 0.5
 
 _LONGEST_GAP_M = 1.0
 """Columns without points: what stands before a barrier hides so much of it."""
+
+_BRIDGED_M, _SAME_TOP_M, _OTHER_TOP_M = 6.0, 0.12, 0.3
+"""Gaps that are bridged between stretches so alike in height, and a step that parts two of them."""
 
 _SMOOTH = 8
 """Columns to both sides that tell with one where the line lies: 2 m."""
@@ -84,51 +87,95 @@ class BarrierStretch(NamedTuple):
         return float(np.hypot(*np.diff(self.line[:, :2], axis=0).T).sum())
 
 
+class LikelyWindow(NamedTuple):
+    """A window of a strip: its columns, the likeliest of its facts, and their chance."""
+
+    first: int
+    last: int
+    facts: WindowFacts
+    chance: float
+
+
+class _Columns(NamedTuple):
+    """Of each column of a strip: the mean chance of its windows, and their usual top, m."""
+
+    chance: Floats
+    top_m: Floats
+
+    @staticmethod
+    def of(count: int, windows: Sequence[LikelyWindow]) -> _Columns:
+        total, number, weight, tops = (np.zeros(count) for _ in range(4))
+        for one in windows:
+            part = slice(one.first, one.last)
+            total[part] += one.chance
+            number[part] += 1
+            weight[part] += one.chance + 1e-6
+            tops[part] += (one.chance + 1e-6) * one.facts.top
+        return _Columns(total / np.maximum(number, 1), tops / np.maximum(weight, 1e-9))
+
+
 def stretches_of(
-    profile: StripProfile, windows: Sequence[tuple[FactWindow, float]], way: VehicleWay
+    profile: StripProfile, windows: Sequence[LikelyWindow], way: VehicleWay
 ) -> list[BarrierStretch]:
     """The stretches of a strip that are barriers.
 
-    Parameters
-    ----------
-    windows : sequence of (FactWindow, float)
-        With the chance of each.
+    Notes
+    -----
+    1. A column is one of a barrier where its windows mostly are.
+    2. What is unlikely between two likely stretches of the same height belongs to them, as far as
+       something is filled up to their height: a pole or a plant stands before it.
+    3. Stretches end where a metre shows nothing, or their height changes.
     """
-    chance = column_chances(len(profile.counts), windows)
-    is_filled = profile.counts[:, 6:48].any(axis=1) & (chance >= _LEAST_CHANCE)
-    filled = np.flatnonzero(is_filled)
+    columns = _Columns.of(len(profile.counts), windows)
+    is_likely = _bridged(columns)
     found = []
-    cuts = np.flatnonzero(np.diff(filled) * COLUMN_M > _LONGEST_GAP_M) + 1
-    for columns in np.split(filled, cuts):
-        if columns.size > 1:
-            one = _stretch(profile, columns, chance, way)
-            found += [one] if one is not None else []
+    for part in _pieces(columns, is_likely):
+        top_m = float(np.median(columns.top_m[part]))
+        layers = slice(RAIL_LAYER, round(top_m / LAYER_M) + 1)
+        filled = part[(profile.counts[part, layers] > 0).any(axis=1)]
+        cuts = np.flatnonzero(np.diff(filled) * COLUMN_M > _LONGEST_GAP_M) + 1
+        found += [
+            _stretch(profile, one, (top_m, float(columns.chance[one].mean())), way)
+            for one in np.split(filled, cuts)
+            if one.size > 1
+        ]
     return found
 
 
-def column_chances(count: int, windows: Sequence[tuple[FactWindow, float]]) -> Floats:
-    """(c,) the mean chance of the windows over each column; 0 where there are none."""
-    total, number = np.zeros(count), np.zeros(count)
-    for window, chance in windows:
-        total[window.first : window.last] += chance
-        number[window.first : window.last] += 1
-    return np.asarray(total / np.maximum(number, 1))
+def _bridged(columns: _Columns) -> Flags:
+    """Which columns are likely, with short gaps between likely ones of the same height."""
+    is_likely = columns.chance >= _LEAST_CHANCE
+    ends = np.flatnonzero(np.diff(np.r_[False, is_likely, False].astype(np.int8)))
+    for last, first in zip(ends[1:-1:2], ends[2::2], strict=True):
+        before, after = columns.top_m[last - 1], columns.top_m[first]
+        if (first - last) * COLUMN_M <= _BRIDGED_M and abs(before - after) <= _SAME_TOP_M:
+            is_likely[last:first] = True
+            columns.top_m[last:first] = (before + after) / 2
+    return is_likely
+
+
+def _pieces(columns: _Columns, is_likely: Flags) -> list[Integers]:
+    """Likely columns that follow each other and are about as high."""
+    likely = np.flatnonzero(is_likely)
+    if likely.size == 0:
+        return []
+    apart = np.diff(likely) > 1
+    steps = np.abs(np.diff(columns.top_m[likely])) > _OTHER_TOP_M
+    return np.split(likely, np.flatnonzero(apart | steps) + 1)
 
 
 def _stretch(
-    profile: StripProfile, columns: Integers, chance: Floats, way: VehicleWay
-) -> BarrierStretch | None:
-    found = facts_between(profile, int(columns[0]), int(columns[-1]) + 1, (0.0, 0.5))
-    if found is None:
-        return None
-    facts = found[0]
+    profile: StripProfile, columns: Integers, known: tuple[float, float], way: VehicleWay
+) -> BarrierStretch:
+    top_m, chance = known
+    facts = facts_below(profile, int(columns[0]), int(columns[-1]) + 1, top_m)
     chosen = np.zeros(len(profile.counts), np.bool_)
     chosen[columns] = True
     layers = layers_of(profile, chosen, facts)
     sort = type_of(layers, facts)
     line = _foot_line(profile, columns, (layers, sort), way)
     posts = posts_of(profile, chosen, layers)
-    return BarrierStretch(profile, columns, facts, float(chance[columns].mean()), sort, posts, line)
+    return BarrierStretch(profile, columns, facts, chance, sort, posts, line)
 
 
 def _foot_line(

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.core.arrays import Floats
+from processing.core.arrays import Floats, Integers
 from processing.core.kernels import kernel
 from processing.methods.road.barriers.strip_profiles import LAYER_M
 
@@ -21,19 +21,17 @@ _FILLED_SHARE = 0.5
 _GAP_LAYERS = 10
 """From rail to rail less than 0.5 m: what hangs higher is another thing."""
 
+_LOWEST_TOP, _LEAST_FALL = 8, 0.2
+"""The lowest top of a barrier, 0.45 m, and by how much the share of filled columns falls there."""
+
+MOST_TOPS = 4
+
 _EVEN_LAYERS, _OVER_LAYERS = 1, 4
 
 _FEW = 0.1
 """Of a window's usual points in a cell, below which a cell holds stray points only."""
 
 _LEAST_CELLS = 4
-
-
-class FilledLayers(NamedTuple):
-    """Which cells of a window hold points, and how full layers are over the fullest."""
-
-    filled: NDArray[np.bool_]
-    layers: Floats
 
 
 @kernel
@@ -55,28 +53,54 @@ def layers_kernel(counts: NDArray[np.float32], filled: NDArray[np.bool_], share:
 
 
 @kernel
-def tops_kernel(window: FilledLayers) -> tuple[float, float, float, int]:
-    """How many columns are filled, have their top at the window's, and something above; the top."""
-    columns, layers = window.filled.shape
-    top = -1
+def tops_kernel(share: Floats, tops: Integers) -> int:
+    """Layers that may be the top of a barrier, the sharpest ends first; how many.
+
+    Plants and houses behind it fill layers above it, but less: its top is where the share of filled
+    columns falls.
+    """
+    layers = share.size
+    most = share[RAIL_LAYER:].max()
+    overall = -1
     for layer in range(RAIL_LAYER, layers):
-        if window.layers[layer] >= _FILLED_SHARE:
-            if top >= 0 and layer - top > _GAP_LAYERS:
+        if share[layer] >= _FILLED_SHARE * most:
+            if overall >= 0 and layer - overall > _GAP_LAYERS:
                 break
-            top = layer
+            overall = layer
+    tops[0] = overall
+    count = 1
+    falls = np.zeros(layers)
+    for layer in range(_LOWEST_TOP, layers - 1):
+        fall = share[layer] - share[layer + 1]
+        if layer != overall and share[layer] >= _FILLED_SHARE and fall >= _LEAST_FALL:
+            falls[layer] = fall
+    while count < tops.size:
+        layer = int(np.argmax(falls))
+        if falls[layer] <= 0.0:
+            break
+        tops[count] = layer
+        falls[max(layer - 1, 0) : layer + 2] = 0.0
+        count += 1
+    return count
+
+
+@kernel
+def ends_kernel(filled: NDArray[np.bool_], top: int) -> tuple[float, float, float]:
+    """How many columns are filled below a top, have their own there, and something above."""
+    columns, layers = filled.shape
     full = even = over = 0
     for column in range(columns):
         highest = -1
         for layer in range(RAIL_LAYER, min(top + _OVER_LAYERS - 1, layers)):
-            if window.filled[column, layer]:
+            if filled[column, layer]:
                 highest = layer
         full += highest >= 0
         even += abs(highest - top) <= _EVEN_LAYERS
         for layer in range(top + _OVER_LAYERS, layers):
-            if window.filled[column, layer]:
+            if filled[column, layer]:
                 over += 1
                 break
-    return full / columns, even / max(full, 1), over / columns, top
+    return full / columns, even / max(full, 1), over / columns
 
 
 class LayerSums(NamedTuple):

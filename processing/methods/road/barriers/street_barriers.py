@@ -5,12 +5,15 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from processing.core.arrays import Floats
 from processing.core.monitor import Monitor, PartMonitor
-from processing.methods.road.barriers.barrier_confidence import chance_of
+from processing.methods.road.barriers.barrier_confidence import likeliest
 from processing.methods.road.barriers.barrier_facts import FactWindow, VehicleWay, windows_of
 from processing.methods.road.barriers.barrier_lines import (
     BarrierStretch,
+    LikelyWindow,
     height_of,
     stretches_of,
 )
@@ -21,6 +24,9 @@ from processing.methods.road.barriers.strips import strips_of
 from processing.methods.road.objects.driven_path import driven_places
 from processing.methods.road.objects.survey import survey_ground
 from processing.recording.drive import Drive
+
+_STEP_M, _SAME_M, _SAME_SHARE = 0.25, 0.4, 0.5
+"""Between places that are compared; lines so near are one thing: a beam and its posts."""
 
 
 @dataclass(frozen=True)
@@ -84,10 +90,10 @@ def street_barriers(drives: Sequence[Drive], monitor: Monitor) -> list[StreetBar
     stretches: list[BarrierStretch] = []
     for profile, windows in seen.strips:
         monitor.check()
-        chances = [(one, chance_of(one.facts)) for one in windows]
-        stretches += stretches_of(profile, chances, seen.way)
+        likely = [LikelyWindow(one.first, one.last, *likeliest(one.options)) for one in windows]
+        stretches += stretches_of(profile, likely, seen.way)
     monitor.report(1.0)
-    found = [_barrier(one, seen.origin) for one in stretches]
+    found = [_barrier(one, seen.origin) for one in distinct_stretches(stretches)]
     return sorted(found, key=lambda one: -one.confidence)
 
 
@@ -105,6 +111,28 @@ def seen_strips(drives: Sequence[Drive], monitor: Monitor) -> SeenStrips:
         monitor.check()
         seen.append((profile, tuple(windows_of(profile, way))))
     return SeenStrips(plan.origin, way, tuple(seen))
+
+
+def distinct_stretches(stretches: Sequence[BarrierStretch]) -> list[BarrierStretch]:
+    """Stretches without those that lie for the most part along a longer and surer one."""
+    from scipy.spatial import cKDTree
+
+    kept: list[BarrierStretch] = []
+    places = np.empty((0, 2))
+    for one in sorted(stretches, key=lambda stretch: -stretch.long_m * stretch.chance):
+        own = _places_along(one.line)
+        if len(places) and np.mean(cKDTree(places).query(own)[0] < _SAME_M) > _SAME_SHARE:
+            continue
+        kept.append(one)
+        places = np.concatenate([places, own])
+    return kept
+
+
+def _places_along(line: Floats) -> Floats:
+    """Places in plan along a line, a quarter of a metre apart."""
+    ends = np.r_[0.0, np.cumsum(np.hypot(*np.diff(line[:, :2], axis=0).T))]
+    at = np.arange(0.0, ends[-1] + _STEP_M, _STEP_M)
+    return np.column_stack([np.interp(at, ends, axis) for axis in line[:, :2].T])
 
 
 def _barrier(stretch: BarrierStretch, origin: Floats) -> StreetBarrier:

@@ -27,6 +27,9 @@ STEP_M = 0.5
 _REACH_CELLS, _WIDE_CELLS = 9, 2
 """Cells ahead and behind, and to both sides, from which a node's place and direction come."""
 
+_OWN_CELLS = 4
+"""To both sides of a followed strip, in which no other begins: beam and posts are one."""
+
 _MOST_TURN = 0.12
 """From node to node, rise over run: a curve of 5 m radius turns by 0.1."""
 
@@ -178,7 +181,7 @@ def mark_kernel(nodes: Floats, cells: StripCells) -> None:
         if long < 1e-6:
             continue
         for k in range(-1, int(long / FINE_M) + 2):
-            for w in range(-_WIDE_CELLS, _WIDE_CELLS + 1):
+            for w in range(-_OWN_CELLS, _OWN_CELLS + 1):
                 t, aside = k * FINE_M / long, w * FINE_M / long
                 e = nodes[node, 0] + t * x - aside * y
                 n = nodes[node, 1] + t * y + aside * x
