@@ -10,7 +10,10 @@ import numpy as np
 from processing.core.monitor import Monitor
 from processing.core.parameters import least_confidence, length
 from processing.core.text import Text
+from processing.methods.road.barriers.barrier_diagnostics import barrier_diagnostics
 from processing.methods.road.barriers.street_barriers import StreetBarrier, street_barriers
+from processing.methods.road.diagnostics import Diagnostic
+from processing.methods.road.requested_position import RequestedPosition
 from processing.recording.drive import Drive
 from processing.scoring.scorers import BARRIER_SCORER
 from processing.tools.tool import (
@@ -60,6 +63,13 @@ def find_barriers(
         if one.confidence >= parameters.least_confidence and one.length_m >= parameters.shortest_m
     ]
     return CandidateResult(tuple(_candidate(one) for one in kept), _note(drives, found, kept))
+
+
+def diagnose_barriers(
+    asked: RequestedPosition, parameters: BarrierParameters
+) -> tuple[Diagnostic, ...]:
+    """The band in which something stands at a place of a section, and what speaks for it."""
+    return barrier_diagnostics(asked, parameters.least_confidence)
 
 
 def _candidate(barrier: StreetBarrier) -> Candidate:
@@ -120,5 +130,6 @@ BARRIERS = Tool(
     method=SurveyFinder(find_barriers),
     makes=("guard_rail", "guard_pipe", "guard_cable", "fence", "guard_wall", "noise_barrier"),
     button=ToolButton(Text("Find barriers", "防護柵・柵を抽出"), "Ctrl+Shift+F5", "mdi6.fence"),
+    diagnostics=diagnose_barriers,
     scorer=BARRIER_SCORER,
 )

@@ -35,6 +35,8 @@ class ChanceTerms(NamedTuple):
     short, tall, high : float
         How far the top lies below 0.7 m, over 0.4 m, above 1.4 m, m, and above 4 m, m, each at most
         1.
+    clean : float
+        1 for what is whole, even, flat and has nothing above it.
     batter : float
         1 for a face that leans as concrete barriers do, by 2 to 8°; 0 for upright ones and banks.
     """
@@ -43,6 +45,7 @@ class ChanceTerms(NamedTuple):
     tall: float
     high: float
     batter: float
+    clean: float
     full: float
     even: float
     over: float
@@ -65,36 +68,39 @@ class ChanceTerms(NamedTuple):
 # Learnt by `processing.laboratory.road_training.barrier_training`.
 _WEIGHTS: Mapping[BarrierGroup, tuple[float, ChanceTerms]] = {
     "rails": (
-        -7.61,
+        -5.87,
         ChanceTerms(
-            short=-5.86, tall=-4.99, high=-4.53, batter=0.28, full=3.72, even=3.49, over=-0.74,
-            fill=3.67, low=-0.83, rows=4.26, rough=-0.85, lean=-3.49, toe=0.81, through=0.0,
-            free=-2.25, hidden=-0.57, roofed=0.0, rise=-1.68, across=-6.25, far=-1.39, long=4.03,
+            short=-6.55, tall=-3.40, high=-4.95, batter=0.48, clean=0.31, full=2.85, even=2.49,
+            over=-0.79, fill=1.66, low=-0.63, rows=6.55, rough=-0.53, lean=-3.81, toe=0.0,
+            through=0.17, free=-3.06, hidden=-1.15, roofed=0.0, rise=-1.17, across=-7.36,
+            far=-1.62, long=4.37,
         ),
     ),
     "nets": (
-        -4.70,
+        -3.27,
         ChanceTerms(
-            short=-5.30, tall=-2.11, high=-4.38, batter=0.0, full=2.51, even=0.95, over=-2.40,
-            fill=0.0, low=0.0, rows=2.51, rough=-1.16, lean=-13.53, toe=0.0, through=2.85,
-            free=-0.18, hidden=0.0, roofed=0.0, rise=-2.35, across=-5.73, far=0.0, long=1.93,
+            short=-4.73, tall=-2.28, high=-4.73, batter=0.0, clean=2.11, full=1.32, even=0.0,
+            over=-1.08, fill=0.0, low=0.15, rows=5.91, rough=0.0, lean=-10.46, toe=0.0,
+            through=0.73, free=-0.92, hidden=-0.61, roofed=0.0, rise=-2.58, across=-5.48,
+            far=0.0, long=1.84,
         ),
     ),
     "walls": (
-        -5.76,
+        -4.78,
         ChanceTerms(
-            short=-3.69, tall=-17.66, high=-2.00, batter=2.66, full=1.08, even=0.0, over=-1.38,
-            fill=1.48, low=0.42, rows=5.03, rough=-0.95, lean=0.0, toe=0.96, through=5.72,
-            free=-0.19, hidden=-3.27, roofed=-2.10, rise=-0.09, across=-4.13, far=0.0, long=2.67,
+            short=-3.11, tall=-19.16, high=-2.00, batter=2.33, clean=0.0, full=1.01, even=0.0,
+            over=-0.99, fill=0.64, low=0.86, rows=4.12, rough=-3.88, lean=0.0, toe=2.06,
+            through=8.73, free=-0.24, hidden=-2.93, roofed=-1.51, rise=-0.40, across=-4.16,
+            far=-0.06, long=2.49,
         ),
     ),
     "screens": (
-        -4.86,
+        -5.48,
         ChanceTerms(
-            short=-2.00, tall=3.19, high=-7.21, batter=0.0, full=0.66, even=0.11, over=-2.73,
-            fill=0.48, low=0.0, rows=1.59, rough=-7.64, lean=-8.56, toe=0.0, through=0.0,
-            free=-1.52, hidden=3.34, roofed=-4.11, rise=-1.51, across=-4.59, far=-0.41,
-            long=3.25,
+            short=-2.00, tall=4.30, high=-7.53, batter=0.0, clean=0.0, full=0.42, even=0.0,
+            over=-2.95, fill=0.76, low=0.0, rows=0.54, rough=-8.72, lean=-9.32, toe=0.0,
+            through=0.0, free=-2.39, hidden=2.99, roofed=-3.51, rise=-1.53, across=-4.66,
+            far=-0.62, long=3.92,
         ),
     ),
 }  # fmt: skip
@@ -107,6 +113,7 @@ def terms_of(facts: WindowFacts) -> ChanceTerms:
         min(max(facts.top - _TALL_M, 0.0), 1.0),
         min(max(facts.top - _HIGH_M, 0.0), 1.0),
         min(facts.lean / _BATTER[0], 1.0, max((_BATTER[2] - facts.lean) / _BATTER[1], 0.0)),
+        facts.full * facts.even * (1.0 - facts.over) * max(1.0 - facts.rough, 0.0),
         *facts[1:],
     )
 

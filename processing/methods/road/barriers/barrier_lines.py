@@ -43,9 +43,12 @@ _BRIDGED_M, _SAME_TOP_M, _OTHER_TOP_M = 6.0, 0.12, 0.3
 _SMOOTH = 8
 """Columns to both sides that tell with one where the line lies: 2 m."""
 
-_POST_M, _BEAM_M = 0.045, 0.1
+_POST_M, _BEAM_M = 0.045, 0.06
 """From the seen side of a post to its axis, and from the seen side of a beam to its posts' axis:
 posts are 11 to 14 cm thick, and beams hang 7 to 15 cm before their axis."""
+
+_FARTHEST_M = 0.09
+"""What seems to stand farther behind a beam isn't its posts: a plant."""
 
 _FEWEST_CELLS, _LEAST_DEEP_M = 6, 0.015
 """Cells in which posts are seen below a beam, and how far behind it they stand at least."""
@@ -233,7 +236,8 @@ def _to_posts(
     if seen.sum() >= _FEWEST_CELLS:
         post = float(np.median(profile.aside[chosen, below][seen] / counts[seen]))
         if abs(post - beam) > _LEAST_DEEP_M:
-            return aside + (post - beam + math.copysign(_POST_M, post - beam))
+            behind = min(abs(post - beam) + _POST_M, _FARTHEST_M)
+            return aside + math.copysign(behind, post - beam)
     return aside + _BEAM_M * _away(profile, chosen, way)
 
 

@@ -23,21 +23,32 @@ BarrierType = Literal[
 _FULL = 0.5
 """Share of the fullest layer's columns, from which a layer is one of rails."""
 
-_BEAM_M = 0.25
-_DEEP_M = 0.04
+_BEAM_M, _DEEP_M = 0.25, 0.03
 """A beam is at least so high, and its waves at least so deep; ropes and pipes lie in one plane."""
 
-_LOWEST_PIPE_M = 0.37
-_HIGHEST_PIPE_M = 1.15
-_ROPES_M = 0.17
-_NOISE_M = 1.8
-_LEAN, _ROUGH = 0.02, 0.28
-_LOWEST = 5
-_MOST_LIFT, _LIFT_COLUMNS = 4, 2
+_LOWEST_PIPE_M, _HIGHEST_PIPE_M = 0.335, 1.15
+"""The lowest pipe of a guard pipe lies lower than that of a fence, its highest not higher."""
 
-_POST_SHARE = 0.5
-_FEWEST_GAPS = 2
-_ALIKE = 0.25
+_ROPES_M = 0.17
+"""From rope to rope at most."""
+
+_PARAPET_M, _NOISE_M = 1.3, 1.8
+"""Concrete barriers are at most so high, noise walls at least."""
+
+_LEAN, _DENSE = 0.02, 0.8
+"""How far a concrete barrier's face leans at least, and how full its foot is."""
+
+_LOWEST = 5
+"""The first layer that may be one of a rail, 0.25 m above the ground."""
+
+_MOST_LIFT, _LIFT_COLUMNS = 4, 2
+"""Layers by which the foot may be wrong, and columns to both sides that tell it with one."""
+
+_POST_SHARE, _BETWEEN = 0.5, 0.4
+"""Of the layers between rails, those fuller than this aside, how many a post fills."""
+
+_FEWEST_GAPS, _ALIKE = 2, 0.25
+"""Gaps between posts from which their spacing is told, and how much they may differ."""
 
 
 class BarrierLayers(NamedTuple):
@@ -95,15 +106,14 @@ def type_of(layers: BarrierLayers, facts: WindowFacts) -> BarrierType:
     group = group_of(facts)
     if group == "screens":
         return "noise_barrier" if facts.top > _NOISE_M else "fence"
-    if group == "walls" and facts.lean > _LEAN:
-        return "parapet"
+    if group != "rails" and facts.low >= _DENSE and facts.top <= _PARAPET_M:
+        return "parapet" if facts.lean > _LEAN else "fence"
     rails = rails_of(layers)
     if not rails or facts.top > _HIGHEST_PIPE_M:
         return "fence"
     highest = max(last - first + 1 for first, last in rails) * LAYER_M
     if highest >= _BEAM_M and facts.low < _FULL:
-        is_deep = _depth(layers, rails) >= _DEEP_M or facts.rough >= _ROUGH
-        return "guard_rail" if is_deep else "guard_cable"
+        return "guard_rail" if _depth(layers, rails) >= _DEEP_M else "guard_cable"
     middles = [(first + last + 1) / 2 * LAYER_M for first, last in rails]
     if len(middles) < 2:
         return "fence"
@@ -129,7 +139,7 @@ def _depth(layers: BarrierLayers, rails: list[tuple[int, int]]) -> float:
 
 def posts_of(profile: StripProfile, columns: Flags, layers: BarrierLayers) -> float | None:
     """How far apart posts stand, m; None where they can't be told from what they carry."""
-    between = np.flatnonzero(layers.share[3 : layers.top + 1] < 0.4) + 3
+    between = np.flatnonzero(layers.share[3 : layers.top + 1] < _BETWEEN) + 3
     if between.size < 2:
         return None
     filled = (profile.counts[:, between] > 0).mean(axis=1) * columns
