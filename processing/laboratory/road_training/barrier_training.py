@@ -50,7 +50,7 @@ def _expected(**others: float) -> ChanceTerms:
     usual = ChanceTerms(
         short=-2, tall=-1, high=-2, batter=0.5, clean=1, full=1, even=1.5, over=-1, fill=1,
         low=0.5, rows=1, rough=-2, lean=-2, toe=0.1, through=1, free=-1, hidden=-1, roofed=-1,
-        rise=-1, across=-3, far=-1.5, long=1,
+        rise=-1, banked=-2, across=-3, far=-1.5, long=1,
     )  # fmt: skip
     return usual._replace(**others)
 
@@ -61,10 +61,11 @@ EXPECTED: Mapping[BarrierGroup, WeightPrior] = {
     "rails": WeightPrior(
         (-2.0, *_expected(tall=-3, full=4, fill=2, low=-2, across=-4, rise=-1.5)), _OFF
     ),
-    "nets": WeightPrior((-2.0, *_expected(rough=-4, lean=-3, through=2, rise=-1)), _OFF),
-    "walls": WeightPrior(
-        (-3.0, *_expected(rough=-4, batter=3, lean=-4, toe=0.5, through=2, long=3)), _OFF
+    "leaning": WeightPrior(
+        (-3.0, *_expected(rough=-4, batter=3, lean=-4, toe=0.5, hidden=-0.5, long=3)), _OFF
     ),
+    "nets": WeightPrior((-2.0, *_expected(rough=-4, lean=-3, through=2, rise=-1)), _OFF),
+    "walls": WeightPrior((-3.0, *_expected(rough=-4, through=2, long=3)), _OFF),
     "screens": WeightPrior(
         (-3.0, *_expected(tall=1, high=-3, rough=-4, lean=-3, hidden=0.5, long=3)), _OFF
     ),

@@ -15,6 +15,9 @@ noise walls up to 4 m; houses are higher."""
 _RAILS_ROWS = 0.2
 """From which difference of its layers on a strip is one of rails."""
 
+LEANING = 0.02
+"""From which a low sheet leans as concrete barriers do, and banks, hedges and vehicles."""
+
 _THROUGH = 0.15
 """From which share of the ground seen behind it a sheet can be seen through."""
 
@@ -24,7 +27,7 @@ SCREEN_M = 1.6
 _BATTER = (0.03, 0.07, 0.22)
 """How far faces of concrete barriers lean, m/m: fully from 0.03 to 0.15, not from 0.22."""
 
-BarrierGroup = Literal["rails", "nets", "walls", "screens"]
+BarrierGroup = Literal["rails", "leaning", "nets", "walls", "screens"]
 
 
 class ChanceTerms(NamedTuple):
@@ -60,6 +63,7 @@ class ChanceTerms(NamedTuple):
     hidden: float
     roofed: float
     rise: float
+    banked: float
     across: float
     far: float
     long: float
@@ -68,39 +72,48 @@ class ChanceTerms(NamedTuple):
 # Learnt by `processing.laboratory.road_training.barrier_training`.
 _WEIGHTS: Mapping[BarrierGroup, tuple[float, ChanceTerms]] = {
     "rails": (
-        -5.87,
+        -6.72,
         ChanceTerms(
-            short=-6.55, tall=-3.40, high=-4.95, batter=0.48, clean=0.31, full=2.85, even=2.49,
-            over=-0.79, fill=1.66, low=-0.63, rows=6.55, rough=-0.53, lean=-3.81, toe=0.0,
-            through=0.17, free=-3.06, hidden=-1.15, roofed=0.0, rise=-1.17, across=-7.36,
-            far=-1.62, long=4.37,
+            short=-5.00, tall=-3.63, high=-5.02, batter=0.59, clean=0.06, full=3.29, even=2.79,
+            over=-1.10, fill=1.51, low=-0.26, rows=6.51, rough=-0.20, lean=-4.17, toe=0.0,
+            through=0.30, free=-1.86, hidden=-1.13, roofed=0.0, rise=-0.75, banked=-2.80,
+            across=-7.61, far=-1.11, long=4.38,
+        ),
+    ),
+    "leaning": (
+        -2.70,
+        ChanceTerms(
+            short=-2.56, tall=-16.85, high=-2.00, batter=0.82, clean=1.02, full=1.53, even=0.0,
+            over=-0.43, fill=0.0, low=0.0, rows=3.62, rough=-0.01, lean=-0.73, toe=0.0,
+            through=0.0, free=0.0, hidden=-2.51, roofed=-0.96, rise=0.0, banked=-2.10,
+            across=-6.59, far=-0.36, long=1.71,
         ),
     ),
     "nets": (
-        -3.27,
+        -6.00,
         ChanceTerms(
-            short=-4.73, tall=-2.28, high=-4.73, batter=0.0, clean=2.11, full=1.32, even=0.0,
-            over=-1.08, fill=0.0, low=0.15, rows=5.91, rough=0.0, lean=-10.46, toe=0.0,
-            through=0.73, free=-0.92, hidden=-0.61, roofed=0.0, rise=-2.58, across=-5.48,
-            far=0.0, long=1.84,
+            short=-5.74, tall=-2.32, high=-4.29, batter=0.0, clean=2.21, full=2.59, even=0.0,
+            over=-1.87, fill=0.0, low=0.95, rows=3.45, rough=-2.36, lean=-11.64, toe=0.0,
+            through=3.48, free=-1.70, hidden=0.0, roofed=0.0, rise=0.0, banked=-1.13,
+            across=-4.02, far=0.0, long=1.42,
         ),
     ),
     "walls": (
-        -4.78,
+        -4.63,
         ChanceTerms(
-            short=-3.11, tall=-19.16, high=-2.00, batter=2.33, clean=0.0, full=1.01, even=0.0,
-            over=-0.99, fill=0.64, low=0.86, rows=4.12, rough=-3.88, lean=0.0, toe=2.06,
-            through=8.73, free=-0.24, hidden=-2.93, roofed=-1.51, rise=-0.40, across=-4.16,
-            far=-0.06, long=2.49,
+            short=-2.11, tall=-1.42, high=-2.00, batter=2.33, clean=0.0, full=0.0, even=0.32,
+            over=0.0, fill=0.0, low=0.0, rows=2.30, rough=-2.40, lean=-1.94, toe=0.14,
+            through=5.22, free=-1.23, hidden=-0.65, roofed=-0.70, rise=-2.11, banked=0.0,
+            across=-2.76, far=0.0, long=4.71,
         ),
     ),
     "screens": (
-        -5.48,
+        -5.64,
         ChanceTerms(
-            short=-2.00, tall=4.30, high=-7.53, batter=0.0, clean=0.0, full=0.42, even=0.0,
-            over=-2.95, fill=0.76, low=0.0, rows=0.54, rough=-8.72, lean=-9.32, toe=0.0,
-            through=0.0, free=-2.39, hidden=2.99, roofed=-3.51, rise=-1.53, across=-4.66,
-            far=-0.62, long=3.92,
+            short=-2.00, tall=4.16, high=-7.56, batter=0.0, clean=0.0, full=0.07, even=0.0,
+            over=-2.81, fill=1.29, low=0.0, rows=0.71, rough=-8.75, lean=-9.26, toe=0.0,
+            through=0.0, free=-1.96, hidden=2.88, roofed=-3.63, rise=-0.99, banked=-4.13,
+            across=-4.92, far=-0.45, long=4.09,
         ),
     ),
 }  # fmt: skip
@@ -119,9 +132,11 @@ def terms_of(facts: WindowFacts) -> ChanceTerms:
 
 
 def group_of(facts: WindowFacts) -> BarrierGroup:
-    """Whether layers differ as those of rails; else it is a sheet, seen through or not."""
+    """Whether layers differ as those of rails; else it is a sheet of one of four sorts."""
     if facts.rows >= _RAILS_ROWS:
         return "rails"
+    if facts.lean > LEANING and facts.top <= SCREEN_M:
+        return "leaning"
     if facts.through >= _THROUGH:
         return "nets"
     return "screens" if facts.top > SCREEN_M else "walls"

@@ -37,7 +37,7 @@ _LEAST_SHARE = 0.2
 """Of the columns, that the fullest layer fills at least."""
 
 _ROUGH_M, _TOE_M, _FAR_M = 0.05, 0.1, 20.0
-_MOST_ROUGH, _MOST_RISE_M = 2.0, 1.5
+_MOST_ROUGH, _MOST_RISE_M, _MOST_BANKED = 2.0, 1.5, 1.2
 _LEAST_BESIDE_M = 0.7
 
 _HIGH_BITS = np.uint32((1 << SLABS) - (1 << round((2.6 - LOWEST_M) / SLAB_M)))
@@ -81,6 +81,9 @@ class WindowFacts(NamedTuple):
         Share of its nodes with something higher than 2.6 m beside it: houses, crowns.
     rise : float
         How much higher the ground is on one side than on the other, m.
+    banked : float
+        How high the ground on its higher side lies above its foot, over its own height: land is
+        held by a wall, and lies as high as it.
     across : float
         Sine of the angle between it and the nearest stretch of the vehicle's way; 0: unknown.
     far : float
@@ -104,6 +107,7 @@ class WindowFacts(NamedTuple):
     hidden: float
     roofed: float
     rise: float
+    banked: float
     across: float
     far: float
     long: float = 0.0
@@ -264,9 +268,17 @@ class _ProfileWindow(NamedTuple):
             hidden=hidden,
             roofed=roofed,
             rise=min(float(np.median(known)), _MOST_RISE_M) if known.size else 0.0,
+            banked=self._banked(nodes, (top + 1) * LAYER_M),
             across=to_way[0],
             far=to_way[1],
         )
+
+    def _banked(self, nodes: slice, top_m: float) -> float:
+        levels = self.profile.levels[nodes] - self.profile.foot[nodes, None]
+        known = levels[np.isfinite(levels).all(axis=1)]
+        if len(known) == 0:
+            return 0.0
+        return min(max(float(np.median(known.max(axis=1))) / top_m, 0.0), _MOST_BANKED)
 
 
 def _beside(profile: StripProfile, nodes: slice, top: int) -> tuple[float, float, float]:

@@ -35,8 +35,8 @@ _ROPES_M = 0.17
 _PARAPET_M, _NOISE_M = 1.3, 1.8
 """Concrete barriers are at most so high, noise walls at least."""
 
-_LEAN, _DENSE = 0.02, 0.8
-"""How far a concrete barrier's face leans at least, and how full its foot is."""
+_DENSE = 0.8
+"""How full the foot of a sheet is."""
 
 _LOWEST = 5
 """The first layer that may be one of a rail, 0.25 m above the ground."""
@@ -107,7 +107,7 @@ def type_of(layers: BarrierLayers, facts: WindowFacts) -> BarrierType:
     if group == "screens":
         return "noise_barrier" if facts.top > _NOISE_M else "fence"
     if group != "rails" and facts.low >= _DENSE and facts.top <= _PARAPET_M:
-        return "parapet" if facts.lean > _LEAN else "fence"
+        return "parapet" if group == "leaning" else "fence"
     rails = rails_of(layers)
     if not rails or facts.top > _HIGHEST_PIPE_M:
         return "fence"
