@@ -36,14 +36,20 @@ from processing.laboratory.simulate.requests import StreetRequest
 from processing.methods.road.barriers.barrier_confidence import (
     BarrierGroup,
     ChanceTerms,
+    StretchTerms,
     group_of,
+    stretch_terms_of,
     terms_of,
 )
 from processing.methods.road.barriers.barrier_facts import WindowFacts
-from processing.methods.road.barriers.street_barriers import seen_strips
+from processing.methods.road.barriers.street_barriers import (
+    SeenStrips,
+    likely_stretches,
+    seen_strips,
+)
 from processing.methods.road.barriers.strip_profiles import COLUMN_M
 from processing.scoring.features.barriers import OTHER
-from processing.scoring.features.line_positions import PolylineIndex
+from processing.scoring.features.line_positions import PolylineIndex, middle_positions
 
 
 def _expected(**others: float) -> ChanceTerms:
@@ -72,6 +78,10 @@ EXPECTED: Mapping[BarrierGroup, WeightPrior] = {
 }
 """What reasoning expects: barriers are even, flat, run along the road, and stand free."""
 
+EXPECTED_STRETCH = WeightPrior((-1.0, 1.0, 0.3), (2.0, 1.0, 0.3))
+"""The same of whole stretches: sure and long ones are right."""
+
+_STEP_M = 0.2
 _SEEDS, _CHECK = "9310-9339", "9340-9345"
 _STYLES = ("urban", "rural", "highway")
 _NEAR_M = 0.25
@@ -96,22 +106,43 @@ def request_of(number: int, seed: int, length_m: float) -> StreetRequest:
     return replace(make(number, seed, length_m), style=style, passes=1, stops=False)
 
 
-def known_windows(scenes: Iterator[RoadScene]) -> list[KnownWindow]:
-    """All windows of strips on some streets."""
+class KnownStreets(NamedTuple):
+    """Windows of some streets, and stretches as the present weights find them."""
+
+    windows: list[KnownWindow]
+    stretches: LabelledThings
+
+
+def known_streets(scenes: Iterator[RoadScene]) -> KnownStreets:
+    """All windows of strips on some streets, and the stretches that are likely barriers."""
     known: list[KnownWindow] = []
+    rows: list[tuple[StretchTerms, bool, float, int]] = []
     for number, scene in enumerate(scenes):
-        known += [KnownWindow(*one, number) for one in judge_windows(scene)]
-        sys.stderr.write(f"{scene.name}: {len(known)} windows\n")
-    return known
+        seen = seen_strips(scene.drives, SilentMonitor())
+        known += [KnownWindow(*one, number) for one in judge_windows(scene, seen)]
+        rows += [(*one, 1.0, number) for one in judge_stretches(scene, seen)]
+        sys.stderr.write(f"{scene.name}: {len(known)} windows, {len(rows)} stretches\n")
+    return KnownStreets(known, LabelledThings.of(rows, len(StretchTerms._fields)))
 
 
-def judge_windows(scene: RoadScene) -> Iterator[tuple[WindowFacts, bool]]:
+def judge_stretches(scene: RoadScene, seen: SeenStrips) -> Iterator[tuple[StretchTerms, bool]]:
+    """The stretches on a street, but for those on barriers that stand on walls."""
+    true = read_mapped(scene.truth("barriers")).features
+    index = PolylineIndex([one.xyz for one in true if one.facts["type"] != OTHER])
+    others = PolylineIndex([one.xyz for one in true if one.facts["type"] == OTHER])
+    for one in likely_stretches(seen, SilentMonitor()):
+        at = middle_positions(one.line + seen.origin, _STEP_M)
+        if (others.nearest(at, 2 * _NEAR_M).line >= 0).mean() <= _BESIDE_SHARE:
+            is_right = bool((index.nearest(at, _NEAR_M).line >= 0).mean() > 0.5)
+            yield stretch_terms_of(one.chance, one.long_m), is_right
+
+
+def judge_windows(scene: RoadScene, seen: SeenStrips) -> Iterator[tuple[WindowFacts, bool]]:
     """The windows on a street, but for those on barriers that stand on walls.
 
     Of the tops that a window on a barrier may have, the one nearest to the true height is right;
     nothing is learnt from the others. Those of other windows are all wrong.
     """
-    seen = seen_strips(scene.drives, SilentMonitor())
     true = read_mapped(scene.truth("barriers")).features
     known = [one for one in true if one.facts["type"] != OTHER]
     index = PolylineIndex([one.xyz for one in known])
@@ -153,11 +184,15 @@ def _scenes(seeds: Sequence[int], length_m: float) -> Iterator[RoadScene]:
 def main(arguments: Sequence[str] | None = None) -> int:
     """The command."""
     asked = training_streets("barrier_training", arguments, _scenes, seeds=(_SEEDS, _CHECK))
-    known, check = known_windows(asked.learnt), known_windows(asked.check)
+    known, check = known_streets(asked.learnt), known_streets(asked.check)
     for group, expected in EXPECTED.items():
-        own, others = _labelled(known, group), _labelled(check, group)
+        own, others = _labelled(known.windows, group), _labelled(check.windows, group)
         sys.stdout.write(f"{group}\n")
         sys.stdout.write(learn_weights(ChanceTerms._fields, expected, own, others))
+    sys.stdout.write("stretches\n")
+    sys.stdout.write(
+        learn_weights(StretchTerms._fields, EXPECTED_STRETCH, known.stretches, check.stretches)
+    )
     return 0
 
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from processing.core.arrays import Floats
 from processing.core.monitor import Monitor, PartMonitor
-from processing.methods.road.barriers.barrier_confidence import likeliest
+from processing.methods.road.barriers.barrier_confidence import likeliest, stretch_chance_of
 from processing.methods.road.barriers.barrier_facts import FactWindow, VehicleWay, windows_of
 from processing.methods.road.barriers.barrier_lines import (
     BarrierStretch,
@@ -87,13 +87,9 @@ def street_barriers(drives: Sequence[Drive], monitor: Monitor) -> list[StreetBar
     if not any(drive.count for drive in drives):
         return []
     seen = seen_strips(drives, monitor)
-    stretches: list[BarrierStretch] = []
-    for profile, windows in seen.strips:
-        monitor.check()
-        likely = [LikelyWindow(one.first, one.last, *likeliest(one.options)) for one in windows]
-        stretches += stretches_of(profile, likely, seen.way)
+    stretches = likely_stretches(seen, monitor)
     monitor.report(1.0)
-    found = [_barrier(one, seen.origin) for one in distinct_stretches(stretches)]
+    found = [_barrier(one, seen.origin) for one in stretches]
     return sorted(found, key=lambda one: -one.confidence)
 
 
@@ -111,6 +107,16 @@ def seen_strips(drives: Sequence[Drive], monitor: Monitor) -> SeenStrips:
         monitor.check()
         seen.append((profile, tuple(windows_of(profile, way))))
     return SeenStrips(plan.origin, way, tuple(seen))
+
+
+def likely_stretches(seen: SeenStrips, monitor: Monitor) -> list[BarrierStretch]:
+    """What follows each other on strips and is likely a barrier, each thing once."""
+    stretches: list[BarrierStretch] = []
+    for profile, windows in seen.strips:
+        monitor.check()
+        likely = [LikelyWindow(one.first, one.last, *likeliest(one.options)) for one in windows]
+        stretches += stretches_of(profile, likely, seen.way)
+    return distinct_stretches(stretches)
 
 
 def distinct_stretches(stretches: Sequence[BarrierStretch]) -> list[BarrierStretch]:
@@ -142,5 +148,5 @@ def _barrier(stretch: BarrierStretch, origin: Floats) -> StreetBarrier:
         height_of(stretch),
         stretch.posts_m,
         stretch.long_m,
-        stretch.chance,
+        stretch_chance_of(stretch.chance, stretch.long_m),
     )
