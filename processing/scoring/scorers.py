@@ -10,6 +10,7 @@ have those of :mod:`processing.scoring.waveforms.flight_scores`.
 from __future__ import annotations
 
 from processing.core.text import Text
+from processing.scoring.features.barriers import barrier_score
 from processing.scoring.features.curb_lines import curb_score
 from processing.scoring.features.file_scores import FeatureScorer, VolumeScorer
 from processing.scoring.features.gutters import gutter_score
@@ -81,6 +82,7 @@ TREE_SCORER = FeatureScorer("trees", Text("Street trees", "街路樹"), tree_sco
 POLE_SCORER = FeatureScorer("poles", Text("Poles", "柱状物"), pole_score)
 WIRE_SCORER = FeatureScorer("wires", Text("Wires", "架線"), wire_score)
 MARKING_SCORER = FeatureScorer("markings", Text("Road markings", "区画線"), marking_score)
+BARRIER_SCORER = FeatureScorer("barriers", Text("Barriers", "防護柵・柵"), barrier_score)
 VOLUME_SCORER = VolumeScorer("volume", Text("Volumes", "土量"), volume_score)
 ECHO_SCORER = EchoScorer(
     "waveform-decompose", Text("Echoes of waveforms", "波形の分解"), flight_echo_score

@@ -20,7 +20,7 @@ from processing.laboratory.simulate.scene.mesh import Floats, Integers
 from processing.laboratory.simulate.scene.things import Thing, TrueFeature
 from processing.laboratory.simulate.street.sweep import FACE_PIECE
 
-TRUTH_FILES = ("curbs", "gutters", "trees", "signs", "poles", "wires", "markings")
+TRUTH_FILES = ("curbs", "gutters", "trees", "signs", "poles", "wires", "markings", "barriers")
 CURB_PIECE_M, CURB_SECTION_M = 0.5, 2.0
 BREAST_PIECES, TRUNK_PIECE = range(1, 37), 37
 FRONT_PIECE, BACK_PIECE = 1, 2
@@ -129,6 +129,8 @@ def _member(one: TrueFeature, seen: RecordingEvidence, origin: Floats) -> TruthP
         facts.update(_wire(one, pieces, seen))
     elif one.file == "markings":
         facts.update(_marking(one, pieces, seen))
+    elif one.file == "barriers":
+        facts.update(_wire(one, pieces, seen))
     else:
         facts.update(_SHOWN[one.file](pieces))
         passed = seen.passes(one.xyz.mean(axis=0)[None])[0]
@@ -173,7 +175,7 @@ def _curb(one: TrueFeature, pieces: Integers, seen: RecordingEvidence) -> TruthP
 
 
 def _wire(one: TrueFeature, pieces: Integers, seen: RecordingEvidence) -> TruthProperties:
-    """The points on each straight piece of a wire, and whether the vehicle passed it."""
+    """The points on each straight piece of a wire or barrier, and whether the vehicle passed it."""
     counts = pieces[: len(one.xyz) - 1]
     return {
         "points": int(counts.sum()),

@@ -23,6 +23,7 @@ from processing.tools.noise import NOISE
 from processing.tools.normals import NORMALS
 from processing.tools.poles import POLES
 from processing.tools.register import REGISTER
+from processing.tools.road_map.barriers import BARRIERS
 from processing.tools.road_map.markings import MARKINGS
 from processing.tools.segments import SEGMENTS
 from processing.tools.signs import SIGNS
@@ -42,6 +43,7 @@ _DECLARED = (
     POLES,
     WIRES,
     MARKINGS,
+    BARRIERS,
     NOISE,
     GROUND_TOOL,
     CLASSIFY,

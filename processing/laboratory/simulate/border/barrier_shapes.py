@@ -13,12 +13,11 @@ import numpy as np
 from numpy.random import Generator
 
 from processing.laboratory.simulate.border.along import pipe, posts, stations, sweep_section, wall
+from processing.laboratory.simulate.border.line_things import LineThing, spacing_of
 from processing.laboratory.simulate.scene.materials import Material
 from processing.laboratory.simulate.scene.mesh import Floats
 from processing.laboratory.simulate.scene.things import SectionBuilder
 from processing.laboratory.simulate.street.section import StreetSection
-
-OTHER = 1
 
 _STEP_M = 2.0
 _BEAM = np.array(
@@ -50,9 +49,18 @@ class BarrierRun:
         """Its length along the centre."""
         return self.to_m - self.from_m
 
+    @property
+    def line(self) -> tuple[float, float, float]:
+        """Chainages from and to, and the offset."""
+        return self.from_m, self.to_m, self.offset_m
+
     def along(self, step_m: float = _STEP_M) -> Floats:
         """Chainages at most a step apart."""
         return stations(self.from_m, self.to_m, step_m)
+
+    def spacing(self, step_m: float) -> float:
+        """How far apart posts stand that are at most a step apart."""
+        return spacing_of(self.from_m, self.to_m, step_m)
 
 
 Barrier = Callable[[Generator, StreetSection, SectionBuilder, BarrierRun], None]
@@ -62,7 +70,7 @@ def add_beam(
     random: Generator, section: StreetSection, built: SectionBuilder, stretch: BarrierRun
 ) -> None:
     """Add a guard rail of W-shaped beams; some are dented, some end in the ground."""
-    instance, paint = built.thing("guardrail"), _PAINTS[int(random.integers(3))]
+    thing, paint = _thing(section, built, "guardrail", stretch), _PAINTS[int(random.integers(3))]
     spacing = float(random.choice([2.0, 4.0]))
     lift = float(random.uniform(-0.04, 0.1))
     along = stretch.along(1.0)
@@ -80,15 +88,22 @@ def add_beam(
         outlines.append(outlines[0] * [-1.0, 1.0])
     for outline in outlines:
         beam = sweep_section(section, along, offsets, outline, is_closed=False, sunk=sunk)
-        built.mesh.add(beam, paint, OTHER, instance)
+        thing.add(beam, paint)
     at_posts = stretch.along(spacing)
     high = 0.75 + lift - np.interp(at_posts, along, sunk)
     feet = section.position(at_posts, stretch.offset_m)[high > 0.1]
     radius = float(random.choice([0.057, 0.07]))
-    built.mesh.add(posts(feet, radius, high[high > 0.1]), paint, OTHER, instance)
+    thing.add(posts(feet, radius, high[high > 0.1]), paint)
     for at in () if is_buried else ends:
         curl = section.position(np.array([at]), stretch.offset_m - direction * 0.02, 0.43 + lift)
-        built.mesh.add(posts(curl, 0.12, 0.34, below_m=0.0), paint, OTHER, instance)
+        thing.add(posts(curl, 0.12, 0.34, below_m=0.0), paint)
+    thing.tell("guard_rail", float(_BEAM[-1, 1]) + lift, stretch.spacing(spacing), "guard_rail")
+
+
+def _thing(
+    section: StreetSection, built: SectionBuilder, kind: str, stretch: BarrierRun
+) -> LineThing:
+    return LineThing(section, built, kind, stretch.line)
 
 
 def _is_free_end(section: StreetSection, chainage_m: float) -> bool:
@@ -121,13 +136,13 @@ def add_walkers_fence(
     count = 2 if has_bars else int(random.integers(2, 4))
     heights = np.linspace(0.15 if has_bars else 0.4, high, count)
     spacing = float(random.choice([1.5, 2.0, 3.0]))
-    instance = _add_rails(section, built, stretch, ("fence", paint), (heights, 0.021, spacing))
+    thing = _add_rails(section, built, stretch, ("fence", paint), (heights, 0.021, spacing))
     if has_bars:
         bars = section.position(
             stretch.along(float(random.uniform(0.1, 0.16))), stretch.offset_m, 0.15
         )
         shape = posts(bars, 0.008, high - 0.15, sides=3, below_m=0.0)
-        built.mesh.add(shape, paint, OTHER, instance)
+        thing.add(shape, paint)
 
 
 def add_cables(
@@ -137,11 +152,11 @@ def add_cables(
     count, apart = int(random.integers(3, 6)), float(random.uniform(0.1, 0.13))
     heights = np.linspace(0.75 - (count - 1) * apart, 0.75, count)
     spacing = float(random.uniform(4.0, 6.0))
-    instance = _add_rails(
+    thing = _add_rails(
         section, built, stretch, ("guard_cable", Material.STEEL), (heights, 0.009, spacing)
     )
     ends = section.position(np.array([stretch.from_m, stretch.to_m]), stretch.offset_m)
-    built.mesh.add(posts(ends, 0.085, 0.85), Material.STEEL, OTHER, instance)
+    thing.add(posts(ends, 0.085, 0.85), Material.STEEL)
 
 
 def _add_rails(
@@ -150,19 +165,20 @@ def _add_rails(
     stretch: BarrierRun,
     looks: tuple[str, Material],
     measures: tuple[Floats, float, float],
-) -> int:
+) -> LineThing:
     """Add round rails at heights, of a radius, on posts at a spacing; their thing."""
     kind, material = looks
     heights, radius, spacing = measures
-    instance = built.thing(kind)
+    thing = _thing(section, built, kind, stretch)
     for height in heights:
         outline = pipe(radius, float(height))
         shape = sweep_section(section, stretch.along(), stretch.offset_m, outline)
-        built.mesh.add(shape, material, OTHER, instance)
+        thing.add(shape, material)
     feet = section.position(stretch.along(spacing), stretch.offset_m)
-    shape = posts(feet, max(1.4 * radius, 0.03), float(heights.max()) + 0.03)
-    built.mesh.add(shape, material, OTHER, instance)
-    return instance
+    high = float(heights.max()) + 0.03
+    thing.add(posts(feet, max(1.4 * radius, 0.03), high), material)
+    thing.tell(kind, high, stretch.spacing(spacing), kind)
+    return thing
 
 
 def add_concrete(
@@ -174,14 +190,16 @@ def add_concrete(
     outline = half + [(-x, z) for x, z in half[::-1]]
     shape = sweep_section(section, stretch.along(), stretch.offset_m, outline)
     worn = Material.OLD_CONCRETE if random.random() < 0.6 else Material.CONCRETE
-    built.mesh.add(shape, worn, OTHER, built.thing("parapet"))
+    thing = _thing(section, built, "parapet", stretch)
+    thing.add(shape, worn)
+    thing.tell("parapet", high, None, "guard_wall")
 
 
 def add_noise_barrier(
     random: Generator, section: StreetSection, built: SectionBuilder, stretch: BarrierRun
 ) -> None:
     """Add a noise barrier: posts every 2 or 4 m, panels 2–4 m high, often clear ones on top."""
-    high, instance = float(random.uniform(2.0, 4.0)), built.thing("noise_barrier")
+    high, thing = float(random.uniform(2.0, 4.0)), _thing(section, built, "noise_barrier", stretch)
     clear = float(random.uniform(0.8, 1.5)) if random.random() < 0.35 else 0.0
     along = stretch.along()
     for outline, material in (
@@ -191,9 +209,11 @@ def add_noise_barrier(
     ):
         if outline[1][1] - outline[0][1] > 0.1:
             shape = sweep_section(section, along, stretch.offset_m, outline)
-            built.mesh.add(shape, material, OTHER, instance)
-    feet = section.position(stretch.along(float(random.choice([2.0, 4.0]))), stretch.offset_m)
-    built.mesh.add(posts(feet, 0.075, high + 0.05, sides=4), Material.STEEL, OTHER, instance)
+            thing.add(shape, material)
+    spacing = float(random.choice([2.0, 4.0]))
+    feet = section.position(stretch.along(spacing), stretch.offset_m)
+    thing.add(posts(feet, 0.075, high + 0.05, sides=4), Material.STEEL)
+    thing.tell("noise_barrier", high + 0.05, stretch.spacing(spacing), "noise_barrier")
 
 
 def _panel(low_m: float, high_m: float) -> list[tuple[float, float]]:

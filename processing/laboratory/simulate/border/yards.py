@@ -9,6 +9,7 @@ from numpy.random import Generator
 
 from processing.laboratory.simulate.border.along import pipe, posts, stations, sweep_section, wall
 from processing.laboratory.simulate.border.houses import Plot
+from processing.laboratory.simulate.border.line_things import LineThing, spacing_of
 from processing.laboratory.simulate.border.parts import BELOW_M, BorderPart, block, merge_parts
 from processing.laboratory.simulate.scene.materials import Material
 from processing.laboratory.simulate.scene.mesh import grid
@@ -78,13 +79,14 @@ def add_mesh_fence(
     """
     low, far, offset = line
     along = stations(low, far, 2.0)
-    instance = built.thing("fence")
+    thing = LineThing(section, built, "fence", line)
     sheet = sweep_section(section, along, offset, [(0.0, 0.05), (0.0, high_m)], is_closed=False)
-    built.mesh.add(sheet, Material.NET, OTHER, instance)
+    thing.add(sheet, Material.NET)
     feet = section.position(along, offset)
-    built.mesh.add(posts(feet, 0.024, high_m), Material.PAINTED_METAL, OTHER, instance)
+    thing.add(posts(feet, 0.024, high_m), Material.PAINTED_METAL)
     rail = sweep_section(section, along, offset, pipe(0.016, high_m, 4))
-    built.mesh.add(rail, Material.PAINTED_METAL, OTHER, instance)
+    thing.add(rail, Material.PAINTED_METAL)
+    thing.tell("fence", high_m, spacing_of(low, far, 2.0))
 
 
 def add_bars(
@@ -105,15 +107,14 @@ def add_bars(
     """
     low, far, offset = line
     base, high = heights
-    instance = built.thing("fence")
+    thing = LineThing(section, built, "fence", line)
     spacing = float(random.uniform(0.1, 0.25))
     bars = section.position(stations(low, far, spacing), offset, base)
-    built.mesh.add(
-        posts(bars, 0.01, high, sides=3, below_m=0.0), Material.PAINTED_METAL, OTHER, instance
-    )
+    thing.add(posts(bars, 0.01, high, sides=3, below_m=0.0), Material.PAINTED_METAL)
     for above in (base + 0.06, base + high - 0.03):
         rail = sweep_section(section, stations(low, far, 2.0), offset, pipe(0.018, above, 4))
-        built.mesh.add(rail, Material.PAINTED_METAL, OTHER, instance)
+        thing.add(rail, Material.PAINTED_METAL)
+    thing.tell("other", base + high)  # it stands on a wall, whose line the map shows
 
 
 def _add_gate_posts(

@@ -1,0 +1,1 @@
+"""The other lines of a road map, held against streets whose truth is known."""

@@ -1,0 +1,1 @@
+"""Barriers beside a road: guard rails, pipes and cables, fences, parapets, noise walls."""
