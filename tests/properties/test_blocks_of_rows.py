@@ -36,6 +36,7 @@ from processing.tools.noise import NOISE, NoiseParameters
 from processing.tools.normals import NORMALS, NormalsParameters
 from processing.tools.poles import POLES
 from processing.tools.road_map.markings import MARKINGS
+from processing.tools.road_map.walls import WALLS
 from processing.tools.running.blocks import JoinedResults, blocks_of
 from processing.tools.running.runner import RunRequest, columns_of, run
 from processing.tools.segments import SEGMENTS, SegmentsParameters, compute_segments
@@ -79,7 +80,10 @@ IN_SPACE = (
     (GROUND_TOOL.id, GroundParameters(method="lowest", tolerance_m=0.1)),
 )
 """Tools that look around in space, whenever a neighbour was measured, by parts of their own."""
-CHUNKS = (TEMPLATE.id, CURBS.id, GUTTERS.id, SIGNS.id, TREES.id, POLES.id, WIRES.id, MARKINGS.id)
+CHUNKS = (
+    TEMPLATE.id, CURBS.id, GUTTERS.id, SIGNS.id, TREES.id, POLES.id, WIRES.id, MARKINGS.id,
+    WALLS.id,
+)  # fmt: skip
 """Tools that find candidates, and read the street a stretch at a time."""
 
 

@@ -7,11 +7,10 @@ figures, are neither asked for nor held against the result.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
-from processing.core.arrays import Flags, Floats, Integers
+from processing.core.arrays import Floats, Integers
 from processing.core.text import Text
 from processing.scoring.features.file_scores import (
     DetectionCounts,
@@ -19,9 +18,17 @@ from processing.scoring.features.file_scores import (
     errors_of,
     named_share,
 )
-from processing.scoring.features.line_positions import PolylineIndex, length_m, middle_positions
+from processing.scoring.features.line_positions import PolylineIndex, length_m
 from processing.scoring.features.mapped_features import MappedFeature, MappedFile
 from processing.scoring.features.one_to_one import pairs_within
+from processing.scoring.features.seen_lines import (
+    BESIDE_M,
+    STEP_M,
+    LinePlaces,
+    is_seen,
+    made_up,
+    places_of,
+)
 from processing.scoring.points.confusion_matrix import BinaryConfusionMatrix
 
 MARKINGS: dict[str, dict[str, object]] = {
@@ -39,27 +46,12 @@ TOLERANCE_M = 0.03
 BAR_TOLERANCE_M = 0.2
 """Between the middles of bars, whose ends are worn."""
 
-STEP_M = 0.1
-"""Between judged places; counts are in decimetres."""
-
 LEAST_POINTS = 10
 """On a metre of paint, below which nothing could be said of it."""
-
-_BESIDE_M = 0.3
-"""A result so near to what isn't asked for isn't judged."""
 
 _LINES = Text("lines, in decimetres", "線（延長、0.1 m単位）")
 _BARS = Text("bars of crossings", "横断歩道の縞")
 _NAME = Text("road markings", "路面標示")
-
-
-@dataclass(frozen=True)
-class _Places:
-    """Places along lines, the line of each, and whether it is asked for."""
-
-    xyz: Floats
-    line: Integers
-    is_asked: Flags
 
 
 def marking_score(result: MappedFile, truth: MappedFile) -> FileScore:
@@ -75,20 +67,20 @@ def marking_score(result: MappedFile, truth: MappedFile) -> FileScore:
     found_bars, found_lines = _split(found)
     bars, lines = _split([one for one in true if one.facts.get("type") != OTHER])
     others = [one for one in true if one.facts.get("type") == OTHER]
-    places = _asked(lines)
+    places = places_of(lines, LEAST_POINTS)
     index = PolylineIndex([one.xyz for one in found_lines])
     near = index.nearest(places.xyz, TOLERANCE_M)
     is_near = near.line >= 0
     hits = int((is_near & places.is_asked).sum())
     missed = int((~is_near & places.is_asked).sum())
-    made_up = _made_up(found_lines, (lines, places), (bars, others))
+    false = int(made_up(found_lines, (lines, places), others, TOLERANCE_M).sum())
     of_kind = _same_type(found_lines, lines, near.line, places)
     bar_counts, unseen_bars = _bars(found_bars, bars)
     off = near.off_m[is_near & places.is_asked]
     return FileScore(
         "markings",
         (
-            DetectionCounts("lines", _LINES, BinaryConfusionMatrix(hits, made_up, missed, 0)),
+            DetectionCounts("lines", _LINES, BinaryConfusionMatrix(hits, false, missed, 0)),
             DetectionCounts("bars", _BARS, bar_counts),
         ),
         shares=(named_share("type", ("type is right", "種類の正解"), *of_kind),),
@@ -109,68 +101,11 @@ def _split(
     return bars, [one for one in features if one.facts.get("type") not in (BAR, OTHER)]
 
 
-def _asked(lines: Sequence[MappedFeature]) -> _Places:
-    """Places along true lines; all are asked for where the truth doesn't tell what is seen."""
-    parts = [middle_positions(one.xyz, STEP_M) for one in lines]
-    owner = np.repeat(np.arange(len(parts)), [len(one) for one in parts]).astype(np.int64)
-    asked = [_is_seen(one, len(part)) for one, part in zip(lines, parts, strict=True)]
-    return _Places(
-        np.concatenate([np.empty((0, 3)), *parts]),
-        owner,
-        np.concatenate([np.empty(0, np.bool_), *asked]),
-    )
-
-
-def _is_seen(line: MappedFeature, count: int) -> Flags:
-    steps = np.hypot(*np.diff(line.xyz[:, :2], axis=0).T)
-    ends = np.cumsum(steps)
-    at = (np.arange(count) + 0.5) * ends[-1] / count
-    piece = np.minimum(np.searchsorted(ends, at), steps.size - 1)
-    seen = np.ones(count, np.bool_)
-    points, span = line.facts.get("piece_points"), line.facts.get("piece_in_span")
-    if isinstance(points, list) and len(points) == steps.size:
-        seen &= (np.array(points, np.float64) >= LEAST_POINTS * steps)[piece]
-    if isinstance(span, list) and len(span) == steps.size:
-        seen &= np.array([bool(one) for one in span])[piece]
-    return seen
-
-
-def _made_up(
-    found: Sequence[MappedFeature],
-    true: tuple[Sequence[MappedFeature], _Places],
-    not_asked: tuple[Sequence[MappedFeature], Sequence[MappedFeature]],
-) -> int:
-    """Decimetres of found lines that lie on no line, but for those beside what isn't asked for.
-
-    Of several found lines along one true one the nearest is right.
-    """
-    lines, places = true
-    if not found:
-        return 0
-    parts = [middle_positions(one.xyz, STEP_M) for one in found]
-    own = np.repeat(np.arange(len(parts)), [len(one) for one in parts])
-    xyz = np.concatenate(parts)
-    met = PolylineIndex([one.xyz for one in lines]).nearest(xyz, TOLERANCE_M)
-    is_right = met.line >= 0
-    nearest = PolylineIndex([one.xyz for one in found]).nearest(
-        np.where(is_right[:, None], met.xyz, xyz), TOLERANCE_M
-    )
-    is_right &= nearest.line == own
-    unseen = places.xyz[~places.is_asked]
-    beside = PolylineIndex([one.xyz for one in not_asked[1]]).nearest(xyz, _BESIDE_M).line >= 0
-    if len(unseen):
-        from scipy.spatial import cKDTree
-
-        away, _ = cKDTree(unseen[:, :2]).query(xyz[:, :2])
-        beside |= away < _BESIDE_M
-    return int((~is_right & ~beside).sum())
-
-
 def _same_type(
     found: Sequence[MappedFeature],
     lines: Sequence[MappedFeature],
     partner: Integers,
-    places: _Places,
+    places: LinePlaces,
 ) -> tuple[int, int]:
     """Found places whose line says the right type, and how many there are."""
     chosen = np.flatnonzero((partner >= 0) & places.is_asked)
@@ -182,7 +117,7 @@ def _same_type(
 
 
 def _widths(
-    result: MappedFile, truth: MappedFile, partner: Integers, places: _Places
+    result: MappedFile, truth: MappedFile, partner: Integers, places: LinePlaces
 ) -> list[float]:
     """Found widths minus true ones, once for each pair of lines."""
     found = result.of_kinds(MARKINGS, "line", _NAME)
@@ -202,7 +137,10 @@ def _bars(
 ) -> tuple[BinaryConfusionMatrix, int]:
     """Bars paired by their middles; those that the points don't show for the most part are left."""
     asked = np.array(
-        [_is_seen(one, max(1, round(length_m(one.xyz) / STEP_M))).mean() > 0.5 for one in bars],
+        [
+            is_seen(one, max(1, round(length_m(one.xyz) / STEP_M)), LEAST_POINTS).mean() > 0.5
+            for one in bars
+        ],
         np.bool_,
     )
     of_result, of_truth = pairs_within(_middles(found), _middles(bars), BAR_TOLERANCE_M)
@@ -211,7 +149,7 @@ def _bars(
     unseen = [one for one, is_asked in zip(bars, asked.tolist(), strict=True) if not is_asked]
     beside = PolylineIndex([one.xyz for one in unseen])
     alone = [one for k, one in enumerate(found) if k not in paired]
-    made_up = [one for one in alone if (beside.nearest(_middles([one]), _BESIDE_M).line < 0).all()]
+    made_up = [one for one in alone if (beside.nearest(_middles([one]), BESIDE_M).line < 0).all()]
     return BinaryConfusionMatrix(hits, len(made_up), int(asked.sum()) - hits, 0), len(unseen)
 
 

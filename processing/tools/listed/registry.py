@@ -24,6 +24,7 @@ from processing.tools.normals import NORMALS
 from processing.tools.poles import POLES
 from processing.tools.register import REGISTER
 from processing.tools.road_map.markings import MARKINGS
+from processing.tools.road_map.walls import WALLS
 from processing.tools.segments import SEGMENTS
 from processing.tools.signs import SIGNS
 from processing.tools.template import TEMPLATE
@@ -42,6 +43,7 @@ _DECLARED = (
     POLES,
     WIRES,
     MARKINGS,
+    WALLS,
     NOISE,
     GROUND_TOOL,
     CLASSIFY,

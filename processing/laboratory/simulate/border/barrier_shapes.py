@@ -13,6 +13,7 @@ import numpy as np
 from numpy.random import Generator
 
 from processing.laboratory.simulate.border.along import pipe, posts, stations, sweep_section, wall
+from processing.laboratory.simulate.border.wall_lines import add_swept_wall
 from processing.laboratory.simulate.scene.materials import Material
 from processing.laboratory.simulate.scene.mesh import Floats
 from processing.laboratory.simulate.scene.things import SectionBuilder
@@ -174,7 +175,9 @@ def add_concrete(
     outline = half + [(-x, z) for x, z in half[::-1]]
     shape = sweep_section(section, stretch.along(), stretch.offset_m, outline)
     worn = Material.OLD_CONCRETE if random.random() < 0.6 else Material.CONCRETE
-    built.mesh.add(shape, worn, OTHER, built.thing("parapet"))
+    instance = built.thing("parapet")
+    built.mesh.add(shape, worn, OTHER, instance)
+    _add_other_wall(section, built, instance, stretch, high)
 
 
 def add_noise_barrier(
@@ -194,6 +197,19 @@ def add_noise_barrier(
             built.mesh.add(shape, material, OTHER, instance)
     feet = section.position(stretch.along(float(random.choice([2.0, 4.0]))), stretch.offset_m)
     built.mesh.add(posts(feet, 0.075, high + 0.05, sides=4), Material.STEEL, OTHER, instance)
+    _add_other_wall(section, built, instance, stretch, high)
+
+
+def _add_other_wall(
+    section: StreetSection,
+    built: SectionBuilder,
+    instance: int,
+    stretch: BarrierRun,
+    high_m: float,
+) -> None:
+    """Add the truth of what looks like a wall and is a barrier."""
+    line = stretch.from_m, stretch.to_m, stretch.offset_m
+    add_swept_wall(section, built, instance, line, ("other", high_m, 0.0))
 
 
 def _panel(low_m: float, high_m: float) -> list[tuple[float, float]]:

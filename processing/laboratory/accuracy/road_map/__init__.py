@@ -1,0 +1,1 @@
+"""Accuracy of the tools of the road map."""
