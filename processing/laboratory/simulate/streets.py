@@ -182,7 +182,9 @@ class _Work:
             monitor.check()
             self.things.update({one.instance: one for one in section.things})
             for position, one in enumerate(section.truth):
-                if -_SHOWN_M < one.chainage_m < self.request.length_m + _SHOWN_M:
+                # Walls are seen from afar, and must not count as made up.
+                near = -_SHOWN_M < one.chainage_m < self.request.length_m + _SHOWN_M
+                if near or one.file == "walls":
                     self.truth.setdefault((section.plan.index, position), one)
         if number == 0:  # later passes are along the same street
             self.walls = WallEvidence(self.truth.values())

@@ -41,9 +41,16 @@ _FEW_GROUND = 3.0
 _AROUND_M = 0.15
 """Of what lies so near to a face and is not on it, how much there is tells a hedge from a wall."""
 
+_BASE_SLABS, _LESS_SOLID, _FENCE_SHARE = 2, 0.15, 0.1
+"""Of a wall with a fence on it: the lowest slabs, 0.4 m, how much less solid the fence is, and its
+share of the points on both."""
+
 _SOLID, _SMOOTHED = 0.62, 2
 """Share of points measured just after another one on it, between fences and walls, and stations to
 either side that tell it: two metres together."""
+
+_FITS = 4
+"""Of the line and the lean of a face, each to the points on the one before."""
 
 _TOLD_BY, _LOW_PART_M, _TOLD_LOW = 0.4, 1.5, 0.25
 """Share of points measured just after another one on the face from which these alone tell where it
@@ -210,10 +217,10 @@ def _measured(
     if feet is None:
         return
     above = local[:, 2] - np.interp(along, guide.at, feet)
-    is_on = np.zeros(len(kept), np.bool_)
-    for _ in range(3):
+    is_on, cut = np.zeros(len(kept), np.bool_), float("inf")
+    for step in range(_FITS):
         left = off - guide.off_at(along) - slope * above
-        is_on = np.abs(left) <= about.noise_m
+        is_on = (np.abs(left) <= about.noise_m) & (above <= cut)
         # Of a low wall with bars on it the bars are less to go by.
         is_solid = is_on & _solid(
             _Measures(about, way, normal, guide, slope),
@@ -227,6 +234,7 @@ def _measured(
         guide = _Guide.of(along, off - slope * above, told, _FEWEST_POINTS)
         if not len(guide.at):
             return
+        cut = _solid_top(above[is_on], is_solid[is_on]) if step == 0 else cut
     feet = _feet(about, guide, way, normal)
     if feet is None:
         return
@@ -395,6 +403,7 @@ def _described(
     guide = measures.guide
     kept, along, off, above, is_on, is_solid = seen
     left = off - guide.off_at(along) - measures.slope * above
+    is_on = is_on & (above <= _solid_top(above[is_on], is_solid[is_on]))
     on = np.flatnonzero(is_on)
     if on.size < 2 * _FEWEST_POINTS:
         return None
@@ -419,6 +428,33 @@ def _described(
         is_ground_behind=_ground_behind(measures, top),
         is_open=_open_share(measures, top),
     )
+
+
+def _solid_top(above: Floats, is_solid: Flags) -> float:
+    """Up to which height a face is solid, where a fence stands on it; infinite where none does.
+
+    Parameters
+    ----------
+    above : (n,) float64
+        Of the points on it over its foot.
+    is_solid : (n,) bool
+        Which of them were measured just after another one.
+    """
+    slab = np.maximum(((above - LOWEST_M) / SLAB_M).astype(np.int64), 0)
+    count = np.bincount(slab)
+    share = np.bincount(slab, is_solid) / np.maximum(count, 1)
+    known = np.flatnonzero(count >= _FEWEST_POINTS)
+    if known.size <= _BASE_SLABS:
+        return float("inf")
+    base = float(np.median(share[known[: _BASE_SLABS + 1]]))
+    limit = base - _LESS_SOLID if base >= _SOLID + _LESS_SOLID else _SOLID
+    for place in range(_BASE_SLABS, known.size):
+        over = slab >= known[place]
+        # A rail on top of bars is as solid as the wall: what counts is all from there on.
+        if share[known[place]] < limit and is_solid[over].mean() < limit:
+            is_fence = over.sum() >= _FENCE_SHARE * slab.size and base >= _SOLID
+            return float(LOWEST_M + known[place] * SLAB_M) if is_fence else float("inf")
+    return float("inf")
 
 
 def _true_top(measures: _Measures, seen_m: float) -> float:

@@ -62,10 +62,10 @@ class WallFacts(NamedTuple):
 # streets of five scanners. Left out one street at a time, 169 of 179 of those given 0.9 and more
 # were walls or buildings, 85 of 115 of those from 0.5, 44 of 720 of those below; on four others 34
 # of 35, 45 of 55 and 12 of 198.
-_CONSTANT = -8.4
+_CONSTANT = -7.48
 _WEIGHTS = WallFacts(
-    long=0.56, high=1.59, raised=-2.25, solid=3.75, near=1.64, filled=1.8, open=-2.23,
-    rough=-1.8, leaning=-0.8, over=-3.05, aside=2.69,
+    long=0.57, high=1.62, raised=-2.31, solid=2.32, near=2.08, filled=1.89,
+    open=-2.18, rough=-2.03, leaning=-0.77, over=-3.05, aside=2.63,
 )  # fmt: skip
 
 
