@@ -107,7 +107,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--markdown", type=Path)
     parser.add_argument("--seeds", default=_SEEDS)
-    parser.add_argument("--length", type=float, default=80.0)
+    parser.add_argument("--length", type=float, default=60.0)
     parser.add_argument("--deliveries", type=Path, nargs="*", default=[])
     options = parser.parse_args(arguments)
     rows = list(rows_of(simulated_scenes(seeds_of(options.seeds), options.length, request_of)))

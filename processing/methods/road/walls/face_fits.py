@@ -97,8 +97,8 @@ class FaceStations:
         it that are on it, and that are as near as frames of windows; of squares between bottom and
         top that hold points.
     is_ground_behind, is_open : float
-        Shares of stations behind which ground lies at the top, and behind which something is seen
-        lower than the top: one looks through.
+        Shares of stations behind which ground lies at the top, and behind which the ground at the
+        foot is seen: one looks through.
     """
 
     line: Floats
@@ -155,6 +155,12 @@ class FaceSurroundings:
         heights = np.empty(len(places))
         ground_kernel(places, self.plan.table, self.ground, self.columns.ground, heights)
         return heights
+
+    def is_ground_seen(self, places: Floats) -> Flags:
+        """(n,) whether some points lie near the ground at (n, 2) places."""
+        counts = np.empty(len(places))
+        low_points_kernel(places, self.plan.table, self.columns.ground, counts)
+        return np.asarray(counts >= _FEW_GROUND)
 
     def slabs_at(self, places: Floats) -> NDArray[np.uint32]:
         """(n,) the filled slabs over (n, 2) places."""
@@ -426,7 +432,7 @@ def _described(
         near=int((inside & (np.abs(left) <= _FRAMES_M)).sum()) / about_it,
         filled=_filled(along[on], above[on], float(low), top),
         is_ground_behind=_ground_behind(measures, top),
-        is_open=_open_share(measures, top),
+        is_open=_open_share(measures),
     )
 
 
@@ -486,14 +492,11 @@ def _ground_behind(measures: _Measures, top_m: float) -> float:
     return float(np.mean(is_behind & ~is_open))
 
 
-def _open_share(measures: _Measures, top_m: float) -> float:
-    """The share of stations behind which something is seen lower than the top."""
-    level = int(np.clip((top_m - LOWEST_M) / SLAB_M - 1, 0, SLABS - 1))
-    below = np.uint32((1 << level) - 1) | GROUND_BIT
+def _open_share(measures: _Measures) -> float:
+    """The share of stations behind which the ground is seen."""
     is_seen = np.zeros(len(measures.guide.at), np.bool_)
     for back in _THROUGH_M:
-        slabs = measures.about.slabs_at(measures.places(measures.guide.at, -back))
-        is_seen |= (slabs & below) > 0
+        is_seen |= measures.about.is_ground_seen(measures.places(measures.guide.at, -back))
     return float(np.mean(is_seen))
 
 
@@ -539,6 +542,16 @@ def ground_kernel(
         heights[place] = floor
         if lows[cell, 1] >= _FEW_GROUND:
             heights[place] = floor + lows[cell, 0] / lows[cell, 1]
+
+
+@kernel
+def low_points_kernel(
+    places: Floats, table: NDArray[np.int32], lows: NDArray[np.float32], counts: Floats
+) -> None:
+    """How many points near the ground were counted in each place's cell."""
+    for place in range(len(places)):
+        cell = cell_of(places[place, 0], places[place, 1], table, TILE)
+        counts[place] = lows[cell, 1] if cell >= 0 else 0.0
 
 
 @kernel

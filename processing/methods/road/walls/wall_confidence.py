@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 from processing.methods.road.logistic import chance_of_logit
 from processing.methods.road.walls.wall_cells import LOWEST_M
-from processing.methods.road.walls.wall_lines import WallLine
+from processing.methods.road.walls.wall_lines import HOUSE_M, WallLine
 
 _LONGEST_M, _HIGHEST_M = 16.0, 3.2
 _SOLID = (0.5, 0.9)
@@ -31,12 +31,15 @@ class WallFacts(NamedTuple):
     solid : float
         Share of its points that were measured just after another one on it, from 0 at the half
         to 1 at nine in ten: not of fences, plants.
+    airy : float
+        How little solid it is, where it is lower than a ground floor: far buildings show few points
+        that follow each other, too.
     near : float
         Share of the points about it that are as near as frames of windows: leaves are not.
     filled : float
         Share of it that holds points.
     open : float
-        Share of it through which something is seen behind it.
+        Share of it behind which the ground is seen.
     rough : float
         How far points lie off it, over three times that of the recording's flattest faces, 0 to 1.
     leaning, over : float
@@ -49,6 +52,7 @@ class WallFacts(NamedTuple):
     high: float
     raised: float
     solid: float
+    airy: float
     near: float
     filled: float
     open: float
@@ -58,14 +62,14 @@ class WallFacts(NamedTuple):
     aside: float
 
 
-# Learnt by `processing.laboratory.road_training.wall_training` from 1014 faces of twelve simulated
-# streets of five scanners. Left out one street at a time, 169 of 179 of those given 0.9 and more
-# were walls or buildings, 85 of 115 of those from 0.5, 44 of 720 of those below; on four others 34
-# of 35, 45 of 55 and 12 of 198.
-_CONSTANT = -7.48
+# Learnt by `processing.laboratory.road_training.wall_training` from 999 faces of twelve simulated
+# streets of five scanners. Left out one street at a time, 197 of 203 of those given 0.9 and more
+# were walls or buildings, 71 of 99 of those from 0.5, 35 of 697 of those below; on four others
+# 41 of 42, 35 of 46 and 12 of 190.
+_CONSTANT = -8.11
 _WEIGHTS = WallFacts(
-    long=0.57, high=1.62, raised=-2.31, solid=2.32, near=2.08, filled=1.89,
-    open=-2.18, rough=-2.03, leaning=-0.77, over=-3.05, aside=2.63,
+    long=0.48, high=1.35, raised=-3.17, solid=0.26, airy=-2.72, near=6.62, filled=2.24,
+    open=-3.01, rough=-3.55, leaning=-1.77, over=-3.26, aside=2.16,
 )  # fmt: skip
 
 
@@ -80,12 +84,14 @@ def facts_of(line: WallLine, aside_m: float, flat_m: float) -> WallFacts:
         How far points lie off the recording's flattest faces.
     """
     face = line.face
+    solid = min(max((face.solid - _SOLID[0]) / (_SOLID[1] - _SOLID[0]), 0.0), 1.0)
     high = min(max(face.top_m - face.low_m, 0.25), _HIGHEST_M)
     return WallFacts(
         long=math.log2(min(max(line.seen_m, 0.5), _LONGEST_M)),
         high=math.log2(high),
         raised=min(max(face.low_m - 2 * LOWEST_M, 0.0) / _RAISED_M, 1.0),
-        solid=min(max((face.solid - _SOLID[0]) / (_SOLID[1] - _SOLID[0]), 0.0), 1.0),
+        solid=solid,
+        airy=1.0 - solid if face.top_m < HOUSE_M else 0.0,
         near=face.near,
         filled=face.filled,
         open=face.is_open,

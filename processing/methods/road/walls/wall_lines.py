@@ -51,7 +51,7 @@ _LEAST_M, _SAMPLE_M = 0.5, 0.1
 _CORNER_M, _CORNER_SINE = 0.6, 0.3
 """How far from where two faces meet they may end, and the sine of the least angle of a corner."""
 
-_LEANING, _HOUSE_M, _BEHIND_SHARE = 0.02, 2.7, 0.5
+_LEANING, HOUSE_M, _BEHIND_SHARE = 0.02, 2.7, 0.5
 """Lean of what holds back soil (1 : 0.02 and more); height of a ground floor: free walls of blocks
 end at 2.2 m (建築基準法施行令 第62条の8); share of a wall with ground behind its top."""
 
@@ -123,9 +123,9 @@ class WallLine:
     def type(self) -> WallType:
         """What it is, by its lean, its height and what lies behind."""
         high = self.face.top_m
-        if abs(self.face.lean) >= _LEANING and high < 2 * _HOUSE_M:
+        if abs(self.face.lean) >= _LEANING and high < 2 * HOUSE_M:
             return "retaining"
-        if high >= _HOUSE_M:
+        if high >= HOUSE_M:
             return "building"
         return "retaining" if self.face.is_ground_behind >= _BEHIND_SHARE else "wall"
 
@@ -401,7 +401,7 @@ def _with_openings(
 
 
 def _strength(line: WallLine) -> float:
-    high = min(line.face.top_m, _HOUSE_M) - max(line.face.low_m, 0.0)
+    high = min(line.face.top_m, HOUSE_M) - max(line.face.low_m, 0.0)
     return line.seen_m * max(high, 0.0) * line.face.solid
 
 
