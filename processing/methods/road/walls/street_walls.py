@@ -13,6 +13,7 @@ from processing.methods.road.objects.drive_chunks import DriveChunk, chunks_of
 from processing.methods.road.objects.driven_path import driven_places
 from processing.methods.road.objects.survey import SurveyGround, survey_ground
 from processing.methods.road.walls.face_fits import FaceSurroundings, measured_faces
+from processing.methods.road.walls.steady_ground import steady_ground
 from processing.methods.road.walls.wall_cells import PulseTimes, cell_columns, cell_points
 from processing.methods.road.walls.wall_confidence import WallFacts, chance_of, facts_of
 from processing.methods.road.walls.wall_faces import linked_cells, local_planes, neighbours
@@ -145,7 +146,9 @@ def walls_in(
     chunks : callable
         Goes through the points, each time it is called.
     """
-    plan, ground = below
+    plan = below.plan
+    ground = steady_ground(plan, below.heights, monitor)
+    below = SurveyGround(plan, ground)
     path = driven_places(drives, plan)
     columns = cell_columns(chunks(PartMonitor(monitor, 0.0, 0.35)), plan, ground)
     part = PartMonitor(monitor, 0.35, 0.7)
