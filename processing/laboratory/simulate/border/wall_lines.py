@@ -81,9 +81,9 @@ def add_body_outlines(
 ) -> None:
     """Add the outlines of a building's bodies, placed as its parts are."""
     position, heading = where
-    for corners, high in _bodies(parts):
+    for corners, high, kind in _bodies(parts):
         ring = place_shape((_in_pieces(corners), np.empty((0, 3), np.int64)), position, heading)[0]
-        add_wall_line(section, built, instance, ring, ("building", high, 0.0))
+        add_wall_line(section, built, instance, ring, (kind, high, 0.0))
 
 
 def add_block_outline(
@@ -98,15 +98,19 @@ def add_block_outline(
     add_wall_line(section, built, instance, _in_pieces(corners), (kind, high, 0.0))
 
 
-def _bodies(parts: Sequence[BorderPart]) -> Iterator[tuple[Floats, float]]:
-    """Corners of the foot and height of each block that is large enough, in the lot's frame."""
+def _bodies(parts: Sequence[BorderPart]) -> Iterator[tuple[Floats, float, WallType]]:
+    """Corners of the foot, height and type of each large body, in the lot's frame.
+
+    What is no block has no upright faces: tunnels of plastic sheets.
+    """
     for (vertices, _), _ in parts:
         low, high = vertices.min(axis=0), vertices.max(axis=0)
-        large = np.all(high - low >= _LEAST_BODY_M) and low[2] <= 0.0
-        if len(vertices) == _BOX_CORNERS and large:
+        if np.all(high - low >= _LEAST_BODY_M) and low[2] <= 0.0:
             xs, ys = (low[0], high[0]), (low[1], high[1])
             plan = [(xs[0], ys[0]), (xs[1], ys[0]), (xs[1], ys[1]), (xs[0], ys[1])]
-            yield np.array([(*one, 0.0) for one in plan]), float(high[2])
+            is_block = len(vertices) == _BOX_CORNERS
+            corners = np.array([(*one, 0.0) for one in plan])
+            yield corners, float(high[2]), "building" if is_block else "other"
 
 
 def _in_pieces(corners: Floats) -> Floats:

@@ -52,8 +52,9 @@ def steady_ground(
         return steady
     sources = np.flatnonzero(known_cells)
     away, nearest = cKDTree(places[sources]).query(places[missing], distance_upper_bound=_REACH_M)
-    found = np.isfinite(away)
-    steady.reshape(-1)[missing[found]] = steady.reshape(-1)[sources[nearest[found]]]
+    found = np.isfinite(np.asarray(away))
+    chosen = sources[np.asarray(nearest)[found]]
+    steady.reshape(-1)[missing[found]] = steady.reshape(-1)[chosen]
     return steady
 
 

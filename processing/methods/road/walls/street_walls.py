@@ -27,6 +27,10 @@ _OFF = 1.25
 _TALL_SLABS, _FLAT_SHARE = 5, 0.1
 """Slabs of a plane that is tall, and which share of those are the recording's flattest."""
 
+_HIGHEST_LOW_M = 2.0
+"""What begins higher over the ground hangs: balconies, awnings and boards. Walls of yards, which
+hide the lower part of a face, end at about this height."""
+
 _NEAREST_M = 0.3
 """Of a vertex, the farthest of the measured points that it rests on."""
 
@@ -160,7 +164,7 @@ def walls_in(
     around = neighbours(points, plan, middles, 1)
     measured = list(measured_faces(about, planes, middles, (faces, around), monitor))
     monitor.check()
-    lines = wall_lines(measured, about)
+    lines = [one for one in wall_lines(measured, about) if one.face.low_m <= _HIGHEST_LOW_M]
     flat_m = _flattest(planes)
     facts = [facts_of(one, _aside_m(one, path), flat_m) for one in lines]
     return SeenWalls(tuple(zip(lines, facts, strict=True)), about)
