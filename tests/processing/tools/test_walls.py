@@ -2,19 +2,23 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
+import laspy
 import numpy as np
 import pytest
 
 from processing.core.errors import Cancelled
 from processing.core.monitor import SilentMonitor
+from processing.image.scan_lines.scanlines import ScanlineSettings, scanline_through
 from processing.laboratory.simulate.scene.mesh import TriangleShape
 from processing.methods.road.objects import drive_chunks
+from processing.methods.road.requested_position import RequestedPosition
 from processing.project.importing.importing import ImportRequest
 from processing.recording.drive import Drive
-from processing.tools.road_map.walls import WallParameters, find_walls
+from processing.tools.road_map.walls import WallParameters, diagnose_walls, find_walls
 from processing.tools.tool import Candidate
 from tests.processing.methods.road.bad_recordings import (
     HEAD_45,
@@ -210,3 +214,48 @@ def test_a_search_that_is_cancelled_ends_at_once(drives: tuple[Drive, ...]) -> N
 
     with pytest.raises(Cancelled):
         find_walls(drives, WallParameters(), Stopping())
+
+
+def test_a_section_shows_the_strip_of_each_face_and_what_decided(
+    drives: tuple[Drive, ...],
+) -> None:
+    xyz = ORIGIN + np.array([8.0, WALL_M, 1.0])
+    scanlines = scanline_through(drives[0], xyz, ScanlineSettings())
+    assert scanlines is not None
+    found = diagnose_walls(RequestedPosition(drives[0], xyz, scanlines), WallParameters())
+    wall = min(found, key=lambda one: abs(float(one.xyz[1] - xyz[1])))
+    assert wall.is_taken
+    np.testing.assert_allclose(wall.xyz - ORIGIN, [8.0, WALL_M, GROUND_M], atol=0.03)
+    assert wall.outline is not None
+    assert np.ptp(wall.outline[:, 2]) == pytest.approx(HIGH_M, abs=0.05)
+    assert wall.points is not None
+    assert len(wall.points) > 50
+
+
+def all_noise(cloud: laspy.LasData) -> None:
+    cloud.classification = np.full(len(cloud.x), 7, np.uint8)
+
+
+def one_height(cloud: laspy.LasData) -> None:
+    cloud.z = np.full(len(cloud.x), ORIGIN[2])
+
+
+@pytest.mark.parametrize("change", [all_noise, one_height])
+def test_recordings_without_any_face_are_told(
+    tmp_path: Path, change: Callable[[laspy.LasData], None]
+) -> None:
+    request = delivered(driven(*BESIDE), tmp_path)
+    cloud = laspy.read(request.inputs[0])
+    change(cloud)
+    cloud.write(str(request.inputs[0]))
+    told = told_of("walls", request, tmp_path)
+    assert told.candidates == ()
+    assert "Nothing upright" in told.sentence
+
+
+def test_a_noisy_recording_shows_the_same_walls(tmp_path: Path) -> None:
+    recording = replace(driven(*BESIDE), noise_m=0.02)
+    told = told_of("walls", delivered(recording, tmp_path), tmp_path)
+    walls = of_kind(told, "wall")
+    assert len(walls) == 2
+    assert max(np.abs(local(one)[:, 1] - WALL_M).max() for one in walls) < 0.03
