@@ -35,15 +35,15 @@ EXPECTED = WeightPrior(
     (
         -6.0,
         *WallFacts(
-            long=0.8, high=1.0, raised=-1.5, solid=4.0, airy=-3.0, near=3.0, filled=1.0,
-            open=-4.0, rough=-3.0, leaning=-1.0, over=-3.0, aside=3.0,
+            long=0.8, high=1.0, raised=-1.5, airy=-3.0, near=3.0, filled=1.0,
+            open=-4.0, rough=-6.0, leaning=-1.0, over=-3.0, aside=3.0,
         ),
     ),
     (
         4.0,
         *WallFacts(
-            long=0.5, high=1.0, raised=1.0, solid=3.0, airy=2.0, near=3.0, filled=1.0,
-            open=3.0, rough=2.0, leaning=1.0, over=2.0, aside=2.0,
+            long=0.5, high=1.0, raised=1.0, airy=2.0, near=3.0, filled=1.0,
+            open=3.0, rough=4.0, leaning=1.0, over=2.0, aside=2.0,
         ),
     ),
 )  # fmt: skip

@@ -32,7 +32,7 @@ from processing.scoring.features.walls import LEAST_POINTS, wall_score
 from processing.scoring.points.confusion_matrix import BinaryConfusionMatrix
 
 _HEADING = "## Walls and buildings"
-_SEEDS = "9401-9406"
+_SEEDS = "9411-9416"
 _STYLES = ("urban", "rural", "urban", "rural", "highway", "urban")
 
 _COMMAND = "python -m processing.laboratory.accuracy.road_map.walls --markdown docs/accuracy.md"

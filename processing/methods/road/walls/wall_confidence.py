@@ -13,7 +13,7 @@ _LONGEST_M, _HIGHEST_M = 16.0, 3.2
 _SOLID = (0.5, 0.9)
 _RAISED_M = 0.5
 _WAY_M = 6.0
-_ROUGH, _LEAST_NOISE_M, _LEAN = 3.0, 0.001, 0.2
+_ROUGH, _LEAST_NOISE_M, _LEAN = 5.0, 0.001, 0.2
 
 
 class WallFacts(NamedTuple):
@@ -28,12 +28,10 @@ class WallFacts(NamedTuple):
     raised : float
         How far its lowest point lies over where faces begin, over half a metre,
         0 to 1: balconies, vehicles.
-    solid : float
-        Share of its points that were measured just after another one on it, from 0 at the half
-        to 1 at nine in ten: not of fences, plants.
     airy : float
-        How little solid it is, where it is lower than a ground floor: far buildings show few points
-        that follow each other, too.
+        How few of its points were measured just after another one on it, from 0 at nine in ten to 1
+        at the half: fences and plants. 0 where it is as high as a ground floor, since far
+        buildings show few points that follow each other, too.
     near : float
         Share of the points about it that are as near as frames of windows: leaves are not.
     filled : float
@@ -41,7 +39,7 @@ class WallFacts(NamedTuple):
     open : float
         Share of it behind which the ground is seen.
     rough : float
-        How far points lie off it, over three times that of the recording's flattest faces, 0 to 1.
+        How far points lie off it, over five times that of the recording's flattest faces, 0 to 1.
     leaning, over : float
         How far it leans either way, and towards the vehicle, over 0.2, 0 to 1: sides of vehicles.
     aside : float
@@ -51,7 +49,6 @@ class WallFacts(NamedTuple):
     long: float
     high: float
     raised: float
-    solid: float
     airy: float
     near: float
     filled: float
@@ -62,14 +59,14 @@ class WallFacts(NamedTuple):
     aside: float
 
 
-# Learnt by `processing.laboratory.road_training.wall_training` from 999 faces of twelve simulated
-# streets of five scanners. Left out one street at a time, 197 of 203 of those given 0.9 and more
-# were walls or buildings, 71 of 99 of those from 0.5, 35 of 697 of those below; on four others
-# 41 of 42, 35 of 46 and 12 of 190.
-_CONSTANT = -8.11
+# Learnt by `processing.laboratory.road_training.wall_training` from 948 faces of twelve simulated
+# streets of five scanners. Left out one street at a time, 196 of 202 of those given 0.9 and more
+# were walls or buildings, 72 of 101 of those from 0.5, 30 of 645 of those below; on four others
+# 50 of 51, 24 of 35 and 11 of 185.
+_CONSTANT = -9.01
 _WEIGHTS = WallFacts(
-    long=0.48, high=1.35, raised=-3.17, solid=0.26, airy=-2.72, near=6.62, filled=2.24,
-    open=-3.01, rough=-3.55, leaning=-1.77, over=-3.26, aside=2.16,
+    long=0.5, high=1.37, raised=-2.78, airy=-2.95, near=7.63, filled=2.56,
+    open=-3.07, rough=-5.54, leaning=-1.7, over=-3.37, aside=1.94,
 )  # fmt: skip
 
 
@@ -90,7 +87,6 @@ def facts_of(line: WallLine, aside_m: float, flat_m: float) -> WallFacts:
         long=math.log2(min(max(line.seen_m, 0.5), _LONGEST_M)),
         high=math.log2(high),
         raised=min(max(face.low_m - 2 * LOWEST_M, 0.0) / _RAISED_M, 1.0),
-        solid=solid,
         airy=1.0 - solid if face.top_m < HOUSE_M else 0.0,
         near=face.near,
         filled=face.filled,
