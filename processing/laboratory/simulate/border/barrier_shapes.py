@@ -177,7 +177,8 @@ def add_concrete(
     worn = Material.OLD_CONCRETE if random.random() < 0.6 else Material.CONCRETE
     instance = built.thing("parapet")
     built.mesh.add(shape, worn, OTHER, instance)
-    _add_other_wall(section, built, instance, stretch, high)
+    for edge in (-foot, foot):
+        _add_other_wall(section, built, instance, stretch, (edge, high))
 
 
 def add_noise_barrier(
@@ -197,7 +198,7 @@ def add_noise_barrier(
             built.mesh.add(shape, material, OTHER, instance)
     feet = section.position(stretch.along(float(random.choice([2.0, 4.0]))), stretch.offset_m)
     built.mesh.add(posts(feet, 0.075, high + 0.05, sides=4), Material.STEEL, OTHER, instance)
-    _add_other_wall(section, built, instance, stretch, high)
+    _add_other_wall(section, built, instance, stretch, (0.0, high))
 
 
 def _add_other_wall(
@@ -205,11 +206,18 @@ def _add_other_wall(
     built: SectionBuilder,
     instance: int,
     stretch: BarrierRun,
-    high_m: float,
+    measures: tuple[float, float],
 ) -> None:
-    """Add the truth of what looks like a wall and is a barrier."""
-    line = stretch.from_m, stretch.to_m, stretch.offset_m
-    add_swept_wall(section, built, instance, line, ("other", high_m, 0.0))
+    """Add the truth of what looks like a wall and is a barrier.
+
+    Parameters
+    ----------
+    measures : (float, float)
+        How far its foot lies to the left of the stretch, and its height, m.
+    """
+    edge, high = measures
+    line = stretch.from_m, stretch.to_m, stretch.offset_m + edge
+    add_swept_wall(section, built, instance, line, ("other", high, 0.0))
 
 
 def _panel(low_m: float, high_m: float) -> list[tuple[float, float]]:
