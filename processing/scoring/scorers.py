@@ -19,6 +19,7 @@ from processing.scoring.features.poles import pole_score
 from processing.scoring.features.signs import sign_score
 from processing.scoring.features.trees import tree_score
 from processing.scoring.features.volumes import volume_score
+from processing.scoring.features.walls import wall_score
 from processing.scoring.features.wires import wire_score
 from processing.scoring.points.class_scores import class_score
 from processing.scoring.points.point_scores import (
@@ -83,6 +84,7 @@ POLE_SCORER = FeatureScorer("poles", Text("Poles", "柱状物"), pole_score)
 WIRE_SCORER = FeatureScorer("wires", Text("Wires", "架線"), wire_score)
 MARKING_SCORER = FeatureScorer("markings", Text("Road markings", "区画線"), marking_score)
 BARRIER_SCORER = FeatureScorer("barriers", Text("Barriers", "防護柵・柵"), barrier_score)
+WALL_SCORER = FeatureScorer("walls", Text("Walls and buildings", "塀・擁壁・建物"), wall_score)
 VOLUME_SCORER = VolumeScorer("volume", Text("Volumes", "土量"), volume_score)
 ECHO_SCORER = EchoScorer(
     "waveform-decompose", Text("Echoes of waveforms", "波形の分解"), flight_echo_score

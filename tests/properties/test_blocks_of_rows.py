@@ -37,6 +37,7 @@ from processing.tools.normals import NORMALS, NormalsParameters
 from processing.tools.poles import POLES
 from processing.tools.road_map.barriers import BARRIERS
 from processing.tools.road_map.markings import MARKINGS
+from processing.tools.road_map.walls import WALLS
 from processing.tools.running.blocks import JoinedResults, blocks_of
 from processing.tools.running.runner import RunRequest, columns_of, run
 from processing.tools.segments import SEGMENTS, SegmentsParameters, compute_segments
@@ -90,6 +91,7 @@ CHUNKS = (
     WIRES.id,
     MARKINGS.id,
     BARRIERS.id,
+    WALLS.id,
 )
 """Tools that find candidates, and read the street a stretch at a time."""
 

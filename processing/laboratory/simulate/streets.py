@@ -56,6 +56,7 @@ from processing.laboratory.simulate.truth import (
     write_things,
     write_truth,
 )
+from processing.laboratory.simulate.wall_evidence import WallEvidence
 
 _DRY_SHARE = 0.65
 _SHORTEST_GROWTH = 0.03  # of grass: from a lawn just mown to a meadow, as often short as long
@@ -156,12 +157,13 @@ class _Work:
             request.wander_m,
         )
         self.evidence = Evidence()
+        self.walls = WallEvidence(())
         self.point_files: list[str] = []
         self.trajectories: list[str] = []
         self.image_lists: list[str] = []
         self.counts: dict[str, int] = {}
         self.things: dict[int, Thing] = {}
-        self.truth: dict[tuple[int, str, int], TrueFeature] = {}
+        self.truth: dict[tuple[int, int], TrueFeature] = {}
         self.passes: list[SimulatedPass] = []
 
     def drive(self, number: int, monitor: Monitor) -> None:
@@ -176,15 +178,19 @@ class _Work:
             self.street, self.setup, driven, MovingScene(self.street, movers)
         )
         points_share = _POINTS_SHARE if self.request.images else 1.0
-        with self._files(number) as files:
-            for chunk in recording.chunks(PartMonitor(monitor, 0.0, points_share)):
-                self._write(driven, number, chunk, files[chunk.head.name])
         for section in recording.sections():
             monitor.check()
             self.things.update({one.instance: one for one in section.things})
             for position, one in enumerate(section.truth):
-                if -_SHOWN_M < one.chainage_m < self.request.length_m + _SHOWN_M:
-                    self.truth[one.instance, one.file, position] = one
+                # Walls are seen from afar, and must not count as made up.
+                near = -_SHOWN_M < one.chainage_m < self.request.length_m + _SHOWN_M
+                if near or one.file == "walls":
+                    self.truth.setdefault((section.plan.index, position), one)
+        if number == 0:  # later passes are along the same street
+            self.walls = WallEvidence(self.truth.values())
+        with self._files(number) as files:
+            for chunk in recording.chunks(PartMonitor(monitor, 0.0, points_share)):
+                self._write(driven, number, chunk, files[chunk.head.name])
         self._write_trajectory(driven, number)
         self._write_true_trajectory(driven, number)
         if self.request.images:
@@ -194,7 +200,7 @@ class _Work:
     def finish(self) -> None:
         """Write truth, and what the whole is."""
         truth = self.folder / "truth"
-        seen = RecordingEvidence.by(self.passes[0], self.evidence)
+        seen = RecordingEvidence.by(self.passes[0], self.evidence, self.walls)
         features = list(self.truth.values())
         objects = write_truth(truth, features, seen, self.origin)
         write_things(truth / "instance_kinds.json", self.things.values())
@@ -269,6 +275,7 @@ class _Work:
         files.labels.write(returns.label)
         files.instances.write(returns.instance)
         self.evidence.count([returns])
+        self.walls.count(returns)
 
     def _mounted_rad(self, driven: SimulatedPass, head: Head) -> Floats:
         """(3,) how far a head is turned from what its calibration says; see `SimulatedPass`."""

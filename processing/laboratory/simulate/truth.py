@@ -19,8 +19,12 @@ from processing.laboratory.simulate.scene.chance import chance
 from processing.laboratory.simulate.scene.mesh import Floats, Integers
 from processing.laboratory.simulate.scene.things import Thing, TrueFeature
 from processing.laboratory.simulate.street.sweep import FACE_PIECE
+from processing.laboratory.simulate.wall_evidence import WallEvidence
 
-TRUTH_FILES = ("curbs", "gutters", "trees", "signs", "poles", "wires", "markings", "barriers")
+TRUTH_FILES = (
+    *("curbs", "gutters", "trees", "signs", "poles", "wires", "markings"),
+    *("barriers", "walls"),
+)
 CURB_PIECE_M, CURB_SECTION_M = 0.5, 2.0
 BREAST_PIECES, TRUNK_PIECE = range(1, 37), 37
 FRONT_PIECE, BACK_PIECE = 1, 2
@@ -40,18 +44,21 @@ class RecordingEvidence:
     ----------
     evidence : Evidence
         Points by thing and piece.
+    walls : WallEvidence
+        Points by piece of a wall's foot.
     path : (n, 3) float64
         Where the vehicle drove, m, the street's frame.
     """
 
     evidence: Evidence
+    walls: WallEvidence
     path: Floats
 
     @staticmethod
-    def by(driven: SimulatedPass, evidence: Evidence) -> RecordingEvidence:
+    def by(driven: SimulatedPass, evidence: Evidence, walls: WallEvidence) -> RecordingEvidence:
         """What one pass, or several along the same street, show."""
         return RecordingEvidence(
-            evidence, driven.positions[:: max(1, driven.positions.shape[0] // 200_000)]
+            evidence, walls, driven.positions[:: max(1, driven.positions.shape[0] // 200_000)]
         )
 
     def passes(self, positions: Floats) -> list[bool]:
@@ -131,6 +138,8 @@ def _member(one: TrueFeature, seen: RecordingEvidence, origin: Floats) -> TruthP
         facts.update(_marking(one, pieces, seen))
     elif one.file == "barriers":
         facts.update(_wire(one, pieces, seen))
+    elif one.file == "walls":
+        facts.update(_wall(one, seen))
     else:
         facts.update(_SHOWN[one.file](pieces))
         passed = seen.passes(one.xyz.mean(axis=0)[None])[0]
@@ -201,6 +210,15 @@ def _marking(one: TrueFeature, pieces: Integers, seen: RecordingEvidence) -> Tru
         "piece_points": counts.tolist(),
         "piece_in_span": seen.passes((one.xyz[:-1] + one.xyz[1:]) / 2),
     }
+
+
+def _wall(one: TrueFeature, seen: RecordingEvidence) -> TruthProperties:
+    """The points on the face over each straight piece of a wall's foot.
+
+    Walls are seen from afar: what counts is what the points show, wherever the vehicle drove.
+    """
+    counts = seen.walls.of(one)
+    return {"points": int(counts.sum()), "piece_points": counts.tolist()}
 
 
 def _gutter(pieces: Integers) -> TruthProperties:

@@ -77,7 +77,7 @@ def made_up_places(
     true: tuple[Sequence[MappedFeature], AskedPlaces],
     others: Sequence[MappedFeature],
     limits: ScoredLineLimits,
-) -> int:
+) -> Flags:
     """Places of found lines that lie on no line, but for those beside what isn't asked for.
 
     Of several found lines along one true one the nearest is right.
@@ -86,10 +86,15 @@ def made_up_places(
     ----------
     others : sequence of MappedFeature
         Lines that are neither asked for nor wrong.
+
+    Returns
+    -------
+    (n,) bool
+        Of the places along each found line, one line after the other.
     """
     lines, places = true
     if not found:
-        return 0
+        return np.empty(0, np.bool_)
     parts = [middle_positions(one.xyz, limits.step_m) for one in found]
     own = np.repeat(np.arange(len(parts)), [len(one) for one in parts])
     xyz = np.concatenate(parts)
@@ -107,4 +112,4 @@ def made_up_places(
 
         away, _ = cKDTree(unseen[:, :2]).query(xyz[:, :2])
         beside |= away < limits.beside_m
-    return int((~is_right & ~beside).sum())
+    return np.asarray(~is_right & ~beside)

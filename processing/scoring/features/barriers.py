@@ -72,7 +72,7 @@ def barrier_score(result: MappedFile, truth: MappedFile) -> FileScore:
     near = PolylineIndex([one.xyz for one in found]).nearest(places.xyz, TOLERANCE_M)
     is_hit = (near.line >= 0) & places.is_asked
     hits, missed = int(is_hit.sum()), int(((near.line < 0) & places.is_asked).sum())
-    made_up = made_up_places(found, (lines, places), others, _LIMITS)
+    made_up = int(made_up_places(found, (lines, places), others, _LIMITS).sum())
     same = [
         found[a].facts.get("type") == lines[b].facts.get("type")
         for a, b in zip(near.line[is_hit].tolist(), places.line[is_hit].tolist(), strict=True)

@@ -81,7 +81,7 @@ def marking_score(result: MappedFile, truth: MappedFile) -> FileScore:
     is_near = near.line >= 0
     hits = int((is_near & places.is_asked).sum())
     missed = int((~is_near & places.is_asked).sum())
-    made_up = made_up_places(found_lines, (lines, places), others, _LIMITS)
+    made_up = int(made_up_places(found_lines, (lines, places), others, _LIMITS).sum())
     of_kind = _same_type(found_lines, lines, near.line, places)
     bar_counts, unseen_bars = _bars(found_bars, bars)
     off = near.off_m[is_near & places.is_asked]

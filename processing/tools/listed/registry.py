@@ -25,6 +25,7 @@ from processing.tools.poles import POLES
 from processing.tools.register import REGISTER
 from processing.tools.road_map.barriers import BARRIERS
 from processing.tools.road_map.markings import MARKINGS
+from processing.tools.road_map.walls import WALLS
 from processing.tools.segments import SEGMENTS
 from processing.tools.signs import SIGNS
 from processing.tools.template import TEMPLATE
@@ -44,6 +45,7 @@ _DECLARED = (
     WIRES,
     MARKINGS,
     BARRIERS,
+    WALLS,
     NOISE,
     GROUND_TOOL,
     CLASSIFY,

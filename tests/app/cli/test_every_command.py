@@ -99,7 +99,7 @@ def test_each_command_refuses_in_one_sentence_and_leaves_nothing(
     out = tmp_path / "out"
     cases: dict[str, list[object]] = {
         "sculpt": ["sculpt"],
-        "walls": ["tools", "walls"],
+        "ceilings": ["tools", "ceilings"],
         "fish-eye": image_words(street, out, kind="fish-eye"),
         "smell": image_words(street, out, attribute="smell"),
         "nothing.laz": ["info", tmp_path / "nothing.laz"],

@@ -221,7 +221,7 @@ def test_a_truth_that_is_missing_cut_off_or_of_another_tool_is_refused(
     assert "point 2" in refused(capsys, "ground", result, tmp_path / "truth.txt")
     (tmp_path / "truth.txt").write_text("1 2 3 0\n1 2 3 0.5\n", "ascii")
     assert "point 2" in refused(capsys, "ground", result, tmp_path / "truth.txt")
-    known = refused(capsys, "walls", result, tmp_path / "truth.txt").rpartition(": ")[2]
+    known = refused(capsys, "ceilings", result, tmp_path / "truth.txt").rpartition(": ")[2]
     assert {"noise", "ground", "classify", "curbs", "trees"} <= set(known.rstrip(".").split(", "))
 
 

@@ -1,1 +1,1 @@
-"""The other lines of a road map, held against streets whose truth is known."""
+"""Accuracy of the tools of the road map."""

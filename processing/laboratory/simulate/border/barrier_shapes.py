@@ -14,6 +14,7 @@ from numpy.random import Generator
 
 from processing.laboratory.simulate.border.along import pipe, posts, stations, sweep_section, wall
 from processing.laboratory.simulate.border.line_things import LineThing, spacing_of
+from processing.laboratory.simulate.border.wall_lines import add_swept_wall
 from processing.laboratory.simulate.scene.materials import Material
 from processing.laboratory.simulate.scene.mesh import Floats
 from processing.laboratory.simulate.scene.things import SectionBuilder
@@ -193,6 +194,8 @@ def add_concrete(
     thing = _thing(section, built, "parapet", stretch)
     thing.add(shape, worn)
     thing.tell("parapet", high, None, "guard_wall")
+    for edge in (-foot, foot):
+        _add_other_wall(section, built, thing.instance, stretch, (edge, high))
 
 
 def add_noise_barrier(
@@ -214,6 +217,26 @@ def add_noise_barrier(
     feet = section.position(stretch.along(spacing), stretch.offset_m)
     thing.add(posts(feet, 0.075, high + 0.05, sides=4), Material.STEEL)
     thing.tell("noise_barrier", high + 0.05, stretch.spacing(spacing), "noise_barrier")
+    _add_other_wall(section, built, thing.instance, stretch, (0.0, high))
+
+
+def _add_other_wall(
+    section: StreetSection,
+    built: SectionBuilder,
+    instance: int,
+    stretch: BarrierRun,
+    measures: tuple[float, float],
+) -> None:
+    """Add the truth of what looks like a wall and is a barrier.
+
+    Parameters
+    ----------
+    measures : (float, float)
+        How far its foot lies to the left of the stretch, and its height, m.
+    """
+    edge, high = measures
+    line = stretch.from_m, stretch.to_m, stretch.offset_m + edge
+    add_swept_wall(section, built, instance, line, ("other", high, 0.0))
 
 
 def _panel(low_m: float, high_m: float) -> list[tuple[float, float]]:

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.random import Generator
 
 from processing.laboratory.simulate.border.along import stations, sweep_section
+from processing.laboratory.simulate.border.wall_lines import add_ground_walls, add_swept_wall
 from processing.laboratory.simulate.border.yards import add_mesh_fence
 from processing.laboratory.simulate.scene.chance import chance
 from processing.laboratory.simulate.scene.materials import Material
@@ -60,6 +61,14 @@ def add_land(positions: FreePositions, built: SectionBuilder) -> None:
         elif plan.outside == "wall" and alike.random() < 0.5:
             line = section.plan.start_m, section.plan.end_m, side * (slope.head_m + 0.2)
             add_mesh_fence(section, built, line, float(alike.uniform(0.8, 1.6)))
+        _add_ground_walls(section, built, side)
+
+
+def _add_ground_walls(section: StreetSection, built: SectionBuilder, side: int) -> None:
+    sweep = section.layout.sides[side].sweep
+    for number, strip in enumerate(sweep.profile.strips):
+        if strip.kind == "wall":
+            add_ground_walls(section, built, sweep, number)
 
 
 def _slope(section: StreetSection, side: int) -> _Slope | None:
@@ -174,7 +183,10 @@ def _add_slope_works(
         shape = sweep_section(
             section, stations(low, far), slope.side * (slope.foot_m + 0.02), outline
         )
-        built.mesh.add(shape, worn, OTHER, built.thing("wall"))
+        instance = built.thing("wall")
+        built.mesh.add(shape, worn, OTHER, instance)
+        line = low, far, slope.side * (slope.foot_m + 0.02)
+        add_swept_wall(section, built, instance, line, ("retaining", high, 0.08))
     elif kind < 0.7:
         line = low, far, slope.side * (slope.foot_m + 0.1)
         add_mesh_fence(section, built, line, float(random.uniform(1.2, 2.5)))

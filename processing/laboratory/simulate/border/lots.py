@@ -23,6 +23,7 @@ from processing.laboratory.simulate.border.houses import (
     shop,
 )
 from processing.laboratory.simulate.border.parts import BorderPart
+from processing.laboratory.simulate.border.wall_lines import add_body_outlines
 from processing.laboratory.simulate.border.yards import add_boundary, yard_parts
 from processing.laboratory.simulate.scene.mesh import Floats, place_shape
 from processing.laboratory.simulate.scene.things import SectionBuilder
@@ -139,11 +140,13 @@ def _add_lot(random: Generator, positions: FreePositions, built: SectionBuilder,
     heading = lot.heading(section)
     parts = made(random, lot.plot) if made is not None else []
     if parts:
-        _add_parts(built, parts, where, heading, "building")
+        instance = _add_parts(built, parts, where, heading, "building")
+        add_body_outlines(section, built, instance, parts, (where, heading))
         _block(positions, lot, parts)
     if lot.back_m == 0.0 and random.random() < (0.5 if section.plan.style is URBAN else 0.1):
         behind = second_row(random, lot.plot)
-        _add_parts(built, behind, where, heading, "building")
+        instance = _add_parts(built, behind, where, heading, "building")
+        add_body_outlines(section, built, instance, behind, (where, heading))
         _block(positions, lot, behind)
     front = float(parts[0][0][0][:, 1].min()) if parts else lot.plot.deep_m
     for name, part in yard_parts(random, lot.plot, kind, parts, front_m=front):
@@ -155,11 +158,13 @@ def _add_lot(random: Generator, positions: FreePositions, built: SectionBuilder,
 
 def _add_parts(
     built: SectionBuilder, parts: list[BorderPart], where: Floats, heading: float, kind: str
-) -> None:
+) -> int:
+    """Add a thing of some parts; its instance."""
     instance = built.thing(kind)
     label = BUILDING if kind == "building" else 1
     for shape, material in parts:
         built.mesh.add(place_shape(shape, where.tolist(), heading), material, label, instance)
+    return instance
 
 
 def _ground(section: StreetSection, lot: Lot) -> tuple[Floats, float]:

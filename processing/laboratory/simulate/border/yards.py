@@ -11,6 +11,7 @@ from processing.laboratory.simulate.border.along import pipe, posts, stations, s
 from processing.laboratory.simulate.border.houses import Plot
 from processing.laboratory.simulate.border.line_things import LineThing, spacing_of
 from processing.laboratory.simulate.border.parts import BELOW_M, BorderPart, block, merge_parts
+from processing.laboratory.simulate.border.wall_lines import add_block_outline, add_swept_wall
 from processing.laboratory.simulate.scene.materials import Material
 from processing.laboratory.simulate.scene.mesh import grid
 from processing.laboratory.simulate.scene.things import SectionBuilder
@@ -19,6 +20,9 @@ from processing.laboratory.simulate.street.section import StreetSection
 OTHER = 1
 
 _WALLS = (Material.CONCRETE, Material.OLD_CONCRETE, Material.BRICK, Material.PLASTER)
+_POST_M = 0.35
+"""Thickness of a gate's posts."""
+
 _BEHIND_WALL_M = 0.25  # walls along front lines are up to 0.2 m thick
 _NO_WALL_SHARE = {"shop": 0.9, "parking": 0.45, "empty": 0.5, "greenhouse": 0.7, "hall": 0.4}
 
@@ -55,11 +59,15 @@ def add_boundary(
         along = stations(low, far)
         if choice < 0.5:
             shape = sweep_section(section, along, offset_m, wall(thick, high))
-            built.mesh.add(shape, wall_kind, OTHER, built.thing("wall"))
+            instance = built.thing("wall")
+            built.mesh.add(shape, wall_kind, OTHER, instance)
+            add_swept_wall(section, built, instance, (low, far, offset_m), ("wall", high, 0.0))
         elif choice < 0.75:
             base = min(high, 0.7)
             shape = sweep_section(section, along, offset_m, wall(thick, base))
-            built.mesh.add(shape, wall_kind, OTHER, built.thing("wall"))
+            instance = built.thing("wall")
+            built.mesh.add(shape, wall_kind, OTHER, instance)
+            add_swept_wall(section, built, instance, (low, far, offset_m), ("wall", base, 0.0))
             add_bars(random, section, built, (low, far, offset_m + 0.05), (base, high * 0.6))
         else:
             add_mesh_fence(section, built, (low, far, offset_m), high + 0.2)
@@ -126,8 +134,12 @@ def _add_gate_posts(
     low, far, offset = line
     wide, high = size
     for at in (low - wide, far):
-        shape = sweep_section(section, stations(at, at + wide), offset, wall(0.35, high))
-        built.mesh.add(shape, Material.BRICK, OTHER, built.thing("gate"))
+        shape = sweep_section(section, stations(at, at + wide), offset, wall(_POST_M, high))
+        instance = built.thing("gate")
+        built.mesh.add(shape, Material.BRICK, OTHER, instance)
+        rear = offset + np.sign(offset) * _POST_M
+        ring = section.position([at, at + wide, at + wide, at], [offset, offset, rear, rear])
+        add_block_outline(section, built, instance, ring, ("other", high))
 
 
 def yard_parts(

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.random import Generator
 
 from processing.laboratory.simulate.border.parts import BorderPart, block, merge_parts
+from processing.laboratory.simulate.border.wall_lines import add_block_outline
 from processing.laboratory.simulate.roadside.posts import Post, add_post, post_on
 from processing.laboratory.simulate.roadside.rods import tilt_shape
 from processing.laboratory.simulate.roadside.sign_choice import plate_of
@@ -138,7 +139,10 @@ def _wall_sign(
     instance = built.thing("wall")
     foot = positions.where(spot)
     wall = block((-0.25, 0.0), (-half, half), (-_BELOW_M, high))
-    built.mesh.add(place_shape(wall, foot.tolist(), looks), Material.OLD_CONCRETE, OTHER, instance)
+    placed = place_shape(wall, foot.tolist(), looks)
+    built.mesh.add(placed, Material.OLD_CONCRETE, OTHER, instance)
+    ring = placed[0][:4] + np.array([0.0, 0.0, _BELOW_M])
+    add_block_outline(positions.section, built, instance, ring, ("wall", high))
     shapes: tuple[PlateShape, ...] = ("circle", "diamond", "square", "rectangle")
     plate = plate_of(random, shapes[int(random.integers(4))], positions.section.plan.style)
     _add_on_wall(built, random, plate, (foot, looks, spot))

@@ -12,7 +12,9 @@ from numpy.typing import ArrayLike
 from processing.laboratory.simulate.scene.mesh import Floats, Mesh, MeshBuilder
 
 Fact = str | int | float | bool | list[float] | None
-TruthFile = Literal["curbs", "gutters", "trees", "signs", "poles", "wires", "markings", "barriers"]
+TruthFile = Literal[
+    "curbs", "gutters", "trees", "signs", "poles", "wires", "markings", "barriers", "walls"
+]
 
 THINGS_PER_SECTION = 20_000
 NO_THING = 0
@@ -43,7 +45,7 @@ class TrueFeature:
     ----------
     file : str
         Whose truth it belongs to: ``curbs``, ``gutters``, ``trees``, ``signs``, ``poles``,
-        ``wires``, ``markings``, ``barriers``.
+        ``wires``, ``markings``, ``barriers``, ``walls``.
     geometry : str
         ``Point``, ``LineString`` or ``Polygon`` (closed ring).
     xyz : (n, 3) float64

@@ -7,7 +7,7 @@ columns and wires. Where a thing meets the ground exactly is measured about its 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +17,7 @@ from processing.core.arrays import Floats
 from processing.core.kernels import kernel
 from processing.core.monitor import Monitor
 from processing.core.worked_ahead import in_order
-from processing.methods.road.objects.drive_chunks import chunks_of
+from processing.methods.road.objects.drive_chunks import DriveChunk, chunks_of
 from processing.methods.road.objects.opaque_ground import (
     LAYER_M,
     LAYERS,
@@ -62,10 +62,19 @@ _MOST_COUNTED = np.iinfo(np.uint16).max
 def ground_heights(
     drives: Sequence[Drive], plan: SparsePlan, monitor: Monitor
 ) -> NDArray[np.float32]:
+    """The ground of all cells of drives, see `ground_of_chunks`."""
+    return ground_of_chunks(chunks_of(drives, plan.origin, monitor), plan, monitor)
+
+
+def ground_of_chunks(
+    chunks: Iterable[DriveChunk], plan: SparsePlan, monitor: Monitor
+) -> NDArray[np.float32]:
     """The ground of all cells.
 
     Parameters
     ----------
+    chunks : iterable of DriveChunk
+        Points about the plan's origin.
     plan : SparsePlan
         Gets the tiles of all points.
 
@@ -85,7 +94,7 @@ def ground_heights(
     """
     lowest: NDArray[np.float32] = np.empty((0, GROUND_CELLS, GROUND_CELLS, _LOWEST), np.float32)
     counts: NDArray[np.uint16] = np.zeros((1, GROUND_CELLS, GROUND_CELLS, LAYERS), np.uint16)
-    for chunk in chunks_of(drives, plan.origin, monitor):
+    for chunk in chunks:
         plan.add(chunk.local)
         lowest, counts = plan.grown(lowest, _EMPTY), _with_room(counts, len(plan))
         lowest_kernel(
