@@ -6,7 +6,7 @@ Needs the extra ``train``. Simulates streets of ``--seeds``: an avenue by a scan
 catalogue, one by a scanner of any kind and mounting and a usual worn street take turns. Finds
 upright things on them without leaving any out, and fits the model of
 `processing.methods.road.trees.tree_confidence` to which of them are trees, and the weights of
-`processing.methods.road.trees.diameter_doubts` to how far their diameters are off. Prints how many
+`processing.methods.road.trees.diameter_errors` to how far their diameters are off. Prints how many
 things of each confidence are trees, each street by a model that was fitted without some streets,
 it among them; the same of ``--check``, which nothing is learnt from; and the weights.
 """
@@ -36,7 +36,7 @@ from processing.laboratory.progress_lines import say
 from processing.laboratory.road_training.boosted_confidence import learn_model
 from processing.laboratory.road_training.learned_confidence import LabelledThings
 from processing.laboratory.road_training.varied_streets import varied_streets
-from processing.methods.road.trees.diameter_doubts import DiameterDoubts, doubts_of, wider
+from processing.methods.road.trees.diameter_errors import ErrorCauses, causes_of, wider
 from processing.methods.road.trees.stems import BREAST_M
 from processing.methods.road.trees.street_trees import StreetTree, TreeSettings, upright_things
 from processing.methods.road.trees.tree_confidence import MODEL, SIGNS, TreeFacts, facts_of
@@ -71,21 +71,21 @@ class KnownTrees:
     ----------
     things : LabelledThings
         Their facts, and which are trees.
-    doubts : (k, d) float64
+    causes : (k, d) float64
         Of those of which a sixth and more of the trunk was seen, what makes diameters unsure.
     errors : (k,) float64
         How far each is off, over what the fit alone tells.
     """
 
     things: LabelledThings
-    doubts: Floats
+    causes: Floats
     errors: Floats
 
 
 def known_trees(scenes: Iterator[RoadScene]) -> KnownTrees:
     """All upright things on some streets; trees that nobody could tell left out."""
     rows: list[tuple[TreeFacts, bool, float, int]] = []
-    doubts: list[DiameterDoubts] = []
+    causes: list[ErrorCauses] = []
     errors: list[float] = []
     for number, scene in enumerate(scenes):
         truth = read_mapped(scene.truth("trees"))
@@ -93,11 +93,11 @@ def known_trees(scenes: Iterator[RoadScene]) -> KnownTrees:
             rows.append((facts_of(one.upright, one.crown), which is not None, 1.0, number))
             if which is not None and shows_enough(truth, which, "arc_deg", LEAST_ARC_DEG):
                 off = abs(one.trunk.diameter_m - truth.number(which, "dbh_m"))
-                doubts.append(doubts_of(one.trunk.stems[0], one.trunk.diameter_m))
+                causes.append(causes_of(one.trunk.stems[0], one.trunk.diameter_m))
                 errors.append(max(off, _LEAST_ERROR_M) / one.trunk.fitted_within_m)
         say(f"{scene.name}: {len(rows)} upright things")
     return KnownTrees(
-        LabelledThings.of(rows, len(TreeFacts._fields)), np.array(doubts), np.array(errors)
+        LabelledThings.of(rows, len(TreeFacts._fields)), np.array(causes), np.array(errors)
     )
 
 
@@ -144,7 +144,7 @@ def _bark_of(delivery: Path) -> cKDTree:
     return cKDTree(cloud.xyz[is_bark])
 
 
-def fit_doubts(known: KnownTrees) -> Floats:
+def fit_causes(known: KnownTrees) -> Floats:
     """(d + 1,) constant and weights of what widens the errors of diameters.
 
     References
@@ -154,13 +154,13 @@ def fit_doubts(known: KnownTrees) -> Floats:
     from sklearn.linear_model import QuantileRegressor
 
     model = QuantileRegressor(quantile=_IN_95, alpha=_HELD, solver="highs")
-    model.fit(known.doubts, np.log(known.errors))
+    model.fit(known.causes, np.log(known.errors))
     return np.array([model.intercept_, *model.coef_])
 
 
 def share_within(known: KnownTrees) -> float:
     """Of diameters whose error is no greater than what is told with them."""
-    told = [wider(DiameterDoubts(*one)) for one in known.doubts.tolist()]
+    told = [wider(ErrorCauses(*one)) for one in known.causes.tolist()]
     return float((known.errors <= told).mean())
 
 
@@ -173,7 +173,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     known, check = known_trees(asked.learnt), known_trees(asked.check)
     lines = [
         learn_model(MODEL, known.things, check.things, _SIZE),
-        "  ".join(f"{one:.2f}" for one in fit_doubts(known)),
+        "  ".join(f"{one:.2f}" for one in fit_causes(known)),
         f"within, as told: {share_within(known):.3f}, others {share_within(check):.3f}",
     ]
     sys.stdout.write("\n\n".join(lines) + "\n")

@@ -15,7 +15,7 @@ import numpy as np
 from processing.core.arrays import Floats, Integers
 from processing.methods.road.objects.square_sections import square_share
 from processing.methods.road.trees.cone_kernels import FREE_SLAB_M
-from processing.methods.road.trees.diameter_doubts import doubts_of, wider
+from processing.methods.road.trees.diameter_errors import causes_of, wider
 from processing.methods.road.trees.stems import BREAST_M, EVENLY_M, HIGHEST_M, FittedStem
 
 _SAME_M = 0.06
@@ -121,7 +121,7 @@ class Trunk:
 
         By what else may be wrong with the thickest stem wider than by its points and bark.
         """
-        return self.fitted_within_m * wider(doubts_of(self.stems[0], self.diameter_m))
+        return self.fitted_within_m * wider(causes_of(self.stems[0], self.diameter_m))
 
     @property
     def fitted_within_m(self) -> float:

@@ -19,10 +19,10 @@ _USUAL_M, _LONG_M, _USUAL_DENSITY = 0.2, 2.0, 2_000.0
 # Learnt by `python -m processing.laboratory.road_training.tree_training`: the 95th per cent of
 # errors over what the fit alone tells (Koenker and Bassett 1978, Regression quantiles).
 WEIGHTS = (0.47, -0.29, 0.37, 1.99, -0.56)
-"""A constant, and in the order of the doubts."""
+"""A constant, and in the order of the causes."""
 
 
-class DiameterDoubts(NamedTuple):
+class ErrorCauses(NamedTuple):
     """What speaks for errors beyond those of the fit.
 
     Attributes
@@ -43,11 +43,11 @@ class DiameterDoubts(NamedTuple):
     dense: float
 
 
-def doubts_of(stem: FittedStem, diameter_m: float) -> DiameterDoubts:
-    """The doubts about a trunk by its thickest stem."""
+def causes_of(stem: FittedStem, diameter_m: float) -> ErrorCauses:
+    """What makes a trunk's diameter unsure, by its thickest stem."""
     seen = stem.high_m - stem.low_m
     free = stem.free_slabs * FREE_SLAB_M / max(seen, FREE_SLAB_M / 2)
-    return DiameterDoubts(
+    return ErrorCauses(
         thick=math.log(max(diameter_m, _USUAL_M / 10) / _USUAL_M),
         crowded=1.0 - min(free, 1.0),
         short_m=max(0.0, _LONG_M - seen),
@@ -55,7 +55,7 @@ def doubts_of(stem: FittedStem, diameter_m: float) -> DiameterDoubts:
     )
 
 
-def wider(doubts: DiameterDoubts) -> float:
+def wider(causes: ErrorCauses) -> float:
     """How many times as wide as by the fit alone 95 of 100 errors lie, 1 and more."""
-    told = sum(weight * one for weight, one in zip(WEIGHTS, (1.0, *doubts), strict=True))
+    told = sum(weight * one for weight, one in zip(WEIGHTS, (1.0, *causes), strict=True))
     return math.exp(max(0.0, told))
