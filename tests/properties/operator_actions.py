@@ -21,7 +21,7 @@ from PySide6.QtWidgets import (
 from processing.image.attributes.attributes import available
 from processing.recording.columns.point_features import POINT_FEATURES
 from processing.recording.kinds import ImageKind
-from processing.tools import registry
+from processing.tools.listed import registry
 from tests.properties.operator_input import CTRL, FREE, RIGHT, SHIFT, Operator
 from tests.properties.operator_views import review, stand_otherwise
 
