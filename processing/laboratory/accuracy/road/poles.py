@@ -38,9 +38,8 @@ _UNSEEN = range(8181, 8187)
 _ABOUT = """`python -m processing.laboratory.accuracy.road.poles --samples FOLDER… \
 --markdown docs/accuracy.md`: poles with 20 points and more that the vehicle passed, one to one \
 within 0.5 m, posts of banners, shops and bus stops of the type "other"; wires by length in space \
-within 5 cm, where a point shows them. Nobody looked at the own streets 8181 to 8186 before they \
-were scored, once; the trajectories of worn ones drift by 2 cm, which their \
-wires, 10 m from the vehicle, show in full.
+within 5 cm, where a point shows them. Nobody looked at the own streets 8181 to 8186; the \
+trajectories of worn ones drift by 2 cm, which their wires, 10 m from the vehicle, show in full.
 """
 
 
