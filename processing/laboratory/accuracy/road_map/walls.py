@@ -40,7 +40,8 @@ _ABOUT = f"""`{_COMMAND}`: \
 feet of walls and retaining walls, and faces of buildings, by length in plan within 5 cm, where \
 {LEAST_POINTS} points or more lie on a metre of the face up to 3 m above its foot. What is made up \
 counts as what it is called. Parapets, noise walls and posts of gates count neither way. Every \
-other street is recorded with the errors of good systems. 9414 and 9415 were looked at after they were scored.
+other street is recorded with the errors of good systems. 9414 and 9415 were looked at after they \
+were scored.
 """
 
 
