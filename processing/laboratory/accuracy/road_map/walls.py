@@ -5,29 +5,13 @@
 
 from __future__ import annotations
 
-import argparse
 import sys
 from collections import Counter
-from collections.abc import Iterator, Sequence
-from dataclasses import replace
-from pathlib import Path
-from typing import NamedTuple
+from collections.abc import Sequence
 
 from processing.core.output_streams import write_every_character
-from processing.formats.vectors.mapped_shapes import read_mapped
 from processing.laboratory.accuracy.filters.filter_tables import markdown_table
-from processing.laboratory.accuracy.filters.filters import write_sections
-from processing.laboratory.accuracy.road.road_scenes import (
-    RoadScene,
-    found_by,
-    given_scenes,
-    options_of,
-    simulated_scenes,
-    worn_options_of,
-)
-from processing.laboratory.seed_ranges import seeds_of
-from processing.laboratory.simulate.requests import StreetRequest
-from processing.scoring.features.file_scores import FileScore
+from processing.laboratory.accuracy.road_map.line_tables import LinesOfStreet, LineTable
 from processing.scoring.features.walls import LEAST_POINTS, wall_score
 from processing.scoring.points.confusion_matrix import BinaryConfusionMatrix
 
@@ -45,28 +29,7 @@ were scored.
 """
 
 
-class WallRow(NamedTuple):
-    """What was found on one street."""
-
-    street: str
-    score: FileScore
-
-
-def request_of(number: int, seed: int, length_m: float) -> StreetRequest:
-    """The street of a seed: styles and scanners take turns, every other one drifts."""
-    make = worn_options_of if number % 2 else options_of
-    style = _STYLES[number % len(_STYLES)]
-    return replace(make(number, seed, length_m), style=style, passes=1, stops=False)
-
-
-def rows_of(scenes: Iterator[RoadScene]) -> Iterator[WallRow]:
-    """What the tool finds with its own parameters on each."""
-    for scene in scenes:
-        result = found_by("walls", scene.drives).result
-        yield WallRow(scene.name, wall_score(result, read_mapped(scene.truth("walls"))))
-
-
-def section_of(rows: Sequence[WallRow]) -> str:
+def section_of(rows: Sequence[LinesOfStreet]) -> str:
     """The section of the page, without its heading."""
     heads = ["street", "walls found, false, missed", "P", "R", "F",
              "faces found, false, missed", "P", "R", "F", "right type", "off, RMS"]  # fmt: skip
@@ -103,17 +66,12 @@ def _counted(counts: BinaryConfusionMatrix) -> list[str]:
     return [metres, *(f"{100 * one / of:.1f} %" if of else "–" for one, of in shares)]
 
 
+TABLE = LineTable("walls", wall_score, _HEADING, section_of, _SEEDS, _STYLES)
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Write the table to a page, or to standard output."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--markdown", type=Path)
-    parser.add_argument("--seeds", default=_SEEDS)
-    parser.add_argument("--length", type=float, default=60.0)
-    parser.add_argument("--deliveries", type=Path, nargs="*", default=[])
-    options = parser.parse_args(arguments)
-    rows = list(rows_of(simulated_scenes(seeds_of(options.seeds), options.length, request_of)))
-    rows += rows_of(given_scenes(options.deliveries))
-    write_sections(options.markdown, {_HEADING: section_of(rows)})
+    """The command."""
+    TABLE.write(__doc__, arguments)
     return 0
 
 

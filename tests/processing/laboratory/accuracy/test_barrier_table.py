@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 
 from processing.laboratory.accuracy.road.road_scenes import simulated_scenes
-from processing.laboratory.accuracy.road_map.barriers import request_of, rows_of, section_of
+from processing.laboratory.accuracy.road_map.barriers import TABLE, section_of
 from processing.laboratory.simulate.requests import StreetRequest
 
 
 def _short(number: int, seed: int, length_m: float) -> StreetRequest:
     return replace(
-        request_of(number, seed, length_m),
+        TABLE.request_of(number, seed, length_m),
         style="highway",
         sensor="vq250",
         pulses=900,
@@ -21,7 +21,7 @@ def _short(number: int, seed: int, length_m: float) -> StreetRequest:
 
 
 def test_barriers_of_an_expressway_are_found_and_told_in_the_table() -> None:
-    (row,) = rows_of(simulated_scenes([9305], 24.0, _short))
+    (row,) = TABLE.rows_of(simulated_scenes([9305], 24.0, _short))
     counts = row.score.counts_of("lines")
     assert counts.hits > 180
     assert counts.f_measure > 0.85

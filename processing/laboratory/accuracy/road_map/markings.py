@@ -1,33 +1,17 @@
 """Road markings against known streets of seeds that nobody looked at.
 
-``python -m processing.laboratory.accuracy.road.markings --markdown docs/accuracy.md``
+``python -m processing.laboratory.accuracy.road_map.markings --markdown docs/accuracy.md``
 """
 
 from __future__ import annotations
 
-import argparse
 import sys
 from collections import Counter
-from collections.abc import Iterator, Sequence
-from dataclasses import replace
-from pathlib import Path
-from typing import NamedTuple
+from collections.abc import Sequence
 
 from processing.core.output_streams import write_every_character
-from processing.formats.vectors.mapped_shapes import read_mapped
 from processing.laboratory.accuracy.filters.filter_tables import markdown_table
-from processing.laboratory.accuracy.filters.filters import write_sections
-from processing.laboratory.accuracy.road.road_scenes import (
-    RoadScene,
-    found_by,
-    given_scenes,
-    options_of,
-    simulated_scenes,
-    worn_options_of,
-)
-from processing.laboratory.seed_ranges import seeds_of
-from processing.laboratory.simulate.requests import StreetRequest
-from processing.scoring.features.file_scores import FileScore
+from processing.laboratory.accuracy.road_map.line_tables import LinesOfStreet, LineTable
 from processing.scoring.features.markings import LEAST_POINTS, marking_score
 from processing.scoring.points.confusion_matrix import BinaryConfusionMatrix
 
@@ -35,7 +19,8 @@ _HEADING = "## Road markings"
 _SEEDS = "8201-8204"
 _STYLES = ("urban", "urban", "rural", "highway", "urban", "rural")
 
-_ABOUT = f"""`python -m processing.laboratory.accuracy.road.markings --markdown docs/accuracy.md`: \
+_ABOUT = f"""\
+`python -m processing.laboratory.accuracy.road_map.markings --markdown docs/accuracy.md`: \
 lines by length in plan within 3 cm of their middle, a broken line with its gaps, where at least \
 {LEAST_POINTS} points lie on a metre of paint; bars of crossings one to one by their middles \
 within 20 cm. Neither arrows and figures nor what lies beside them counts. Every other street is \
@@ -43,28 +28,7 @@ worn and recorded with the errors of good systems. Nobody looked at the streets 
 """
 
 
-class MarkingRow(NamedTuple):
-    """What was found on one street."""
-
-    street: str
-    score: FileScore
-
-
-def request_of(number: int, seed: int, length_m: float) -> StreetRequest:
-    """The street of a seed: styles and scanners take turns, every other one is worn."""
-    make = worn_options_of if number % 2 else options_of
-    style = _STYLES[number % len(_STYLES)]
-    return replace(make(number, seed, length_m), style=style, passes=1, stops=False)
-
-
-def rows_of(scenes: Iterator[RoadScene]) -> Iterator[MarkingRow]:
-    """What the tool finds with its own parameters on each."""
-    for scene in scenes:
-        result = found_by("markings", scene.drives).result
-        yield MarkingRow(scene.name, marking_score(result, read_mapped(scene.truth("markings"))))
-
-
-def section_of(rows: Sequence[MarkingRow]) -> str:
+def section_of(rows: Sequence[LinesOfStreet]) -> str:
     """The section of the page, without its heading."""
     heads = ["street", "lines found, false, missed", "P", "R", "F", "right type", "off, RMS",
              "width off, RMS", "bars found, false, missed", "F"]  # fmt: skip
@@ -105,17 +69,12 @@ def _bars(counts: BinaryConfusionMatrix) -> list[str]:
     return [", ".join(map(str, values)), f"{200 * values[0] / of:.1f} %" if of else "–"]
 
 
+TABLE = LineTable("markings", marking_score, _HEADING, section_of, _SEEDS, _STYLES, length_m=50.0)
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Write the table to a page, or to standard output."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--markdown", type=Path)
-    parser.add_argument("--seeds", default=_SEEDS)
-    parser.add_argument("--length", type=float, default=50.0)
-    parser.add_argument("--deliveries", type=Path, nargs="*", default=[])
-    options = parser.parse_args(arguments)
-    rows = list(rows_of(simulated_scenes(seeds_of(options.seeds), options.length, request_of)))
-    rows += rows_of(given_scenes(options.deliveries))
-    write_sections(options.markdown, {_HEADING: section_of(rows)})
+    """The command."""
+    TABLE.write(__doc__, arguments)
     return 0
 
 
