@@ -29,8 +29,10 @@ def learn_model(model: str, known: LabelledThings, check: LabelledThings, size: 
     trees = fit_model(known, size)
     folder, _, name = model.rpartition("/")
     write_trees(trees, path_of(folder) / Path(name), known.terms.shape[1])
-    own, others = cross_validated(known, size), _chances(trees, check)
-    return f"{reliability(known, own)}\n\n{reliability(check, others)}"
+    lines = [reliability(known, cross_validated(known, size))]
+    if check.is_right.size:
+        lines.append(reliability(check, _chances(trees, check)))
+    return "\n\n".join(lines)
 
 
 def fit_model(known: LabelledThings, size: TreesSize) -> Trees:

@@ -26,18 +26,16 @@ from processing.core.arrays import Floats, Integers
 from processing.core.monitor import SilentMonitor
 from processing.core.output_streams import write_every_character
 from processing.laboratory.accuracy.real_street_things import foot_of
-from processing.laboratory.noise_training.examples import Examples
-from processing.laboratory.noise_training.fitting import TreesSize, fit_trees
+from processing.laboratory.noise_training.fitting import TreesSize
 from processing.laboratory.progress_lines import say
+from processing.laboratory.road_training.boosted_confidence import learn_model
 from processing.laboratory.road_training.coarse_recordings import (
     CoarseRecording,
     profile_recordings,
     scan_recordings,
 )
-from processing.laboratory.road_training.learned_confidence import LabelledThings, reliability
+from processing.laboratory.road_training.learned_confidence import LabelledThings
 from processing.laboratory.seed_ranges import seeds_of
-from processing.methods.noise.tree_files import write_trees
-from processing.methods.noise.trees import Trees, log_odds
 from processing.methods.road.coarse.coarse_uprights import (
     MODELS,
     POLE,
@@ -48,10 +46,8 @@ from processing.methods.road.coarse.coarse_uprights import (
 )
 from processing.methods.road.coarse.column_facts import ColumnFacts
 from processing.recording.density import are_sparse
-from resources import path_of
 
 _SIZE = TreesSize(trees=150, leaves=12, rate=0.05)
-_FOLDS = 5
 
 _OTHER, _NEITHER_WAY = 0, -1
 _CODES = {TREE: 1, POLE: 2}
@@ -154,49 +150,20 @@ def label_columns(places: Floats, points: Sequence[float], recording: CoarseReco
     return codes
 
 
-def fit_kind(known: KnownColumns, kind: str) -> Trees:
-    """Trees that give the log-odds of being a tree or a pole."""
-    worth = np.ones(known.codes.size)
-    return fit_trees(Examples(known.facts, known.codes == _CODES[kind], worth), _SIZE)
-
-
-def cross_validated(known: KnownColumns, kind: str) -> Floats:
-    """(n,) each street's chances by trees that were fitted without it; 0 of a single one."""
-    found = np.zeros(known.codes.size)
-    for fold in range(_FOLDS):
-        is_here = known.street % _FOLDS == fold
-        if not is_here.any() or is_here.all():
-            continue
-        trees = fit_kind(known.chosen(~is_here), kind)
-        found[is_here] = _chances(trees, known.facts[is_here])
-    return found
-
-
-def _chances(trees: Trees, facts: NDArray[np.float32]) -> Floats:
-    chances: Floats = 1 / (1 + np.exp(-log_odds(trees, facts, SilentMonitor())))
-    return chances
-
-
-def _reliability(known: KnownColumns, kind: str, chances: Floats) -> str:
+def _things_of(known: KnownColumns, kind: str) -> LabelledThings:
+    """The columns with whether each is of a kind."""
     is_right = known.codes == _CODES[kind]
-    worth, facts = np.ones(is_right.size), known.facts.astype(np.float64)
-    return reliability(LabelledThings(facts, is_right, worth, known.street), chances)
+    facts, worth = known.facts.astype(np.float64), np.ones(is_right.size)
+    return LabelledThings(facts, is_right, worth, known.street)
 
 
 def make_models(known: KnownColumns, check: KnownColumns, *, is_scan: bool) -> str:
     """Fit and write the models of one kind of recordings; how reliable they are."""
     lines: list[str] = []
     for kind in _CODES:
-        trees, name = fit_kind(known, kind), model_name(kind, is_scan=is_scan)
-        path = path_of("models") / Path(MODELS).name / name
-        path.parent.mkdir(exist_ok=True)
-        write_trees(trees, path, known.facts.shape[1])
-        lines += [name, _reliability(known, kind, cross_validated(known, kind))]
-        if check.codes.size:
-            lines += [
-                f"{name}, others",
-                _reliability(check, kind, _chances(trees, check.facts)),
-            ]
+        name = model_name(kind, is_scan=is_scan)
+        things, others = _things_of(known, kind), _things_of(check, kind)
+        lines += [name, learn_model(f"{MODELS}/{name}", things, others, _SIZE)]
     return "\n\n".join(lines) + "\n"
 
 
