@@ -30,7 +30,13 @@ from processing.methods.road.trees.drive_shifts import (
 )
 from processing.methods.road.trees.rises import followed
 from processing.methods.road.trees.stems import BREAST_M, FittedStem, stems_of
-from processing.methods.road.trees.trunks import CLUMP_M, Trunk, leave_together, trunks_of
+from processing.methods.road.trees.trunks import (
+    CLUMP_M,
+    Trunk,
+    has_flat_sides,
+    leave_together,
+    trunks_of,
+)
 
 _NEIGHBOURS, _MOST = list(range(1, 21)), 0.5
 """Nearest columns that are asked whether drives lie apart, and how many have to say so: positions
@@ -109,13 +115,15 @@ def _trunks_about(
     about = local - (*middle, height)
     return [
         ColumnTrunk(lines, middle, coarse, height, about, trunk)
-        for trunk in _trunks_in(about, most_diameter_m)
+        for trunk in _trunks_in(about, gathered.drives[lines], most_diameter_m)
     ]
 
 
-def _trunks_in(about: Floats, most_diameter_m: float) -> tuple[Trunk, ...]:
-    """The trunks among points about a foot."""
-    return trunks_of(followed(about, stems_of(about, most_diameter_m)))
+def _trunks_in(about: Floats, drives: Integers, most_diameter_m: float) -> tuple[Trunk, ...]:
+    """The trunks among points about a foot; what has flat sides is one where nothing else is."""
+    stems = followed(about, stems_of(about, most_diameter_m))
+    trunks = trunks_of([stem for stem in stems if not has_flat_sides(stem, about, drives)])
+    return trunks or trunks_of(stems)
 
 
 def _without_twins(trunks: Sequence[ColumnTrunk]) -> list[ColumnTrunk]:
@@ -201,7 +209,10 @@ def _whole(
     coarse = ground_seen(local, ground)
     height = foot_height(local, middle, coarse)
     about = local - (*middle, height)
-    trunks = (*_trunks_in(about, most_diameter_m), *trunks_of(_own_stems(members, middle, height)))
+    trunks = (
+        *_trunks_in(about, gathered.drives[lines], most_diameter_m),
+        *trunks_of(_own_stems(members, middle, height)),
+    )
     most = max(len(one.trunk.stems) for one in members)
     whole = max(trunks, key=lambda one: len(one.stems), default=None)
     if whole is None or len(whole.stems) <= most:
@@ -255,7 +266,7 @@ def _drives_joined(
         if points is None and agreed:
             points = laid_by(one.about, gathered.drives[one.lines], agreed)
         if points is not None:
-            anew = _trunks_in(points, most_diameter_m)
+            anew = _trunks_in(points, gathered.drives[one.lines], most_diameter_m)
             joined.append(one._replace(about=points, trunk=_nearest(anew, one.trunk)))
         else:
             joined.append(one)

@@ -28,7 +28,7 @@ from processing.methods.road.trees.crown_cells import StandingStems, crown_cells
 from processing.methods.road.trees.crowns import CROWN_M, Crown, CrownShares, UprightTrunk
 from processing.methods.road.trees.rises import rise_of
 from processing.methods.road.trees.tree_confidence import chances_of, facts_of
-from processing.methods.road.trees.trunks import Trunk, has_corners, is_round
+from processing.methods.road.trees.trunks import Trunk, has_flat_sides, is_round
 from processing.recording.drive import Drive
 
 _TRUNK_M = 0.9
@@ -100,10 +100,10 @@ class StreetTree:
 
 
 class _MeasuredTrunk(NamedTuple):
-    """A trunk where it stands, whether it has corners, and its points."""
+    """A trunk where it stands, whether it has flat sides, and its points."""
 
     standing: UprightTrunk
-    has_corners: bool
+    has_flat_sides: bool
     points: Integers
     drives: Integers
 
@@ -132,8 +132,8 @@ def upright_things(
     2. Stems are circles that follow each other upwards, each fitted by a leaning cone.
     3. The trunk is what goes on upwards of them, its foot lies on the ground about it.
     4. What hangs together above is shared out between trunks, first between all, then between
-       those that may be trees' (:mod:`processing.methods.road.trees.crowns`). What has corners is
-       left out after that: it takes its share, so that nothing beside it looks like a tree.
+       those that may be trees' (:mod:`processing.methods.road.trees.crowns`). What has flat sides
+       is left out after that: it takes its share, so that nothing beside it looks like a tree.
     """
     (plan, ground), columns = survey_columns(drives, PartMonitor(monitor, 0.0, 0.4))
     trunks = _standing_trunks(
@@ -155,7 +155,7 @@ def upright_things(
             one.drives,
         )
         for one, (crown, chance) in zip(trunks, crowns, strict=True)
-        if not one.has_corners
+        if not one.has_flat_sides
     )
 
 
@@ -264,7 +264,7 @@ def _standing(gathered: ColumnPoints, one: ColumnTrunk) -> _MeasuredTrunk:
     foot = np.array([*(one.middle + trunk.base), one.height_m + higher])
     return _MeasuredTrunk(
         UprightTrunk(trunk, foot, rise),
-        has_corners(one.trunk, one.about),
+        has_flat_sides(one.trunk.stems[0], one.about, gathered.drives[one.lines]),
         gathered.points[one.lines[lines]],
         gathered.drives[one.lines[lines]],
     )

@@ -10,7 +10,7 @@ from processing.core.monitor import SilentMonitor
 from processing.methods.road.objects.column_points import ColumnPoints
 from processing.methods.road.objects.columns import FoundColumns
 from processing.methods.road.trees.column_trunks import ColumnTrunk, column_trunks
-from processing.methods.road.trees.trunks import has_corners
+from processing.methods.road.trees.trunks import has_flat_sides
 
 MOST_M = 1.2
 STEM_M = 0.09
@@ -74,9 +74,10 @@ def test_a_stem_that_a_poles_column_holds_is_one_of_its_tree() -> None:
     assert tree.diameter_m == pytest.approx(0.7 * 2 * wide_m, abs=0.01)
 
 
-def test_the_end_of_a_wall_has_corners_and_a_trunk_has_none() -> None:
+def test_the_end_of_a_wall_has_flat_sides_and_a_trunk_has_none() -> None:
     (trunk,) = trunks_of(stem((0.0, 0.0), (0.0, 0.0), 0.36))
-    assert not has_corners(trunk.trunk, trunk.about)
+    one_drive = np.zeros(len(trunk.about), np.int64)
+    assert not has_flat_sides(trunk.trunk.stems[0], trunk.about, one_drive)
     up = np.repeat(np.arange(0.1, 4.0, 0.05), 60)
     along = np.tile(np.linspace(-0.16, 0.16, 20), up.size // 20)
     face = np.tile(np.repeat([0, 1, 2], 20), up.size // 60)
@@ -84,4 +85,5 @@ def test_the_end_of_a_wall_has_corners_and_a_trunk_has_none() -> None:
     east = np.choose(face, [sides, along, along])
     north = np.choose(face, [along, sides, -sides])
     foot = np.array([*trunk.trunk.stems[0].base, 0.0])
-    assert has_corners(trunk.trunk, np.column_stack([east, north, up]) + foot)
+    points = np.column_stack([east, north, up]) + foot
+    assert has_flat_sides(trunk.trunk.stems[0], points, np.zeros(len(points), np.int64))
