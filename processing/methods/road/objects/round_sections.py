@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from processing.core.arrays import Floats, Integers
 from processing.core.kernels import kernel
 
-_STEP_DEG, _HALF_DEG = 15.0, 30.0
+_STEP_DEG, _HALF_DEG, _WINDOWS = 15.0, 30.0, 24
 """From window to window, and to either side of a window's middle: in 60 degrees a circle stands an
 eighth of its radius off its chord, and a side of a square takes up 90."""
 
@@ -42,6 +42,10 @@ _LEAST_BEND, _MOST_BEND = 0.45, 2.0
 its corner 2.6 to 4."""
 
 _FEWEST_WINDOWS = 3
+"""That have to say something."""
+
+_EVENLY = 0.25
+"""Share of the windows that scatter no more than noise makes them."""
 
 
 def round_share(beside: Floats, radii: Floats, drives: Integers) -> float:
@@ -62,60 +66,70 @@ def round_share(beside: Floats, radii: Floats, drives: Integers) -> float:
         0 to 1; NaN where fewer than three windows are told: too few points, or too much noise for
         so thin a thing.
     """
-    told = bends = 0
     turn = np.degrees(np.arctan2(beside[:, 1], beside[:, 0]))
+    windows = [np.empty((0, 2))]
     for drive in np.unique(drives):
         mine = np.flatnonzero(drives == drive)
         mine = mine[np.argsort(turn[mine], kind="stable")]
-        some, round_ones = _windows_kernel(beside[mine], radii[mine], turn[mine])
-        told, bends = told + some, bends + round_ones
-    return bends / told if told >= _FEWEST_WINDOWS else math.nan
-
-
-@kernel
-def _windows_kernel(beside: Floats, radii: Floats, turn: Floats) -> tuple[int, int]:
-    """How many windows are told, and how many of them bend as a circle; points rise in turn."""
-    count = len(turn)
-    told = bends = 0
-    along, out = np.empty(count), np.empty(count)
-    for number in range(int(360.0 / _STEP_DEG)):
-        middle = -180.0 + number * _STEP_DEG
-        first = np.searchsorted(turn, middle - _HALF_DEG)
-        end = np.searchsorted(turn, middle + _HALF_DEG)
-        # What goes on beyond half a turn begins again on the other side.
-        over = np.searchsorted(turn, middle - _HALF_DEG + 360.0)
-        used = 0
-        for part in range(2):
-            low, high = (first, end) if part == 0 else (over, count)
-            for one in range(low, high):
-                east, north = beside[one, 0] / radii[one], beside[one, 1] / radii[one]
-                cosine, sine = math.cos(math.radians(middle)), math.sin(math.radians(middle))
-                along[used] = north * cosine - east * sine
-                out[used] = east * cosine + north * sine
-                used += 1
-        bend = _bend_kernel(along[:used], out[:used])
-        if not math.isnan(bend):
-            told += 1
-            bends += _LEAST_BEND < bend < _MOST_BEND
-    return told, bends
-
-
-@kernel
-def _bend_kernel(along: Floats, out: Floats) -> float:
-    """Twice the second coefficient of a parabola through points without strays; NaN if unsure."""
-    if len(along) < _FEWEST or along.max() - along.min() < _WIDE:
+        # The first window's points come again after the last one's: a section closes.
+        again = mine[turn[mine] < 2 * _HALF_DEG - 180.0]
+        turns = np.concatenate([turn[mine], turn[again] + 360.0])
+        mine = np.concatenate([mine, again])
+        windows.append(np.empty((_WINDOWS, 2)))
+        windows_kernel(beside[mine], radii[mine], turns, windows[-1])
+    scatters, bends = np.concatenate(windows).T
+    if not (scatters < _SCATTER).any():
         return math.nan
+    # Noise is alike all round; corners and twigs scatter more in their windows alone.
+    if np.quantile(scatters[np.isfinite(scatters)], _EVENLY) > _SCATTER:
+        return math.nan
+    told = bends[(scatters < _SCATTER) & np.isfinite(bends)]
+    if told.size < _FEWEST_WINDOWS:
+        return math.nan
+    return float(((told > _LEAST_BEND) & (told < _MOST_BEND)).mean())
+
+
+@kernel
+def windows_kernel(beside: Floats, radii: Floats, turns: Floats, windows: Floats) -> None:
+    """How far the points of each window scatter about its curve, and how it bends.
+
+    Parameters
+    ----------
+    beside, radii, turns : (n, 2), (n,), (n,) float64
+        Points about the axis, m, the circle's radius at their heights, m, and their direction from
+        it, degrees, rising.
+    windows : (w, 2) float64
+        Gets scatter, of the radius, and bend, over that of the circle; NaN where too few points
+        are, and a NaN bend where it is too unsure.
+    """
+    for number in range(len(windows)):
+        middle = number * _STEP_DEG - 180.0 + _HALF_DEG
+        first = np.searchsorted(turns, middle - _HALF_DEG)
+        end = np.searchsorted(turns, middle + _HALF_DEG)
+        cosine, sine = math.cos(math.radians(middle)), math.sin(math.radians(middle))
+        east = beside[first:end, 0] / radii[first:end]
+        north = beside[first:end, 1] / radii[first:end]
+        along, out = north * cosine - east * sine, east * cosine + north * sine
+        windows[number] = math.nan
+        if end - first >= _FEWEST and along.max() - along.min() >= _WIDE:
+            _bend_kernel(along, out, windows[number])
+
+
+@kernel
+def _bend_kernel(along: Floats, out: Floats, window: Floats) -> None:
+    """Write the scatter about a parabola through points without strays, and how it bends."""
     is_near = np.ones(len(along), np.bool_)
     curve, spread = np.zeros(3), np.zeros(2)
     for _ in range(2):
         if is_near.sum() < _FEWEST:
-            return math.nan
+            return
         _parabola_kernel(along, out, is_near, curve, spread)
         for one in range(len(along)):
             off = abs(_off_kernel(curve, along[one], out[one]))
             is_near[one] = is_near[one] and off < _STRAY * max(spread[0], 1e-4)
-    is_sure = spread[0] < _SCATTER and 2.0 * spread[1] < _SURE
-    return -2.0 * curve[2] if is_sure else math.nan
+    window[0] = spread[0]
+    if 2.0 * spread[1] < _SURE:
+        window[1] = -2.0 * curve[2]
 
 
 @kernel
