@@ -55,6 +55,13 @@ _ROUNDS = 3
 _CORE_M, _ROUND_CORE_M, _CORE_HIGH_M = 0.3, 0.65, 1.5
 """m: the axis with the branches that begin there; a ring about it; how high both are."""
 
+_NEXT = 10
+"""Slabs above a stem that are asked for what goes on: 2 m, in which crowns begin over most."""
+
+_THINLY = 0.1
+"""Of the points that a slab of the stem shows: fewer are stray ones of a noisy scanner, which is
+all that is above a man's head."""
+
 
 class StemRise(NamedTuple):
     """What becomes of a stem above the heights at which trunks are looked for.
@@ -68,11 +75,15 @@ class StemRise(NamedTuple):
     core : float
         How much denser points lie about its axis above that than beside it, as a power of two: at
         the end of a trunk branches meet, over a post that ends hang leaves as everywhere.
+    goes_on : float
+        Share of the next 2 m above it in which the axis shows a tenth of the stem's points and
+        more: stem, boughs or leaves.
     """
 
     high_m: float
     thins: float
     core: float
+    goes_on: float
 
 
 def rise_of(points: Floats, stem: FittedStem) -> StemRise:
@@ -101,7 +112,9 @@ def rise_of(points: Floats, stem: FittedStem) -> StemRise:
         if noise > 0 and abs(fitted[4] - body[4]) < _TOLERANCE_M:
             body = fitted
     thins = float(-body[5] / body[4])
-    return StemRise(min(top, HIGHEST_M), thins, _core(points, body, top))
+    return StemRise(
+        min(top, HIGHEST_M), thins, _core(points, body, top), _goes_on(near, stem, body, top)
+    )
 
 
 def followed(points: Floats, stems: Sequence[FittedStem]) -> tuple[FittedStem, ...]:
@@ -146,6 +159,16 @@ def _core(points: Floats, body: Floats, top: float) -> float:
     outer = np.count_nonzero((away >= _CORE_M) & (away < _ROUND_CORE_M))
     areas = (_ROUND_CORE_M / _CORE_M) ** 2 - 1
     return math.log2(areas * (inner + 1) / (outer + 1))
+
+
+def _goes_on(near: Floats, stem: FittedStem, body: Floats, top: float) -> float:
+    """The share of slabs above a stem that show something about its axis; points rise."""
+    beside = near[:, :2] - body[:2] - (near[:, 2:] - BREAST_M) * body[2:4]
+    up = near[np.hypot(beside[:, 0], beside[:, 1]) < _CORE_M, 2]
+    edges = top + _STEP_M * np.arange(_NEXT + 1)
+    slabs = np.diff(np.searchsorted(up, edges))
+    of_stem = stem.lines.size * _STEP_M / max(stem.high_m - stem.low_m, _STEP_M)
+    return float((slabs > _THINLY * of_stem).mean())
 
 
 def _within(points: Floats, body: Floats) -> Integers:

@@ -104,6 +104,9 @@ class TreeFacts(NamedTuple):
         Of the highest point above the foot.
     diameter_m : float
         Of the trunk.
+    goes_on : float
+        Share of the next 2 m above its stem in which its axis shows something: above people and
+        posts there is nothing but noise.
     """
 
     filled: float
@@ -126,9 +129,10 @@ class TreeFacts(NamedTuple):
     begins_m: float
     height_m: float
     diameter_m: float
+    goes_on: float
 
 
-SIGNS = (1, -1, -1, -1, -1, 1, 1, -1, 1, -1, -1, 0, 1, 1, 1, 1, -1, 0, 0, 0)
+SIGNS = (1, -1, -1, -1, -1, 1, 1, -1, 1, -1, -1, 0, 1, 1, 1, 1, -1, 0, 0, 0, 1)
 """Which facts can only speak for a tree (1) or against one (−1)."""
 
 
@@ -158,6 +162,7 @@ def facts_of(upright: UprightTrunk, crown: Crown) -> TreeFacts:
         begins_m=crown.shape.begins_m,
         height_m=crown.height_m,
         diameter_m=upright.trunk.diameter_m,
+        goes_on=upright.rise.goes_on,
     )
 
 

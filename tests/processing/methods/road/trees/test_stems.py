@@ -76,6 +76,14 @@ def test_a_trunk_ends_where_it_forks_and_is_denser_there_than_a_post_that_ends()
     assert tree_rise.core > 1.0 > post_rise.core
 
 
+def test_noise_above_a_person_is_nothing_that_goes_on() -> None:
+    person = bark(0.3, 0.2, 1.7)
+    stray = leaves(1.7, 5.0, 60)
+    tree = np.vstack([person, leaves(1.7, 5.0)])
+    assert rise_of(np.vstack([person, stray]), trunk_in(person).stems[0]).goes_on < 0.2
+    assert rise_of(tree, trunk_in(tree).stems[0]).goes_on > 0.8
+
+
 def test_a_stem_that_twigs_hide_from_a_height_on_is_no_stake() -> None:
     hidden = np.vstack([bark(0.09, 0.2, 1.7), bark(0.09, 2.3, 4.0)])
     other = bark(0.1, 0.2, 4.0, middle=(0.0, 0.17))

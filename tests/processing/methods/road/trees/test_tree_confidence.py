@@ -11,11 +11,11 @@ from processing.methods.road.trees.tree_confidence import SIGNS, TreeFacts, chan
 
 TREE = TreeFacts(
     *(2.8, 0.05, 0.15, 0.0, 0.0, 0.5, 2.0, 0.05, 1.0, 0.0, 0.0, 2.0, 3.0),
-    *(0.012, 10.0, 1.0, 0.3, 3.0, 9.0, 0.2),
+    *(0.012, 10.0, 1.0, 0.3, 3.0, 9.0, 0.2, 1.0),
 )
 LAMP = TreeFacts(
     *(0.3, 0.8, 1.0, 1.5, 0.0, 0.5, 2.0, 0.05, 1.0, 4.0, 0.0, -1.0, 0.2),
-    *(0.0, 12.0, 0.1, 1.5, 5.0, 8.0, 0.14),
+    *(0.0, 12.0, 0.1, 1.5, 5.0, 8.0, 0.14, 0.3),
 )
 
 
@@ -24,6 +24,11 @@ def test_a_tree_is_one_and_a_lamp_is_none() -> None:
     assert tree > 0.9
     assert lamp < 0.05
     assert chances_of([], SilentMonitor()).size == 0
+
+
+def test_what_nothing_stands_on_but_noise_is_less_of_a_tree() -> None:
+    tree, person = chances_of([TREE, TREE._replace(goes_on=0.0)], SilentMonitor())
+    assert person < tree
 
 
 @given(st.integers(0, len(SIGNS) - 1), st.floats(0, 1), st.floats(0, 1))
