@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -24,6 +25,7 @@ from processing.methods.road.clearance.hanging_bodies import (
     hanging_bodies,
     touching_cubes,
 )
+from processing.methods.road.clearance.passed_through import is_passed_through
 from processing.methods.road.clearance.points_over_road import PointsOverRoad, points_over_road
 from processing.methods.road.clearance.thing_types import ThingKind, ThingType, thing_of
 from processing.methods.road.surface.carriageway import edges_of, profiles_of
@@ -35,7 +37,7 @@ from processing.recording.drive import Drive
 APART_M = 0.75
 """Bodies less than two cubes of this width apart are one place: twigs of a crown."""
 
-_FEW, _SCATTERED = 10, 2.0
+_FEW, _SCATTERED = 30, 4.0
 """Fewer points, and fewer for each cube of 0.3 m that they fill, are drops, dust or mixed."""
 
 _LEAST_INSIDE_M = 0.25
@@ -124,6 +126,13 @@ class StreetClearance:
 _CELL_M2 = 0.04
 
 
+class DrivenCells(NamedTuple):
+    """Cells of a raster about ways that were driven, and these."""
+
+    cells: RoadCells
+    frames: tuple[RoadFrame, ...]
+
+
 def street_clearance(
     drives: Sequence[Drive], limits: ClearanceLimits, monitor: Monitor
 ) -> StreetClearance:
@@ -145,8 +154,9 @@ def street_clearance(
     if not lines or not any(drive.count for drive in drives):
         return StreetClearance()
     raster = road_raster(drives, lines, PartMonitor(monitor, 0.0, 0.6))
-    road = cells_along(raster, lines, monitor)
-    return clearance_over(drives, (raster, road), limits, PartMonitor(monitor, 0.6, 1.0))
+    driven = driven_cells(raster, drives, monitor)
+    part = PartMonitor(monitor, 0.6, 1.0)
+    return clearance_over(drives, (raster, driven.cells), limits, part, driven=driven)
 
 
 def clearance_over(
@@ -154,12 +164,25 @@ def clearance_over(
     below: tuple[RoadRaster, RoadCells],
     limits: ClearanceLimits,
     monitor: Monitor,
+    *,
+    driven: DrivenCells,
 ) -> StreetClearance:
-    """All that hangs too low over the cells of a road."""
+    """All that hangs too low over the cells of a road.
+
+    Parameters
+    ----------
+    driven : DrivenCells
+        Cells of the same raster about the ways that were driven.
+    """
     raster, road = below
     highest = (limits.road_m, limits.walk_m)
     found = points_over_road(drives, raster.plan, road, highest, PartMonitor(monitor, 0.0, 0.9))
-    bodies = [one for one in hanging_bodies(found, road) if not _is_scattered(one)]
+    bodies = [
+        one
+        for one in hanging_bodies(found, road)
+        if not _is_scattered(one)
+        and not is_passed_through(one.lines, found, driven.cells, driven.frames)
+    ]
     monitor.check()
     every = [_place(found, below, limits, one) for one in _together(found, bodies, monitor)]
     places = [one for one in every if one.depth_m >= _LEAST_INSIDE_M]
@@ -173,16 +196,18 @@ def clearance_over(
     )
 
 
-def cells_along(raster: RoadRaster, lines: Sequence[Floats], monitor: Monitor) -> RoadCells:
-    """The road about lines, as its surface tells it."""
+def driven_cells(raster: RoadRaster, drives: Sequence[Drive], monitor: Monitor) -> DrivenCells:
+    """The road about the ways that drives took, as its surface tells it."""
+    frames = []
     roads = []
-    for line in lines:
+    for line in driven_lines(drives):
         monitor.check()
         frame = RoadFrame.along(line - raster.plan.origin[:2])
         if frame is not None:
             profiles = profiles_of(raster, frame)
+            frames.append(frame)
             roads.append((frame, profiles, edges_of(profiles)))
-    return road_cells(raster, roads)
+    return DrivenCells(road_cells(raster, roads), tuple(frames))
 
 
 def _is_scattered(body: HangingBody) -> bool:

@@ -30,6 +30,7 @@ from processing.methods.road.clearance.street_clearance import (
     ClearanceLimits,
     ClearancePlace,
     clearance_over,
+    driven_cells,
 )
 from processing.methods.road.road_model.surface_slopes import (
     UNKNOWN,
@@ -339,7 +340,10 @@ class _ModelMaker:
         frame, profiles = road
         edges = _drawn_edges(edges_of(profiles), profiles, every)
         cells = road_cells(self.raster, [(frame, profiles, edges)])
-        found = clearance_over(drives, (self.raster, cells), settings.limits, monitor)
+        driven = driven_cells(self.raster, drives, monitor)
+        found = clearance_over(
+            drives, (self.raster, cells), settings.limits, monitor, driven=driven
+        )
         placed = [
             (self.one.route.position(_position(one))[0].station_m, one)
             for one in found.places

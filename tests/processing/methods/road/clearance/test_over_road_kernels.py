@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from processing.methods.road.clearance.hanging_bodies import touching_cubes
+from processing.methods.road.clearance.passed_through import is_arc
 from processing.methods.road.clearance.points_over_road import over_kernel
 from processing.methods.road.clearance.thing_types import shape_of, thing_of
 from processing.methods.road.objects.sparse_plan import TILE, SparsePlan
@@ -102,3 +103,19 @@ def test_shapes_and_classes_tell_what_hangs_there() -> None:
         "tree",
         False,
     )
+
+
+@pytest.mark.parametrize("turned", [(20.0, 110.0), (-10.0, 60.0)])
+def test_an_arc_about_the_scanner_is_told_from_what_is_flat(turned: tuple[float, float]) -> None:
+    random = np.random.default_rng(4)
+    angle = np.radians(np.linspace(*turned, 300))
+    noise = random.normal(0, 0.02, 300)
+    arc = np.column_stack([(2.8 + noise) * np.cos(angle), 2.0 + (2.8 + noise) * np.sin(angle)])
+    assert is_arc(*arc.T)
+    across = np.linspace(-1.5, 1.5, 300)
+    assert not is_arc(across, 3.9 + noise)
+    assert not is_arc(across + 1.0, 3.0 + 0.5 * across + noise)
+    assert not is_arc(*random.uniform((-1.0, 2.0), (1.0, 4.0), (300, 2)).T)
+    # A round pipe about the middle of the road, beside which the vehicle drives.
+    lining = np.radians(np.linspace(20.0, 70.0, 300))
+    assert not is_arc(1.5 + 4.0 * np.cos(lining), 1.0 + 4.0 * np.sin(lining))
