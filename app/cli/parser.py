@@ -125,6 +125,12 @@ def _add_route_commands(commands: _Commands[_Parser]) -> None:
     widths.add_argument("project", type=Path, metavar="PROJECT")
     widths.add_argument("--pitch", type=float, metavar="M", help="from station to station (20)")
     widths.set_defaults(module="maps.widths")
+    road = commands.add_parser("road", help="widths, falls, slopes and clearance of the roads")
+    road.add_argument("project", type=Path, metavar="PROJECT")
+    road.add_argument("--out", type=Path, metavar="DIR", help="where tables and plot are written")
+    road.add_argument("--pitch", type=float, metavar="M", help="from station to station (20)")
+    road.add_argument("--draw", action="store_true", help="draw centre lines between the edges")
+    road.set_defaults(module="maps.road")
 
 
 def _add_import(commands: _Commands[_Parser]) -> None:

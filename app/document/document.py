@@ -53,6 +53,9 @@ from widgets.shared.view_settings import ViewSettings
 
 _MadeT = TypeVar("_MadeT")
 
+PRINTING = Text("Print", "印刷")
+"""What the job is called that makes sheets for a printer."""
+
 
 class Document(QObject):
     """The open project and what all views share of it.
@@ -397,10 +400,12 @@ class Document(QObject):
         title, work = points_work(operation, drive)
         return self._job_results.start(project, title, work, take)
 
-    def make_pages(self, request: ExportRequest, then: Callable[[], None]) -> str:
-        """Write sheets to be printed in the background, then call; gives the job's id."""
+    def make_pages(
+        self, request: ExportRequest, then: Callable[[], None], title: Text = PRINTING
+    ) -> str:
+        """Write sheets to be printed or shown in the background, then call; gives the job's id."""
         project = self._need_project()
-        title, work = Text("Print", "印刷"), export_of(project, request)
+        work = export_of(project, request)
 
         def take(written: WrittenFiles) -> None:
             for note in written.notes:

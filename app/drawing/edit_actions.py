@@ -32,7 +32,7 @@ def edit_actions(parts: WindowParts) -> tuple[Action, ...]:
         _steps(parts),
         _clipboard(edits),
         (*_selections(parts, edits), *_line_edits(edits), *_statuses(edits)),
-        (_numbering(edits), _widths(edits)),
+        (_numbering(edits), _widths(edits), _centre_lines(edits)),
     )
 
 
@@ -61,6 +61,21 @@ def _widths(edits: MapEdits) -> Action:
             "Draws the widths of carriageway and footways across the road, each 20 m and where"
             " they change by 0.5 m; lines drawn so before are replaced.",
             "20 mごとと、幅員が0.5 m以上変わる位置で、車道・歩道の幅員線を作図します。"
+            "以前に自動作図した線は置き換えます。",
+        ),
+    )
+
+
+def _centre_lines(edits: MapEdits) -> Action:
+    return _edit(
+        "draw-centre-lines",
+        Text("Centre lines between the edges", "両側の縁の中間に道路中心線を作図"),
+        edits.draw_centre_lines,
+        "",
+        Text(
+            "Draws the road's centre line midway between accepted curbs, footways or road edges"
+            " along the way that was driven; lines drawn so before are replaced.",
+            "走行軌跡に沿って、採用済みの縁石・歩道・道路縁の中間に道路中心線を作図します。"
             "以前に自動作図した線は置き換えます。",
         ),
     )

@@ -17,12 +17,17 @@ from processing.map.drafting.line_edits import reverse_line, simplify_line
 from processing.map.drafting.line_joins import join
 from processing.map.drafting.measuring import Width, width_between
 from processing.map.feature import Feature, Status, Vertex, new_feature_id
+from processing.map.routes.centre_lines import centre_lines
 from processing.map.routes.numbering import number_along_routes
 from processing.map.routes.route import PITCH_M, routes_of
 from processing.map.routes.width_lines import width_lines
+from processing.methods.road.surface.road_frame import driven_lines
 from processing.operations.map_steps import (
     ALL_NUMBERED,
+    CENTRE_LINES_DRAWN,
+    CENTRE_LINES_LABEL,
     NO_CENTRE_LINE,
+    NO_EDGES,
     NO_WIDTHS,
     NUMBER_LABEL,
     NUMBERED,
@@ -151,6 +156,18 @@ class MapEdits:
         count = f"{len(change.added):,}"
         document.apply(WIDTHS_LABEL.filled(count=count), change)
         document.reported.emit(WIDTHS_DRAWN.filled(count=count))
+
+    def draw_centre_lines(self) -> None:
+        """Draw centre lines midway between the edges of the roads that were driven."""
+        document = self._document
+        ways = driven_lines(document.drives())
+        change = centre_lines(tuple(document.features()), document.catalogue(), ways)
+        if change.is_empty:
+            document.reported.emit(NO_EDGES)
+            return
+        count = f"{len(change.added):,}"
+        document.apply(CENTRE_LINES_LABEL.filled(count=count), change)
+        document.reported.emit(CENTRE_LINES_DRAWN.filled(count=count))
 
     def copy(self) -> None:
         """Put what is chosen on the clipboard, for this or any other project."""

@@ -18,6 +18,7 @@ from app.importing.project_checking import ProjectChecking
 from app.importing.recent_menu import RecentMenu
 from app.importing.sheet_printing import SheetPrinting
 from app.importing.source_watch import SourceWatch
+from app.roads.road_viewing import RoadViewing
 from app.simulation.simulate_wiring import Simulations
 from app.window.action import Action, grouped
 from app.window.project_dialogs import ProjectDialogs
@@ -53,6 +54,7 @@ class FileActions:
         self._asked: tuple[str, ImportOptions] | None = None
         parts.jobs.failed.connect(self._on_jobs_failed)
         self.printing = SheetPrinting(parts, self._dialogs)
+        self.roads = RoadViewing(parts, self._dialogs)
         self.existing_maps = ExistingMaps(parts, self._dialogs)
         self.checking = ProjectChecking(parts)
 
@@ -115,6 +117,7 @@ class FileActions:
                 needs_project=True,
             ),
             self.printing.action(),
+            self.roads.action(),
         )
 
     def _existing_map(self) -> Action:

@@ -363,6 +363,37 @@ class OpenDriveOptions:
 
 
 @dataclass(frozen=True)
+class RoadModelOptions:
+    """What can be chosen for the road model."""
+
+    road_pitch: float = length(
+        20.0,
+        low=1.0,
+        high=1000.0,
+        name=Text("From station to station (road model)", "測点の間隔（道路モデル）"),
+    )
+    road_clearance: float = length(
+        4.5,
+        low=2.0,
+        high=10.0,
+        name=Text("Free over the carriageway", "車道の建築限界の高さ"),
+        explanation=Text(
+            "Road Structure Ordinance, article 12: 4.5 m.", "道路構造令第12条では4.5 mです。"
+        ),
+    )
+    walk_clearance: float = length(
+        2.5,
+        low=1.2,
+        high=10.0,
+        name=Text("Free over walks", "歩道の建築限界の高さ"),
+        explanation=Text(
+            "Road Structure Ordinance, article 12: 2.5 m.", "道路構造令第12条では2.5 mです。"
+        ),
+    )
+    encoding: str = _encoding()
+
+
+@dataclass(frozen=True)
 class DeliveryOptions:
     """What the program can't know of a survey; the rest is that of the project's work details."""
 

@@ -16,6 +16,7 @@ from processing.formats.map_delivery import (
     LandXmlOptions,
     OpenDriveOptions,
     QualityOptions,
+    RoadModelOptions,
     SectionOptions,
     ShapefileOptions,
     SheetOptions,
@@ -364,6 +365,19 @@ _SURVEY_FORMATS = (
         writes_map="processing.formats.sections.section_files:write_sections_map",
         options=SectionOptions,
         pages="sections.pdf",
+        has_attributes=False,
+    ),
+    Format(
+        "road",
+        Text("Road model", "道路モデル"),
+        (),
+        map_title=Text(
+            "Road model: widths, falls, slopes, clearance (CSV, XLSX, PDF, SVG, PNG)",
+            "道路モデル: 幅員・勾配・建築限界（CSV・XLSX・PDF・SVG・PNG）",
+        ),
+        writes_map="processing.formats.roads.road_files:write_road_map",
+        options=RoadModelOptions,
+        pages="road.pdf",
         has_attributes=False,
     ),
 )

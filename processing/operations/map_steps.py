@@ -1,4 +1,4 @@
-"""Steps of a project's map: ledgers numbered, a delivered map taken in or compared, an undo."""
+"""Steps of a project's map: ledgers numbered, lines drawn, a map taken in or compared, an undo."""
 
 from __future__ import annotations
 
@@ -23,9 +23,11 @@ from processing.map.renewal.map_comparison import (
     MapComparison,
     compare_maps,
 )
+from processing.map.routes.centre_lines import centre_lines
 from processing.map.routes.numbering import number_along_routes
 from processing.map.routes.route import PITCH_M, routes_of
 from processing.map.routes.width_lines import width_lines
+from processing.methods.road.surface.road_frame import driven_lines
 from processing.operations.inputs import opened_project
 from processing.project.comparison.found_differences import (
     FoundDifferences,
@@ -37,6 +39,9 @@ from processing.project.project import Project
 from processing.project.store.runs import Run
 from processing.recording.drive import Drive
 from processing.scoring.features.mapped_features import IN_DEGREES, MappedFile
+
+ROAD_FORMAT = "road"
+"""Id of the format of the road model."""
 
 LEAST_PITCH_M, MOST_PITCH_M = 1.0, 1000.0
 """From station to station."""
@@ -63,6 +68,16 @@ NO_WIDTHS = Text(
     "No width can be measured: draw curbs, footways or road edges on both sides of the centre"
     " line.",
     "幅員を測れる線がありません。中心線の両側に縁石・歩道・道路縁を描いてください。",
+)
+CENTRE_LINES_LABEL = Text("Draw {count} centre lines", "道路中心線を{count}本作図")
+CENTRE_LINES_DRAWN = Text(
+    "{count} centre lines drawn midway between the edges; those drawn so before were replaced.",
+    "両側の縁の中間に道路中心線を{count}本作図しました（以前に自動作図したものは置き換えました）。",
+)
+NO_EDGES = Text(
+    "No centre line can be made: that needs a trajectory, and accepted curbs, footways or road"
+    " edges on both sides of it.",
+    "道路中心線を作成できません。軌跡と、その両側の採用済みの縁石・歩道・道路縁が必要です。",
 )
 _TAKE_LABEL = Text("Take in {count} features of {file}", "{file}から{count}個の地物を取り込み")
 _TAKEN = Text("{count} features taken in.", "{count}個の地物を取り込みました。")
@@ -213,6 +228,50 @@ def draw_widths(operation: WidthOperation, monitor: Monitor) -> DrawnWidths:
         if count:
             project.features.apply(WIDTHS_LABEL.filled(count=f"{count:,}"), change)
         return DrawnWidths(count)
+
+
+@dataclass(frozen=True)
+class CentreLineOperation:
+    """A project whose roads are to get centre lines.
+
+    Attributes
+    ----------
+    project : Path
+    """
+
+    project: Path
+
+
+@dataclass(frozen=True)
+class DrawnCentreLines:
+    """How many centre lines were drawn."""
+
+    count: int
+
+    @property
+    def words(self) -> tuple[Text, ...]:
+        """One line."""
+        if not self.count:
+            return (NO_EDGES,)
+        return (CENTRE_LINES_DRAWN.filled(count=f"{self.count:,}"),)
+
+
+def draw_centre_lines(operation: CentreLineOperation, monitor: Monitor) -> DrawnCentreLines:
+    """Draw centre lines midway between the edges of roads, as one step to be undone.
+
+    Raises
+    ------
+    MissingInput, BadFile, InUse, NoSpace, Cancelled
+        The project is as it was.
+    """
+    with opened_project(operation.project, writing=True) as project:
+        ways = driven_lines(project.drives)
+        monitor.check()
+        change = centre_lines(tuple(project.features.all()), project.catalogue, ways)
+        count = len(change.added)
+        if count:
+            project.features.apply(CENTRE_LINES_LABEL.filled(count=f"{count:,}"), change)
+        return DrawnCentreLines(count)
 
 
 @dataclass(frozen=True)

@@ -20,12 +20,14 @@ from processing.operations.extraction import ExtractOperation, extract
 from processing.operations.import_files import ImportOperation, import_files
 from processing.operations.learn import LearnOperation, learn_in_project
 from processing.operations.map_steps import (
+    CentreLineOperation,
     CompareMapOperation,
     NumberOperation,
     TakeMapOperation,
     UndoOperation,
     WidthOperation,
     compare_map,
+    draw_centre_lines,
     draw_widths,
     number_features,
     take_map,
@@ -78,6 +80,7 @@ OPERATIONS: Kinds = {
         OperationKind("learn", LearnOperation, learn_in_project),
         OperationKind("number", NumberOperation, number_features),
         OperationKind("widths", WidthOperation, draw_widths),
+        OperationKind("centre-lines", CentreLineOperation, draw_centre_lines),
         OperationKind("take-map", TakeMapOperation, take_map),
         OperationKind("compare-map", CompareMapOperation, compare_map),
         OperationKind("undo", UndoOperation, undo_step),

@@ -1754,6 +1754,21 @@ kept</source>
     </message>
 </context>
 <context>
+    <name>RoadPlotView</name>
+    <message>
+        <source>Road model</source>
+        <translation>道路モデル</translation>
+    </message>
+    <message>
+        <source>Previous</source>
+        <translation>前へ</translation>
+    </message>
+    <message>
+        <source>Next</source>
+        <translation>次へ</translation>
+    </message>
+</context>
+<context>
     <name>RunChooser</name>
     <message>
         <source>The runs whose candidates are judged</source>

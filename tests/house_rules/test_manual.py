@@ -34,8 +34,8 @@ NEEDS_SYSTEM = Text(" (needs the reference system)", "（座標参照系が必�
 _LEAST_WORDS = {"en": 20, "ja": 12}
 COMMANDS = (
     "open", "demo", "info", "import", "image", "tools", "run", "score", "study", "export", "bench",
-    "simulate", "extract", "learn", "number", "widths", "map", "batch", "check", "macro", "replay",
-    "manual",
+    "simulate", "extract", "learn", "number", "widths", "road", "map", "batch", "check", "macro",
+    "replay", "manual",
 )  # fmt: skip
 
 

@@ -26,6 +26,8 @@ from processing.laboratory.simulate.cameras.seen_street import SeenStreet
 from processing.laboratory.simulate.control_points import write_control_points
 from processing.laboratory.simulate.moving_traffic.moving import movers_of
 from processing.laboratory.simulate.requests import StreetRequest
+from processing.laboratory.simulate.road_truth.clearance_evidence import ClearanceEvidence
+from processing.laboratory.simulate.road_truth.true_roads import true_roads, write_true_roads
 from processing.laboratory.simulate.scanning.beams import ScanPattern
 from processing.laboratory.simulate.scanning.delivered_files import (
     CRS_NAME,
@@ -158,6 +160,7 @@ class _Work:
         )
         self.evidence = Evidence()
         self.walls = WallEvidence(())
+        self.clearance = ClearanceEvidence(street, request.length_m)
         self.point_files: list[str] = []
         self.trajectories: list[str] = []
         self.image_lists: list[str] = []
@@ -203,6 +206,9 @@ class _Work:
         seen = RecordingEvidence.by(self.passes[0], self.evidence, self.walls)
         features = list(self.truth.values())
         objects = write_truth(truth, features, seen, self.origin)
+        self.clearance.write(truth, self.things, self.origin, CRS_NAME)
+        roads = true_roads(self.street, self.request.length_m, self.origin)
+        write_true_roads(truth / "road.csv", roads)
         write_things(truth / "instance_kinds.json", self.things.values())
         write_rough_positions(
             truth / "sign_initial.csv", features, seen, self.origin, self.request.seed
@@ -276,6 +282,7 @@ class _Work:
         files.instances.write(returns.instance)
         self.evidence.count([returns])
         self.walls.count(returns)
+        self.clearance.count(returns)
 
     def _mounted_rad(self, driven: SimulatedPass, head: Head) -> Floats:
         """(3,) how far a head is turned from what its calibration says; see `SimulatedPass`."""

@@ -116,3 +116,12 @@ def test_each_command_refuses_in_one_sentence_and_leaves_nothing(
         for one in (what, remedy):
             assert any(ord(letter) > 0x3000 for letter in one) == (language == "ja"), line
     assert list(tmp_path.iterdir()) == []
+
+
+def test_the_road_command_says_what_it_needs(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert run_in_terminal(["road", str(tmp_path / "none")]) == BAD_INPUT
+    assert "--out" in capsys.readouterr().err
+    assert run_in_terminal(["road", str(tmp_path / "none"), "--draw"]) == BAD_INPUT
+    assert capsys.readouterr().err.count("\n") == 1

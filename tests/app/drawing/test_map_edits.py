@@ -87,3 +87,11 @@ def test_widths_are_drawn_along_the_route_as_one_step(document):
     document.undo()
     document.undo()
     assert {one.kind for one in document.features()} == {"road_center", "road_edge"}
+
+
+def test_centre_lines_between_edges_need_a_way_that_was_driven(document):
+    edits, told = MapEdits(document), []
+    document.reported.connect(told.append)
+    edits.draw_centre_lines()
+    assert told[-1].en.startswith("No centre line can be made")
+    assert not tuple(document.features())
