@@ -12,6 +12,7 @@ from __future__ import annotations
 from processing.core.text import Text
 from processing.scoring.features.barriers import barrier_score
 from processing.scoring.features.clearances import clearance_score
+from processing.scoring.features.covers import cover_score
 from processing.scoring.features.curb_lines import curb_score
 from processing.scoring.features.file_scores import FeatureScorer, VolumeScorer
 from processing.scoring.features.gutters import gutter_score
@@ -89,6 +90,7 @@ WALL_SCORER = FeatureScorer("walls", Text("Walls and buildings", "塀・擁壁�
 CLEARANCE_SCORER = FeatureScorer(
     "clearance", Text("Clearance over the road", "建築限界"), clearance_score
 )
+COVER_SCORER = FeatureScorer("covers", Text("Covers and inlets", "マンホール・蓋"), cover_score)
 VOLUME_SCORER = VolumeScorer("volume", Text("Volumes", "土量"), volume_score)
 ECHO_SCORER = EchoScorer(
     "waveform-decompose", Text("Echoes of waveforms", "波形の分解"), flight_echo_score

@@ -37,6 +37,7 @@ from processing.tools.normals import NORMALS, NormalsParameters
 from processing.tools.poles import POLES
 from processing.tools.road_map.barriers import BARRIERS
 from processing.tools.road_map.clearance import CLEARANCE
+from processing.tools.road_map.covers import COVERS
 from processing.tools.road_map.markings import MARKINGS
 from processing.tools.road_map.walls import WALLS
 from processing.tools.running.blocks import JoinedResults, blocks_of
@@ -94,6 +95,7 @@ CHUNKS = (
     BARRIERS.id,
     WALLS.id,
     CLEARANCE.id,
+    COVERS.id,
 )
 """Tools that find candidates, and read the street a stretch at a time."""
 

@@ -23,7 +23,7 @@ from processing.laboratory.simulate.wall_evidence import WallEvidence
 
 TRUTH_FILES = (
     *("curbs", "gutters", "trees", "signs", "poles", "wires", "markings"),
-    *("barriers", "walls"),
+    *("barriers", "walls", "covers"),
 )
 CURB_PIECE_M, CURB_SECTION_M = 0.5, 2.0
 BREAST_PIECES, TRUNK_PIECE = range(1, 37), 37
@@ -141,7 +141,8 @@ def _member(one: TrueFeature, seen: RecordingEvidence, origin: Floats) -> TruthP
     elif one.file == "walls":
         facts.update(_wall(one, seen))
     else:
-        facts.update(_SHOWN[one.file](pieces))
+        shown = _cover(one, pieces) if one.file == "covers" else _SHOWN[one.file](pieces)
+        facts.update(shown)
         passed = seen.passes(one.xyz.mean(axis=0)[None])[0]
         facts["in_span"] = bool(passed and one.facts.get("in_span", True))
     return {
@@ -239,6 +240,13 @@ def _tree(pieces: Integers) -> TruthProperties:
 def _sign(pieces: Integers) -> TruthProperties:
     front, back = int(pieces[FRONT_PIECE]), int(pieces[BACK_PIECE])
     return {"points": front + back, "front_points": front}
+
+
+def _cover(one: TrueFeature, pieces: Integers) -> TruthProperties:
+    """The points on a cover, and the share of its pieces that any show."""
+    count = one.facts["pieces"]
+    shown = pieces[: int(count)] if isinstance(count, int) else pieces
+    return {"points": int(pieces.sum()), "covered": round(float(np.mean(shown > 0)), 3)}
 
 
 def _pole(pieces: Integers) -> TruthProperties:

@@ -25,6 +25,7 @@ from processing.tools.poles import POLES
 from processing.tools.register import REGISTER
 from processing.tools.road_map.barriers import BARRIERS
 from processing.tools.road_map.clearance import CLEARANCE
+from processing.tools.road_map.covers import COVERS
 from processing.tools.road_map.markings import MARKINGS
 from processing.tools.road_map.walls import WALLS
 from processing.tools.segments import SEGMENTS
@@ -48,6 +49,7 @@ _DECLARED = (
     BARRIERS,
     WALLS,
     CLEARANCE,
+    COVERS,
     NOISE,
     GROUND_TOOL,
     CLASSIFY,

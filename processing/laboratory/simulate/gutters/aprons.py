@@ -2,7 +2,7 @@
 
 Each apron is built from the lines that the ground leaves open for it, so that it meets the asphalt
 and the curb's foot exactly. Things: ``basin`` (frame and shaft) and ``grating`` (pieces: see
-`lid_shapes`). Truth: one polygon for each grating, a run of its own.
+`lid_shapes`). Truth: one polygon for each grating, a run of its own, and a cover.
 """
 
 from __future__ import annotations
@@ -13,8 +13,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.random import Generator
 
-from processing.laboratory.simulate.gutters.lid_shapes import Grating, grating_pieces
+from processing.laboratory.simulate.gutters.lid_shapes import (
+    SIDES_PIECE,
+    Grating,
+    grating_pieces,
+)
 from processing.laboratory.simulate.scene.chance import chance
+from processing.laboratory.simulate.scene.cover_truth import tell_square_cover
 from processing.laboratory.simulate.scene.materials import Material
 from processing.laboratory.simulate.scene.mesh import Floats, grid
 from processing.laboratory.simulate.scene.things import NO_THING, Fact, SectionBuilder, TrueFeature
@@ -266,6 +271,9 @@ def _add_grating(
     built.truth.append(
         TrueFeature("gutters", "Polygon", middle + ring @ axes, facts, instance, chainage)
     )
+    corners = (middle + ring @ axes)[:-1]
+    lies = corners, chainage, "gutter"
+    tell_square_cover(built, lies, "rain_inlet", (instance, SIDES_PIECE))
 
 
 def grating_facts(

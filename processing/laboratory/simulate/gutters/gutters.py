@@ -32,7 +32,7 @@ from processing.laboratory.simulate.gutters.covers import (
     uncovered_share,
 )
 from processing.laboratory.simulate.gutters.dirt import add_heaps, add_plugs
-from processing.laboratory.simulate.gutters.lid_shapes import CoverShape
+from processing.laboratory.simulate.gutters.lid_shapes import SIDES_PIECE, CoverShape
 from processing.laboratory.simulate.gutters.runs import (
     CoverPosition,
     CoverStyle,
@@ -42,6 +42,7 @@ from processing.laboratory.simulate.gutters.runs import (
     wide_m,
 )
 from processing.laboratory.simulate.scene.chance import chance
+from processing.laboratory.simulate.scene.cover_truth import tell_square_cover
 from processing.laboratory.simulate.scene.materials import Material
 from processing.laboratory.simulate.scene.mesh import Floats, grid
 from processing.laboratory.simulate.scene.things import SectionBuilder, TrueFeature
@@ -116,20 +117,15 @@ def add_gutters(section: StreetSection, built: SectionBuilder) -> None:
                     heaps, position, gutter.wide_m, gutter.middle_m, bed.side
                 ),
             }
+            ring = corners_of(covers, number, position.long_m, gutter.wide_m)
+            middle = position.start_m + position.long_m / 2
+            chainage = float(np.interp(middle, gutter.arcs, bed.chainages))
             built.truth.append(
-                TrueFeature(
-                    "gutters",
-                    "Polygon",
-                    corners_of(covers, number, position.long_m, gutter.wide_m),
-                    facts,
-                    row.instance,
-                    float(
-                        np.interp(
-                            position.start_m + position.long_m / 2, gutter.arcs, bed.chainages
-                        )
-                    ),
-                )
+                TrueFeature("gutters", "Polygon", ring, facts, row.instance, chainage)
             )
+            if position.what == "grating":
+                where, which = (ring[:4], chainage, "gutter"), (row.instance, SIDES_PIECE)
+                tell_square_cover(built, where, "rain_inlet", which, is_asked=False)
             order += 1
         _add_plugs(random, built, positions, (covers, rows))
 

@@ -11,7 +11,7 @@ import numpy as np
 from processing.laboratory.simulate.gutters.aprons import grating_facts
 from processing.laboratory.simulate.gutters.beds import GUTTER, Bed, Channel, add_channel
 from processing.laboratory.simulate.gutters.covers import corners_of, cover_placement
-from processing.laboratory.simulate.gutters.lid_shapes import Grating, grating_pieces
+from processing.laboratory.simulate.gutters.lid_shapes import SIDES_PIECE, Grating, grating_pieces
 from processing.laboratory.simulate.gutters.runs import CoverPosition, CoverTilts
 from processing.laboratory.simulate.roadway.junctions import (
     CARRIAGEWAY_COLUMNS,
@@ -19,6 +19,7 @@ from processing.laboratory.simulate.roadway.junctions import (
     street_sides,
 )
 from processing.laboratory.simulate.roadway.transverse import transverse_of
+from processing.laboratory.simulate.scene.cover_truth import tell_square_cover
 from processing.laboratory.simulate.scene.materials import Material
 from processing.laboratory.simulate.scene.mesh import Floats, grid
 from processing.laboratory.simulate.scene.things import SectionBuilder, TrueFeature
@@ -87,6 +88,8 @@ def _add_gutter(section: StreetSection, built: SectionBuilder, bed: Bed) -> None
         facts = grating_facts((opening - 2 * _GAP_M, long), (run, number), bed.side)
         chainage = float(np.interp(first[number] + long / 2, arcs, bed.chainages))
         built.truth.append(TrueFeature("gutters", "Polygon", ring, facts, instance, chainage))
+        where = ring[:4], chainage, "gutter"
+        tell_square_cover(built, where, "rain_inlet", (instance, SIDES_PIECE), is_asked=False)
     _add_ends(built, bed, channel, (arcs, start), worn)
 
 

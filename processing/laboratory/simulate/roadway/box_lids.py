@@ -1,7 +1,7 @@
 """Square and oblong lids of boxes for cables, water and gas, on walks and on the carriageway.
 
-Things: ``box_lid``; no truth. Lids of walks are given with `box_lids_of`, so that nothing is set up
-on them.
+Things: ``box_lid`` (pieces: nine of the plate, then its frame), whose truth is a cover. Lids of
+walks are given with `box_lids_of`, so that nothing is set up on them.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.random import Generator
 
+from processing.laboratory.simulate.scene.cover_truth import tell_square_cover
 from processing.laboratory.simulate.scene.materials import Material
 from processing.laboratory.simulate.scene.mesh import Floats, grid
 from processing.laboratory.simulate.scene.things import SectionBuilder
@@ -27,6 +28,7 @@ _SHARES = (0.3, 0.2, 0.15, 0.1, 0.15, 0.1)
 _FRAME_M = 0.035
 _DEEP_M = 0.012
 _APART_M = 0.3
+_PIECES = 9
 
 
 @dataclass(frozen=True)
@@ -126,15 +128,20 @@ def _add_lid(section: StreetSection, built: SectionBuilder, lid: BoxLid) -> None
     inner = half - _FRAME_M
     shares = np.linspace(-1.0, 1.0, 4)
     own = np.stack(np.meshgrid(shares, shares, indexing="ij"), axis=-1)
-    built.mesh.add(
-        grid(_placed(section, lid, own * inner, lid.above_m)), lid.material, lid.label, instance
-    )
+    plate = grid(_placed(section, lid, own * inner, lid.above_m))
+    pieces = np.repeat(np.arange(_PIECES), 2)
+    built.mesh.add(plate, lid.material, lid.label, instance, piece=pieces)
     edge = np.concatenate([own[:-1, 0], own[-1, :-1], own[:0:-1, -1], own[0, ::-1]])
     rows = [
         _placed(section, lid, edge * size, above)
         for size, above in ((inner, lid.above_m), (half, lid.above_m), (half, -_DEEP_M))
     ]
-    built.mesh.add(grid(np.stack(rows)), Material.STEEL, lid.label, instance)
+    built.mesh.add(grid(np.stack(rows)), Material.STEEL, lid.label, instance, piece=_PIECES)
+    ends = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]]) * half
+    corners = _placed(section, lid, ends, lid.above_m)
+    lies_in = "walk" if lid.label == GROUND else "carriageway"
+    where = corners, lid.chainage_m, lies_in
+    tell_square_cover(built, where, "manhole_area", (instance, _PIECES))
 
 
 def _placed(section: StreetSection, lid: BoxLid, own: Floats, above_m: float) -> Floats:

@@ -1,6 +1,6 @@
 """What lies in the pavement: patches, manholes, tactile blocks on walks.
 
-Things: ``manhole``; no truth.
+Things: ``manhole``, whose truth is a cover: sectors of two rings are its pieces.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ import numpy as np
 
 from processing.laboratory.simulate.roadway.paint import add_sheet
 from processing.laboratory.simulate.scene.chance import chance
+from processing.laboratory.simulate.scene.cover_truth import tell_round_cover
 from processing.laboratory.simulate.scene.materials import Material
 from processing.laboratory.simulate.scene.mesh import Floats, grid
 from processing.laboratory.simulate.scene.things import NO_THING, SectionBuilder
@@ -21,6 +22,10 @@ from processing.laboratory.simulate.street.surfaces import asphalt_of
 from processing.laboratory.simulate.street.walk_lines import first_of_walk, walk_lines
 
 _DISC_SIDES = 24
+_SECTORS = 12
+_JOINT_M, _FRAME_M = (0.004, 0.012), (0.02, 0.05)  # between a cover and its frame, and the frame
+_LOW_M = 0.0005
+_COLLAR_M = (0.08, 0.35)  # of new asphalt about a frame that was set anew
 _BLOCK_M = 0.3  # 視覚障害者誘導用ブロック, JIS T 9251: 30 cm squares, dots and bars 5 mm high
 _BLOCK_HIGH_M = 0.003
 _FROM_CURB_M = 0.3
@@ -86,13 +91,42 @@ def _add_disc(
     radius: float,
     above: float,
 ) -> None:
+    """A cover in its frame, with a joint between; about some a collar of other asphalt."""
+    random = section.chance("looks of a manhole", built.first_instance + len(built.things))
+    iron = (Material.STEEL, Material.OLD_IRON)[int(random.random() < 0.5)]
+    if random.random() < 0.3:
+        _add_collar(section, built, where, radius + float(random.uniform(*_COLLAR_M)))
+    inner = radius - min(float(random.uniform(*_FRAME_M)), 0.3 * radius)
+    joint = inner - float(random.uniform(*_JOINT_M))
+    rings = np.array([0.02 * radius, joint / 2, joint, joint, inner, inner, radius, radius])
+    heights = np.array([above, above, above, _LOW_M, _LOW_M, above, above, -0.01])
+    materials = np.full(len(rings) - 1, int(iron), np.uint8)
+    materials[3] = Material.JOINT
     angles = np.linspace(0, 2 * np.pi, _DISC_SIDES + 1)
-    rings = np.array([0.02, 0.5, 1.0, 1.0]) * radius
-    heights = np.array([above, above, above, -0.01])
     chainage = where[0] + rings[:, None] * np.cos(angles)
     offset = where[1] + rings[:, None] * np.sin(angles)
     rows = section.position(chainage, offset, heights[:, None])
-    built.mesh.add(grid(rows), Material.STEEL, ROAD, built.thing("manhole"))
+    instance = built.thing("manhole")
+    sector = np.arange(_DISC_SIDES) * _SECTORS // _DISC_SIDES
+    is_outer = (np.arange(len(rings) - 1) > 1)[:, None]
+    piece = np.repeat((sector + _SECTORS * is_outer).ravel(), 2)
+    each = np.repeat(materials, 2 * _DISC_SIDES)
+    built.mesh.add(grid(rows), each, ROAD, instance, piece=piece)
+    middle = section.position(*where, above)
+    tell_round_cover(built, (middle, where[0]), 2 * radius, (instance, 2 * _SECTORS))
+
+
+def _add_collar(
+    section: StreetSection, built: SectionBuilder, where: tuple[float, float], radius: float
+) -> None:
+    old = asphalt_of(section.seed)
+    other = Material.ASPHALT if old == Material.WORN_ASPHALT else Material.WORN_ASPHALT
+    angles = np.linspace(0, 2 * np.pi, _DISC_SIDES + 1)
+    rings = np.array([0.02, 0.5, 1.0, 1.0])[:, None] * radius
+    chainage, offset = where[0] + rings * np.cos(angles), where[1] + rings * np.sin(angles)
+    heights = np.array([0.002, 0.002, 0.002, -0.01])[:, None]
+    rows = section.position(chainage, offset, heights)
+    built.mesh.add(grid(rows), other, ROAD, NO_THING)
 
 
 def _add_tactile(section: StreetSection, side: int, built: SectionBuilder) -> None:

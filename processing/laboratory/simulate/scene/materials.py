@@ -39,6 +39,8 @@ class Material(IntEnum):
     WATER = auto()
     PLASTIC = auto()
     NET = auto()
+    OLD_IRON = auto()
+    JOINT = auto()
 
 
 @dataclass(frozen=True)
@@ -114,4 +116,7 @@ SURFACES: dict[Material, SurfaceOptics] = {
     Material.WATER: SurfaceOptics(0.03, 0.2, 0.003, 0.1, shine=0.9, colour=(70, 84, 86)),
     Material.PLASTIC: SurfaceOptics(0.5, 0.1, 0.0005, 0.1, colour=(226, 112, 40)),
     Material.NET: SurfaceOptics(0.4, 0.15, 0.002, 0.05, is_open=True, colour=(70, 128, 96)),
+    # Cast iron with a pattern a few mm high, dark with rust and dirt; dirt in the joint of a frame.
+    Material.OLD_IRON: SurfaceOptics(0.08, 0.2, 0.0015, 0.03, shine=0.1, colour=(78, 70, 64)),
+    Material.JOINT: SurfaceOptics(0.07, 0.25, 0.001, 0.02, colour=(60, 56, 50)),
 }

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from processing.core.arrays import Floats
 from processing.core.monitor import Monitor, PartMonitor
@@ -184,7 +185,7 @@ def _steps_to_way(raster: PaintRaster, markings: Sequence[MarkingLine]) -> list[
         asked = one.line[np.linspace(0, len(one.line) - 1, _ASKED_PLACES).astype(np.int64)]
         nearest = np.asarray(tree.query(asked)[1])
         found = [
-            _highest_step(raster, place, raster.path[way])
+            highest_step(raster.table, raster.heights, place, raster.path[way])
             for place, way in zip(asked, nearest.tolist(), strict=True)
         ]
         told = [step for step in found if np.isfinite(step)]
@@ -192,13 +193,26 @@ def _steps_to_way(raster: PaintRaster, markings: Sequence[MarkingLine]) -> list[
     return steps
 
 
-def _highest_step(raster: PaintRaster, start: Floats, end: Floats) -> float:
-    """The most that the road rises or falls from one side of a place to the other, by its slope."""
+def highest_step(table: NDArray[np.int32], surface: Floats, start: Floats, end: Floats) -> float:
+    """The most that the road rises or falls beyond its slope, on the way between two places.
+
+    Parameters
+    ----------
+    table : (nx, ny) int32
+        The numbers of the tiles of ``surface``.
+    surface : (tiles × 64²,) float64
+        Its heights in cells of 20 cm, m; NaN where it wasn't seen.
+
+    Returns
+    -------
+    float
+        m; NaN where nothing was seen.
+    """
     long = float(np.hypot(*(end - start)))
     share = np.arange(0.0, long, _ASIDE_M)[:, None] / max(long, _ASIDE_M)
     places = start + share * (end - start)
     heights = np.empty(len(places))
-    surface_kernel(places, raster.table, raster.heights, heights)
+    surface_kernel(places, table, surface, heights)
     known = np.flatnonzero(np.isfinite(heights))
     if known.size == 0:
         return float("nan")

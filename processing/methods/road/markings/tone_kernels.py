@@ -216,7 +216,7 @@ def paint_kernel(
     for point in range(len(local)):
         if not is_road[point]:
             continue
-        own = _own_tone(local[point, 0], local[point, 1], table, levels)
+        own = own_tone(local[point, 0], local[point, 1], table, levels)
         if math.isnan(own) or own <= 0.0:
             continue
         share = (intensity[point] - own) / (contrast * own)
@@ -230,7 +230,7 @@ def paint_kernel(
 
 
 @kernel
-def _own_tone(
+def own_tone(
     east: float, north: float, table: NDArray[np.int32], levels: NDArray[np.float32]
 ) -> float:
     """The road's own tone at a place: between the middles of the four cells around it."""

@@ -122,7 +122,7 @@ def test_counts_of_the_truth_are_those_of_the_points(made: DeliveryMaker) -> Non
         for one in json.loads((truth / f"{name}.geojson").read_text())["features"]:
             facts = one["properties"]
             seen = int((instances == facts["instance"]).sum())
-            if name in ("trees", "poles", "gutters", "wires", "markings", "barriers"):
+            if name in ("trees", "poles", "gutters", "wires", "markings", "barriers", "covers"):
                 assert facts["points"] == seen
             elif name == "curbs":
                 # Edges of one run share their points; pieces beyond the line belong to none.

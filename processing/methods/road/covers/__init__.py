@@ -1,0 +1,1 @@
+"""Covers in carriageways and walks: manholes, valves, hand holes, gratings of inlets."""

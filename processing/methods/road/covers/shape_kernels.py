@@ -1,0 +1,440 @@
+"""Loops over the cells about a place: the circle or rectangle that parts them best."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.core.arrays import Floats
+from processing.core.kernels import kernel
+
+SECTORS = 12
+"""Of a cover's edge."""
+
+BAND_M = 0.1
+"""Of an edge's inside and outside that are compared: so near to each other that patches of dirt and
+water, which change over decimetres, hardly differ."""
+
+CHANNELS = 3
+"""Tone, height, share of points below the surface."""
+
+PATCHY = (0.05, 0.001, 0.03)
+"""What the bands on both sides of any edge on a road differ by, where nothing lies: dirt, damp and
+wheels' polish change tones by as much over a decimetre, texture and ruts heights, m (mean profile
+depths of 0.3 to 1.5 mm, ISO 13473-1)."""
+
+_OCTANTS, _FEWEST = 8, 20
+_STEEP_M = 0.06
+"""How far a road rises within a metre; curbs are higher."""
+
+_OF_MEDIAN = 1.0 / (0.6745 * math.sqrt(2.0))
+"""Standard deviation of a value over the median size of the difference of two."""
+
+_LEAST_SEEN = 1.0
+"""Weight of the cells of a band in an eighth of an edge."""
+
+_STEPS_M = (0.08, 0.04, 0.02, 0.01)
+"""Of the search around the best start; a fifth of what is asked for at the end."""
+
+_TURN_RAD = (0.2, 0.12, 0.06, 0.03)
+_ROUNDS = 4
+_MOST_STARTS = 24
+_LEAST_BEGUN = 16.0
+"""Of an edge before it is moved into its place: chance alone makes a mean of 2."""
+
+_SMALLEST_M, _LARGEST_M = 0.06, 0.75
+"""Half a cover's side, least and most."""
+
+_MOST_LONG = 2.6
+"""Length over width of covers."""
+
+_RATIOS = ((0.88, 0.88), (1.0, 0.75), (1.25, 0.62), (1.7, 0.85), (1.35, 0.9))
+"""Half sides of rectangles that are begun with, over the radius of the best circle."""
+
+
+@kernel
+def depth_of(cell: Floats, shape: Floats) -> float:
+    """How far a cell's middle lies within a shape's edge; negative outside.
+
+    ``shape``: middle, half length and half width, angle; a half width of 0 makes it a circle.
+    """
+    x, y = cell[0] - shape[0], cell[1] - shape[1]
+    if shape[3] <= 0.0:
+        return float(shape[2] - math.sqrt(x * x + y * y))
+    cosine, sine = math.cos(shape[4]), math.sin(shape[4])
+    along, across = abs(x * cosine + y * sine), abs(y * cosine - x * sine)
+    return float(min(shape[2] - along, shape[3] - across))
+
+
+@kernel
+def gain_of(cells: Floats, noise: Floats, cell_m: float, shape: Floats) -> float:
+    """How surely a shape's edge parts something, all around: a sum of squares of t-values.
+
+    In eight sectors of the edge the means of a band inside and one outside are compared. Of each
+    channel the mean difference is held against what it would vary by: the noise of cells, and how
+    much it differs from sector to sector. What dirt and water part differs from sector to sector.
+
+    ``cells``: (n, 7) place, tone, height, share below, weight of the first two, weight of all.
+    ``noise``: standard deviations of the three. Cells on the edge itself count by how far they lie
+    off it.
+    """
+    sums = np.zeros((_OCTANTS, 2, 7))
+    long = shape[3] > 0.0
+    cosine, sine = math.cos(shape[4]), math.sin(shape[4])
+    for k in range(len(cells)):
+        x, y = cells[k, 0] - shape[0], cells[k, 1] - shape[1]
+        if long:
+            x, y = x * cosine + y * sine, y * cosine - x * sine
+            along, across = abs(x), abs(y)
+            depth = min(shape[2] - along, shape[3] - across)
+            if depth < 0.0 and shape[2] < along and shape[3] < across:
+                continue
+            along /= shape[2]
+            across /= shape[3]
+        else:
+            along, across = abs(x), abs(y)
+            depth = shape[2] - math.sqrt(x * x + y * y)
+        if depth > BAND_M or depth < -BAND_M:
+            continue
+        octant = (1 if x > 0 else 0) + (2 if y > 0 else 0) + (4 if along > across else 0)
+        own = sums[octant, 0 if depth > 0 else 1]
+        part = min(abs(depth) / (0.5 * cell_m), 1.0)
+        w, v = part * cells[k, 5], part * cells[k, 6]
+        own[0] += w
+        own[1] += w * cells[k, 2]
+        own[2] += w * cells[k, 3]
+        own[3] += v
+        own[4] += v * cells[k, 4]
+        own[5] += w * cells[k, 2] * cells[k, 2]
+        own[6] += w * cells[k, 3] * cells[k, 3]
+    return _sure_of(sums, noise)
+
+
+@kernel
+def _sure_of(sums: Floats, noise: Floats) -> float:
+    """The sum of the squares of three t-values, each 0 where three sectors or more weren't seen."""
+    found = 0.0
+    for channel in range(CHANNELS):
+        weight = 3 if channel == 2 else 0
+        value = (1, 2, 4)[channel]
+        total, mean, square, rest, mixed = 0.0, 0.0, 0.0, 0.0, 0.0
+        for k in range(_OCTANTS):
+            one, other = sums[k, 0, weight], sums[k, 1, weight]
+            if one < _LEAST_SEEN or other < _LEAST_SEEN:
+                continue
+            inner, outer = sums[k, 0, value] / one, sums[k, 1, value] / other
+            off = inner - outer
+            if channel < 2:
+                mixed += (sums[k, 0, 5 + channel] / one - inner * inner) / 2
+                mixed += (sums[k, 1, 5 + channel] / other - outer * outer) / 2
+            total += 1.0
+            mean += off
+            square += off * off
+            rest += 1.0 / one + 1.0 / other
+        if total < _OCTANTS - 2:
+            continue
+        mean /= total
+        between = max(square / total - mean * mean, 0.0) * total / (total - 1.0)
+        within = noise[channel] ** 2 * rest / total
+        # Bands that hold more than one thing, as both sides of a line, are no cover's.
+        patchy = PATCHY[channel] ** 2 + max(mixed / total - 2.0 * noise[channel] ** 2, 0.0)
+        found += total * mean * mean / (max(between, within) + patchy)
+    return found
+
+
+@kernel
+def fit_shapes(
+    cells: Floats, noise: Floats, cell_m: float, starts: tuple[Floats, Floats], shapes: Floats
+) -> tuple[float, float]:
+    """The best circle and the best rectangle about a place; their gains, 0 where there is none.
+
+    ``starts``: radii of circles about the middle, and half sides of boxes there. ``shapes``: (2, 5)
+    gets them.
+    """
+    radii, boxes = starts
+    shifted, begun = np.zeros(5), np.zeros((_MOST_STARTS, 5))
+    best, other = 0.0, 0.0
+    for k in range(len(radii)):
+        shifted[2] = radii[k]
+        gain = gain_of(cells, noise, cell_m, shifted)
+        if gain > best:
+            best = gain
+            shapes[0] = shifted
+    for k in range(rectangles_about(shapes[0], boxes, begun)):
+        gain = gain_of(cells, noise, cell_m, begun[k])
+        if gain > other:
+            other = gain
+            shapes[1] = begun[k]
+    if max(best, other) < _LEAST_BEGUN:
+        return 0.0, 0.0
+    if best > 0.0:
+        best = _climb(cells, noise, cell_m, best, shapes[0])
+    # What the best circle tells after its climb is worth a second look.
+    for k in range(rectangles_about(shapes[0], boxes, begun)):
+        gain = gain_of(cells, noise, cell_m, begun[k])
+        if gain > other:
+            other = gain
+            shapes[1] = begun[k]
+    if other > 0.0:
+        other = _climb(cells, noise, cell_m, other, shapes[1])
+    return best, other
+
+
+@kernel
+def rectangles_about(circle: Floats, box: Floats, start: Floats) -> int:
+    """Rectangles to begin with: a box, and those as large as a circle; how many.
+
+    ``start``: (n, 5) gets them.
+    """
+    start[:] = 0.0
+    start[0, 2], start[0, 3] = box[0], box[1]
+    start[1, 2], start[1, 3] = box[0], box[1]
+    start[1, 4] = math.pi / 4
+    count = 2
+    if circle[2] <= 0.0:
+        return count
+    for one in range(len(_RATIOS)):
+        long, wide = _RATIOS[one]
+        for turn in range(4 if long > wide else 2):
+            start[count, 0], start[count, 1] = circle[0], circle[1]
+            start[count, 2] = min(max(circle[2] * long, _SMALLEST_M), _LARGEST_M)
+            start[count, 3] = min(max(circle[2] * wide, _SMALLEST_M), _LARGEST_M)
+            start[count, 4] = turn * math.pi / 4
+            count += 1
+    return count
+
+
+@kernel
+def _climb(cells: Floats, noise: Floats, cell_m: float, gain: float, shape: Floats) -> float:
+    """Move a shape's middle and edges by smaller and smaller steps while that gains."""
+    shifted = np.empty(5)
+    moves = 6 if shape[3] <= 0.0 else 10
+    for level in range(len(_STEPS_M)):
+        for _ in range(_ROUNDS):
+            moved = False
+            for move in range(moves):
+                shifted[:] = shape
+                _move(shifted, move, level)
+                if not _is_cover(shifted):
+                    continue
+                value = gain_of(cells, noise, cell_m, shifted)
+                if value > gain:
+                    gain = value
+                    shape[:] = shifted
+                    moved = True
+            if not moved:
+                break
+    return gain
+
+
+@kernel
+def _move(shape: Floats, move: int, level: int) -> None:
+    """One of the small moves: of a circle's middle and radius, of a rectangle's sides and angle."""
+    step = _STEPS_M[level] if move % 2 == 0 else -_STEPS_M[level]
+    if shape[3] <= 0.0:
+        shape[move // 2] += step
+    elif move < 8:
+        # One side moves, and the middle by half of that.
+        axis, end = (move // 2) % 2, 1.0 if move < 4 else -1.0
+        angle = shape[4] + axis * math.pi / 2
+        shape[2 + axis] += step / 2
+        shape[0] += end * math.cos(angle) * step / 2
+        shape[1] += end * math.sin(angle) * step / 2
+    else:
+        shape[4] += _TURN_RAD[level] if move == 8 else -_TURN_RAD[level]
+
+
+@kernel
+def _is_cover(shape: Floats) -> bool:
+    """Whether a shape is as large and as long as covers may be."""
+    if not _SMALLEST_M <= shape[2] <= _LARGEST_M:
+        return False
+    if shape[3] <= 0.0:
+        return True
+    long, wide = max(shape[2], shape[3]), min(shape[2], shape[3])
+    return bool(wide >= _SMALLEST_M and long <= _LARGEST_M and long <= _MOST_LONG * wide)
+
+
+@kernel
+def edge_kernel(cells: Floats, shape: Floats, found: Floats, core: Floats) -> None:
+    """What lies inside and outside of a shape's edge, sector by sector, and within.
+
+    ``found``: (SECTORS, 2, 5) of the bands inside and outside: weight, tone, height, weight of all,
+    share below. ``core``: (4, 5) the same of all that lies inside; number of its cells and weighted
+    squares of their tones and heights; the same as the first of the halves of the bands that are
+    next to the edge, inside and outside.
+    """
+    found[:] = 0.0
+    core[:] = 0.0
+    for k in range(len(cells)):
+        depth = depth_of(cells[k], shape)
+        w, v = cells[k, 5], cells[k, 6]
+        t, h = cells[k, 2], cells[k, 3]
+        if depth > 0.02:
+            core[0, 0] += w
+            core[0, 1] += w * t
+            core[0, 2] += w * h
+            core[0, 3] += v
+            core[0, 4] += v * cells[k, 4]
+            core[1, 0] += 1.0
+            core[1, 1] += w * t * t
+            core[1, 2] += w * h * h
+        if not -BAND_M < depth < BAND_M or abs(depth) < 0.015:
+            continue
+        x, y = cells[k, 0] - shape[0], cells[k, 1] - shape[1]
+        if shape[3] > 0.0:
+            cosine, sine = math.cos(shape[4]), math.sin(shape[4])
+            x, y = (x * cosine + y * sine) / shape[2], (y * cosine - x * sine) / shape[3]
+        if abs(depth) < BAND_M / 2:
+            near = core[2 if depth > 0 else 3]
+            near[0] += w
+            near[1] += w * t
+            near[2] += w * h
+            near[3] += v
+            near[4] += v * cells[k, 4]
+        sector = int((math.atan2(y, x) / (2 * math.pi) + 0.5) * SECTORS) % SECTORS
+        side = 0 if depth > 0 else 1
+        found[sector, side, 0] += w
+        found[sector, side, 1] += w * t
+        found[sector, side, 2] += w * h
+        found[sector, side, 3] += v
+        found[sector, side, 4] += v * cells[k, 4]
+    for sector in range(SECTORS):
+        for side in range(2):
+            _to_means(found[sector, side])
+    for row in (0, 2, 3):
+        _to_means(core[row])
+
+
+@kernel
+def _to_means(sums: Floats) -> None:
+    if sums[0] > 0:
+        sums[1] /= sums[0]
+        sums[2] /= sums[0]
+    if sums[3] > 0:
+        sums[4] /= sums[3]
+
+
+@kernel
+def cells_about(
+    layers: NDArray[np.float32], place: tuple[float, float], reach: float, cells: Floats
+) -> int:
+    """The cells of a window about a place; how many.
+
+    ``place``, ``reach``: in cells. ``cells`` gets places in cells from the place, then what the
+    layers hold, and the differences to the next cells' tones and heights; NaN where there is none.
+    """
+    size = layers.shape[1]
+    count = 0
+    for i in range(max(0, int(place[0] - reach)), min(size, int(place[0] + reach) + 1)):
+        for j in range(max(0, int(place[1] - reach)), min(size, int(place[1] + reach) + 1)):
+            x, y = i + 0.5 - place[0], j + 0.5 - place[1]
+            if layers[3, i, j] <= 0 or x * x + y * y > reach * reach or count >= len(cells):
+                continue
+            cells[count, 0], cells[count, 1] = x, y
+            cells[count, 2], cells[count, 3] = layers[1, i, j], layers[2, i, j]
+            cells[count, 4] = layers[4, i, j]
+            cells[count, 5], cells[count, 6] = layers[0, i, j], layers[3, i, j]
+            cells[count, 7] = cells[count, 8] = np.nan
+            if j > 0 and layers[0, i, j] > 0 and layers[0, i, j - 1] > 0:
+                cells[count, 7] = layers[1, i, j] - layers[1, i, j - 1]
+                cells[count, 8] = layers[2, i, j] - layers[2, i, j - 1]
+            count += 1
+    return count
+
+
+@kernel
+def noise_kernel(cells: Floats, noise: Floats) -> None:
+    """Raise the least standard deviations of single cells to those of neighbours' differences."""
+    for channel in range(2):
+        steps = np.empty(len(cells))
+        count = 0
+        for k in range(len(cells)):
+            if not math.isnan(cells[k, 7 + channel]):
+                steps[count] = abs(cells[k, 7 + channel])
+                count += 1
+        if count >= _FEWEST:
+            noise[channel] = max(noise[channel], _OF_MEDIAN * float(np.median(steps[:count])))
+
+
+@kernel
+def level_kernel(cells: Floats, half: tuple[float, float], off_m: float, plane: Floats) -> bool:
+    """Take off the heights the plane of the road about a box, and leave out what is far off it.
+
+    Three rounds, each without what lies far off the plane before; the first is held against the
+    middle height. Cells that are left out, and those without points of the surface, have no weight
+    and no tone. False: too few cells tell.
+    """
+    chosen, off, rest = np.empty(len(cells), np.bool_), np.zeros(len(cells)), np.empty(len(cells))
+    middle, spread = 0.0, np.inf
+    off[:] = cells[:, 3]
+    chosen[:] = cells[:, 5] > 0
+    for turn in range(4):
+        if turn > 0:
+            _choose(cells, off, half, (middle, 3.0 * spread), chosen)
+            if chosen.sum() < _FEWEST or not _plane_of(cells, chosen, plane):
+                return False
+            off[:] = cells[:, 3] - plane[0] - plane[1] * cells[:, 0] - plane[2] * cells[:, 1]
+        count = 0
+        for k in range(len(cells)):
+            if chosen[k]:
+                rest[count] = off[k]
+                count += 1
+        if count < _FEWEST:
+            return False
+        middle = float(np.median(rest[:count]))
+        spread = max(1.5 * float(np.median(np.abs(rest[:count] - middle))), 0.001)
+        if turn == 0:
+            spread = _STEEP_M / 3.0
+    for k in range(len(cells)):
+        cells[k, 3] = off[k]
+        if cells[k, 5] <= 0 or abs(off[k]) > off_m:
+            cells[k, 2:4] = 0.0
+            cells[k, 6] = 0.0 if cells[k, 5] > 0 else cells[k, 6]
+            cells[k, 5] = 0.0
+    return True
+
+
+@kernel
+def _choose(
+    cells: Floats,
+    off: Floats,
+    half: tuple[float, float],
+    near: tuple[float, float],
+    chosen: NDArray[np.bool_],
+) -> None:
+    """Which cells lie about a box, with a height off the plane so near to a middle one."""
+    for k in range(len(cells)):
+        is_about = abs(cells[k, 0]) > half[0] or abs(cells[k, 1]) > half[1]
+        chosen[k] = is_about and cells[k, 5] > 0 and abs(off[k] - near[0]) < near[1]
+
+
+@kernel
+def _plane_of(cells: Floats, chosen: NDArray[np.bool_], plane: Floats) -> bool:
+    """The plane of heights through some cells: height at the middle, and rise along both axes."""
+    s = np.zeros(9)
+    for k in range(len(cells)):
+        if chosen[k]:
+            x, y, h = cells[k, 0], cells[k, 1], cells[k, 3]
+            s[0] += 1.0
+            s[1] += x
+            s[2] += y
+            s[3] += x * x
+            s[4] += x * y
+            s[5] += y * y
+            s[6] += h
+            s[7] += x * h
+            s[8] += y * h
+    n = s[0]
+    mx, my, mh = s[1] / n, s[2] / n, s[6] / n
+    xx, xy, yy = s[3] / n - mx * mx, s[4] / n - mx * my, s[5] / n - my * my
+    xh, yh = s[7] / n - mx * mh, s[8] / n - my * mh
+    det = xx * yy - xy * xy
+    if det <= 0.02 * xx * yy or det <= 0.0:
+        return False
+    plane[1] = (xh * yy - yh * xy) / det
+    plane[2] = (yh * xx - xh * xy) / det
+    plane[0] = mh - plane[1] * mx - plane[2] * my
+    return True
