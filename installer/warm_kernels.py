@@ -37,7 +37,17 @@ LATER = (
 DEMO_TOOLS = ("classify", "curbs", "gutters", "noise", "ground")
 """What the demo runs; the slowest first, so that no process waits for another at the end."""
 
-TOOLS = (*DEMO_TOOLS, "wires", "signs", "trees", "markings", "barriers", "segments", "normals")
+TOOLS = (
+    *DEMO_TOOLS,
+    "wires",
+    "signs",
+    "trees",
+    "markings",
+    "barriers",
+    "edges",
+    "segments",
+    "normals",
+)
 """Tools with kernels that run on a drive as it is."""
 
 TRAINING = (

@@ -12,6 +12,7 @@ from __future__ import annotations
 from processing.core.text import Text
 from processing.scoring.features.barriers import barrier_score
 from processing.scoring.features.curb_lines import curb_score
+from processing.scoring.features.edges import edge_score
 from processing.scoring.features.file_scores import FeatureScorer, VolumeScorer
 from processing.scoring.features.gutters import gutter_score
 from processing.scoring.features.markings import marking_score
@@ -85,6 +86,7 @@ WIRE_SCORER = FeatureScorer("wires", Text("Wires", "架線"), wire_score)
 MARKING_SCORER = FeatureScorer("markings", Text("Road markings", "区画線"), marking_score)
 BARRIER_SCORER = FeatureScorer("barriers", Text("Barriers", "防護柵・柵"), barrier_score)
 WALL_SCORER = FeatureScorer("walls", Text("Walls and buildings", "塀・擁壁・建物"), wall_score)
+EDGE_SCORER = FeatureScorer("edges", Text("Edges of the carriageway", "車道の縁"), edge_score)
 VOLUME_SCORER = VolumeScorer("volume", Text("Volumes", "土量"), volume_score)
 ECHO_SCORER = EchoScorer(
     "waveform-decompose", Text("Echoes of waveforms", "波形の分解"), flight_echo_score

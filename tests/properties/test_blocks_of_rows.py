@@ -36,6 +36,7 @@ from processing.tools.noise import NOISE, NoiseParameters
 from processing.tools.normals import NORMALS, NormalsParameters
 from processing.tools.poles import POLES
 from processing.tools.road_map.barriers import BARRIERS
+from processing.tools.road_map.edges import EDGES
 from processing.tools.road_map.markings import MARKINGS
 from processing.tools.road_map.walls import WALLS
 from processing.tools.running.blocks import JoinedResults, blocks_of
@@ -92,6 +93,7 @@ CHUNKS = (
     MARKINGS.id,
     BARRIERS.id,
     WALLS.id,
+    EDGES.id,
 )
 """Tools that find candidates, and read the street a stretch at a time."""
 

@@ -24,6 +24,7 @@ from processing.tools.normals import NORMALS
 from processing.tools.poles import POLES
 from processing.tools.register import REGISTER
 from processing.tools.road_map.barriers import BARRIERS
+from processing.tools.road_map.edges import EDGES
 from processing.tools.road_map.markings import MARKINGS
 from processing.tools.road_map.walls import WALLS
 from processing.tools.segments import SEGMENTS
@@ -46,6 +47,7 @@ _DECLARED = (
     MARKINGS,
     BARRIERS,
     WALLS,
+    EDGES,
     NOISE,
     GROUND_TOOL,
     CLASSIFY,

@@ -13,7 +13,16 @@ from processing.laboratory.simulate.scene.mesh import Floats, Mesh, MeshBuilder
 
 Fact = str | int | float | bool | list[float] | None
 TruthFile = Literal[
-    "curbs", "gutters", "trees", "signs", "poles", "wires", "markings", "barriers", "walls"
+    "curbs",
+    "gutters",
+    "trees",
+    "signs",
+    "poles",
+    "wires",
+    "markings",
+    "barriers",
+    "walls",
+    "edges",
 ]
 
 THINGS_PER_SECTION = 20_000
@@ -45,7 +54,7 @@ class TrueFeature:
     ----------
     file : str
         Whose truth it belongs to: ``curbs``, ``gutters``, ``trees``, ``signs``, ``poles``,
-        ``wires``, ``markings``, ``barriers``, ``walls``.
+        ``wires``, ``markings``, ``barriers``, ``walls``, ``edges``.
     geometry : str
         ``Point``, ``LineString`` or ``Polygon`` (closed ring).
     xyz : (n, 3) float64
