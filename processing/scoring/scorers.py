@@ -14,6 +14,7 @@ from processing.scoring.features.barriers import barrier_score
 from processing.scoring.features.clearances import clearance_score
 from processing.scoring.features.covers import cover_score
 from processing.scoring.features.curb_lines import curb_score
+from processing.scoring.features.edges import edge_score
 from processing.scoring.features.file_scores import FeatureScorer, VolumeScorer
 from processing.scoring.features.gutters import gutter_score
 from processing.scoring.features.markings import marking_score
@@ -91,6 +92,7 @@ CLEARANCE_SCORER = FeatureScorer(
     "clearance", Text("Clearance over the road", "建築限界"), clearance_score
 )
 COVER_SCORER = FeatureScorer("covers", Text("Covers and inlets", "マンホール・蓋"), cover_score)
+EDGE_SCORER = FeatureScorer("edges", Text("Edges of the carriageway", "車道の縁"), edge_score)
 VOLUME_SCORER = VolumeScorer("volume", Text("Volumes", "土量"), volume_score)
 ECHO_SCORER = EchoScorer(
     "waveform-decompose", Text("Echoes of waveforms", "波形の分解"), flight_echo_score

@@ -38,6 +38,7 @@ from processing.tools.poles import POLES
 from processing.tools.road_map.barriers import BARRIERS
 from processing.tools.road_map.clearance import CLEARANCE
 from processing.tools.road_map.covers import COVERS
+from processing.tools.road_map.edges import EDGES
 from processing.tools.road_map.markings import MARKINGS
 from processing.tools.road_map.walls import WALLS
 from processing.tools.running.blocks import JoinedResults, blocks_of
@@ -96,6 +97,7 @@ CHUNKS = (
     WALLS.id,
     CLEARANCE.id,
     COVERS.id,
+    EDGES.id,
 )
 """Tools that find candidates, and read the street a stretch at a time."""
 

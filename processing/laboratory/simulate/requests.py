@@ -65,6 +65,8 @@ class StreetRequest:
         What time made of the kerb stones.
     avenue : bool
         Rows of large trees along both sides, with posts and lamps under their crowns.
+    flush : bool
+        Most sides have no curb: flush walks, shoulders of gravel and soil.
     noise : float
         How many times as many points of nothing as such a scanner usually gives.
     """
@@ -203,6 +205,14 @@ class StreetRequest:
         explanation=Text(
             "Rows of large trees whose crowns touch each other and hang over posts and lamps.",
             "樹冠が互いに接し、標識柱や街灯の上に覆いかぶさる大きな並木。",
+        ),
+    )
+    flush: bool = switch(
+        default=False,
+        name=Text("Sides without curbs", "縁石のない道路"),
+        explanation=Text(
+            "On most sides no curb stands: flush walks, shoulders of gravel and soil.",
+            "縁石を設けず、段差のない歩道や、砂利・土の路肩とする区間が大半になります。",
         ),
     )
     noise: float = ratio(

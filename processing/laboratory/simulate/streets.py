@@ -24,6 +24,7 @@ from processing.laboratory.simulate.cameras.photographs import (
 from processing.laboratory.simulate.cameras.rigs import poses_of_pass, rig_of
 from processing.laboratory.simulate.cameras.seen_street import SeenStreet
 from processing.laboratory.simulate.control_points import write_control_points
+from processing.laboratory.simulate.edge_evidence import EdgeEvidence
 from processing.laboratory.simulate.moving_traffic.moving import movers_of
 from processing.laboratory.simulate.requests import StreetRequest
 from processing.laboratory.simulate.road_truth.clearance_evidence import ClearanceEvidence
@@ -95,7 +96,12 @@ def simulate_street(request: StreetRequest, folder: Path, monitor: Monitor) -> S
     with write_whole_folder(folder) as hidden:
         (hidden / "truth").mkdir()
         street = Street(
-            request.seed, style, request.length_m, request.wear, is_avenue=request.avenue
+            request.seed,
+            style,
+            request.length_m,
+            request.wear,
+            is_avenue=request.avenue,
+            is_flush=request.flush,
         )
         work = _Work(request, street, sensor, hidden)
         for number in range(request.passes):
@@ -159,7 +165,7 @@ class _Work:
             request.wander_m,
         )
         self.evidence = Evidence()
-        self.walls = WallEvidence(())
+        self.walls, self.edges = WallEvidence(()), EdgeEvidence(())
         self.clearance = ClearanceEvidence(street, request.length_m)
         self.point_files: list[str] = []
         self.trajectories: list[str] = []
@@ -191,6 +197,7 @@ class _Work:
                     self.truth.setdefault((section.plan.index, position), one)
         if number == 0:  # later passes are along the same street
             self.walls = WallEvidence(self.truth.values())
+            self.edges = EdgeEvidence(self.truth.values())
         with self._files(number) as files:
             for chunk in recording.chunks(PartMonitor(monitor, 0.0, points_share)):
                 self._write(driven, number, chunk, files[chunk.head.name])
@@ -203,7 +210,7 @@ class _Work:
     def finish(self) -> None:
         """Write truth, and what the whole is."""
         truth = self.folder / "truth"
-        seen = RecordingEvidence.by(self.passes[0], self.evidence, self.walls)
+        seen = RecordingEvidence.by(self.passes[0], self.evidence, (self.walls, self.edges))
         features = list(self.truth.values())
         objects = write_truth(truth, features, seen, self.origin)
         self.clearance.write(truth, self.things, self.origin, CRS_NAME)
@@ -283,6 +290,7 @@ class _Work:
         self.evidence.count([returns])
         self.walls.count(returns)
         self.clearance.count(returns)
+        self.edges.count(returns)
 
     def _mounted_rad(self, driven: SimulatedPass, head: Head) -> Floats:
         """(3,) how far a head is turned from what its calibration says; see `SimulatedPass`."""

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from processing.formats.vectors.geojson import write_members
+from processing.laboratory.simulate.edge_evidence import EdgeEvidence
 from processing.laboratory.simulate.scanning.delivered_files import CRS_NAME
 from processing.laboratory.simulate.scanning.recording import Evidence
 from processing.laboratory.simulate.scanning.simulated_passes import SimulatedPass
@@ -23,7 +24,7 @@ from processing.laboratory.simulate.wall_evidence import WallEvidence
 
 TRUTH_FILES = (
     *("curbs", "gutters", "trees", "signs", "poles", "wires", "markings"),
-    *("barriers", "walls", "covers"),
+    *("barriers", "walls", "edges", "covers"),
 )
 CURB_PIECE_M, CURB_SECTION_M = 0.5, 2.0
 BREAST_PIECES, TRUNK_PIECE = range(1, 37), 37
@@ -46,19 +47,24 @@ class RecordingEvidence:
         Points by thing and piece.
     walls : WallEvidence
         Points by piece of a wall's foot.
+    edges : EdgeEvidence
+        Points by piece of an edge of the carriageway.
     path : (n, 3) float64
         Where the vehicle drove, m, the street's frame.
     """
 
     evidence: Evidence
     walls: WallEvidence
+    edges: EdgeEvidence
     path: Floats
 
     @staticmethod
-    def by(driven: SimulatedPass, evidence: Evidence, walls: WallEvidence) -> RecordingEvidence:
+    def by(
+        driven: SimulatedPass, evidence: Evidence, lines: tuple[WallEvidence, EdgeEvidence]
+    ) -> RecordingEvidence:
         """What one pass, or several along the same street, show."""
         return RecordingEvidence(
-            evidence, walls, driven.positions[:: max(1, driven.positions.shape[0] // 200_000)]
+            evidence, *lines, driven.positions[:: max(1, driven.positions.shape[0] // 200_000)]
         )
 
     def passes(self, positions: Floats) -> list[bool]:
@@ -140,6 +146,8 @@ def _member(one: TrueFeature, seen: RecordingEvidence, origin: Floats) -> TruthP
         facts.update(_wire(one, pieces, seen))
     elif one.file == "walls":
         facts.update(_wall(one, seen))
+    elif one.file == "edges":
+        facts.update(_edge(one, seen))
     else:
         shown = _cover(one, pieces) if one.file == "covers" else _SHOWN[one.file](pieces)
         facts.update(shown)
@@ -220,6 +228,16 @@ def _wall(one: TrueFeature, seen: RecordingEvidence) -> TruthProperties:
     """
     counts = seen.walls.of(one)
     return {"points": int(counts.sum()), "piece_points": counts.tolist()}
+
+
+def _edge(one: TrueFeature, seen: RecordingEvidence) -> TruthProperties:
+    """The points on the worse shown side of each straight piece, and whether it was passed."""
+    counts = seen.edges.of(one)
+    return {
+        "points": int(counts.sum()),
+        "piece_points": counts.tolist(),
+        "piece_in_span": seen.passes((one.xyz[:-1] + one.xyz[1:]) / 2),
+    }
 
 
 def _gutter(pieces: Integers) -> TruthProperties:

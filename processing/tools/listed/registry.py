@@ -26,6 +26,7 @@ from processing.tools.register import REGISTER
 from processing.tools.road_map.barriers import BARRIERS
 from processing.tools.road_map.clearance import CLEARANCE
 from processing.tools.road_map.covers import COVERS
+from processing.tools.road_map.edges import EDGES
 from processing.tools.road_map.markings import MARKINGS
 from processing.tools.road_map.walls import WALLS
 from processing.tools.segments import SEGMENTS
@@ -50,6 +51,7 @@ _DECLARED = (
     WALLS,
     CLEARANCE,
     COVERS,
+    EDGES,
     NOISE,
     GROUND_TOOL,
     CLASSIFY,

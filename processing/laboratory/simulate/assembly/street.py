@@ -14,6 +14,7 @@ from processing.laboratory.simulate.gutters.aprons import add_aprons
 from processing.laboratory.simulate.gutters.gutters import add_gutters
 from processing.laboratory.simulate.gutters.transverse_gutters import add_transverse_gutters
 from processing.laboratory.simulate.roadway.box_lids import add_box_lids
+from processing.laboratory.simulate.roadway.edges import add_edges
 from processing.laboratory.simulate.roadway.ends import add_ends
 from processing.laboratory.simulate.roadway.islands import add_islands
 from processing.laboratory.simulate.roadway.junctions import add_junctions
@@ -40,6 +41,7 @@ MAKERS: tuple[SectionMaker, ...] = (
     add_junctions,
     add_islands,
     add_ends,
+    add_edges,
     add_markings,
     add_pavement,
     add_box_lids,
@@ -79,6 +81,8 @@ class Street:
         What time made of its kerb stones, 0 to 1.
     is_avenue : bool
         Rows of large trees stand along it, with posts under their crowns.
+    is_flush : bool
+        Most of its sides have no curb: flush walks, soft shoulders.
     """
 
     def __init__(
@@ -89,10 +93,13 @@ class Street:
         wear: float = 0.0,
         *,
         is_avenue: bool = False,
+        is_flush: bool = False,
     ) -> None:
         self.seed, self.style, self.length_m = seed, style, length_m
         self.alignment: Alignment = alignment_of(seed, style, length_m)
-        self.plans = tuple(plans_of(seed, style, length_m, wear, is_avenue=is_avenue))
+        self.plans = tuple(
+            plans_of(seed, style, length_m, wear, is_avenue=is_avenue, is_flush=is_flush)
+        )
         self._starts = np.array([one.start_m for one in self.plans])
         self._built: OrderedDict[int, BuiltSection] = OrderedDict()
         self._bare: OrderedDict[int, StreetSection] = OrderedDict()

@@ -24,6 +24,7 @@ TruthFile = Literal[
     "walls",
     "covers",
     "plant_areas",
+    "edges",
 ]
 
 THINGS_PER_SECTION = 20_000
@@ -55,7 +56,7 @@ class TrueFeature:
     ----------
     file : str
         Whose truth it belongs to: ``curbs``, ``gutters``, ``trees``, ``signs``, ``poles``,
-        ``wires``, ``markings``, ``barriers``, ``walls``, ``covers``, ``plant_areas``.
+        ``wires``, ``markings``, ``barriers``, ``walls``, ``covers``, ``plant_areas``, ``edges``.
     geometry : str
         ``Point``, ``LineString`` or ``Polygon`` (closed ring).
     xyz : (n, 3) float64

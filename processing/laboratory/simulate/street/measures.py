@@ -40,6 +40,9 @@ class Measures:
     strip, soil, edging_wide, edging_high : float64
         Planting strip: how far the soil lies below the walk, and the stones towards the walk.
     walk, walk_slope, verge : float64
+    shoulder, shoulder_low, shoulder_fall : float64
+        Shoulder of gravel or soil: its width, how far it lies below the asphalt's edge, and its
+        fall outwards.
     run, rise : float64
         How far and how high the slope outside goes.
     """
@@ -60,6 +63,9 @@ class Measures:
     walk: Floats
     walk_slope: Floats
     verge: Floats
+    shoulder: Floats
+    shoulder_low: Floats
+    shoulder_fall: Floats
     run: Floats
     rise: Floats
 
@@ -82,12 +88,15 @@ class BandSurfaces:
     ----------
     row : StoneRow
         The curb's stones.
+    shoulder : Material
+        Of a soft shoulder.
     """
 
     gutter: Material
     stone: Material
     walk: Material
     row: StoneRow
+    shoulder: Material
 
 
 def measures_of(seed: int, side: SidePlan) -> Measures:
@@ -101,6 +110,7 @@ def measures_of(seed: int, side: SidePlan) -> Measures:
     steepness = float(random.uniform(1.2, 1.8))
     if side.outside == "wall":
         steepness = float(random.uniform(0.03, 0.3))
+    shoulder = chance(seed, "shoulder", int(side.verge_m * 1e7), int(side.drain_m * 1e7))
     values = (
         side.drain_m if side.drain != "none" else 0.0,
         float(random.uniform(0.04, 0.08)) if side.drain == "apron" else 0.0,
@@ -118,6 +128,9 @@ def measures_of(seed: int, side: SidePlan) -> Measures:
         side.walk_m,
         float(random.uniform(0.005, 0.02)),
         side.verge_m,
+        side.shoulder_m,
+        float(shoulder.uniform(0.0, 0.015)),
+        float(shoulder.uniform(0.03, 0.08)),
         abs(side.outside_high_m) * steepness,
         side.outside_high_m,
     )
@@ -129,6 +142,8 @@ def band_surfaces_of(seed: int, side: SidePlan) -> BandSurfaces:
     random = chance(seed, "looks", int(side.verge_m * 1e7), int(side.drain_m * 1e7))
     concretes = (Material.CONCRETE, Material.OLD_CONCRETE)
     walks = (Material.PAVING, Material.PAVING, Material.ASPHALT, Material.WORN_ASPHALT)
+    if side.flush == "walk":  # what is told from the carriageway by a painted line alone has none
+        walks = (Material.PAVING, Material.PAVING, *concretes)
     return BandSurfaces(
         concretes[int(random.integers(2))],
         Material.WORN_ASPHALT if side.curb == "asphalt" else concretes[int(random.integers(2))],
@@ -138,16 +153,18 @@ def band_surfaces_of(seed: int, side: SidePlan) -> BandSurfaces:
             float(random.uniform(0.0005, 0.004)),
             side.wear,
         ),
+        Material.GRAVEL if side.flush == "gravel" else Material.SOIL,
     )
 
 
 def is_alike(one: SidePlan, other: SidePlan) -> bool:
     """Whether two sides have the same bands, so that their lines can be joined."""
-    return (one.drain, one.curb, one.strip_m > 0, one.walk_m > 0) == (
+    return (one.drain, one.curb, one.strip_m > 0, one.walk_m > 0, one.flush) == (
         other.drain,
         other.curb,
         other.strip_m > 0,
         other.walk_m > 0,
+        other.flush,
     )
 
 

@@ -18,12 +18,14 @@ SIDES = (LEFT, RIGHT)
 Drain = Literal["none", "apron", "lids", "open"]
 Curb = Literal["none", "raised", "semi", "flat", "asphalt"]
 Outside = Literal["lots", "fields", "rise", "fall", "wall", "wood"]
-BandName = Literal["drain", "curb", "strip", "walk", "verge", "outside"]
+Flush = Literal["none", "walk", "gravel", "soil"]
+BandName = Literal["drain", "curb", "strip", "walk", "shoulder", "verge", "outside"]
 
 _Name = TypeVar("_Name", bound=str)
 
 _KEPT_SHARE = 0.7
 _FARTHEST_M = 60.0
+_FLUSH_SHARE = 0.8
 
 
 @dataclass(frozen=True)
@@ -68,6 +70,11 @@ class SidePlan:
         What time made of its kerb stones: 0 as laid, 1 settled, tilted and rounded.
     is_avenue : bool
         A row of large trees stands along it.
+    flush : str
+        What lies at the carriageway's level where no curb stands: ``walk`` (a flush walk of paving
+        or concrete), ``gravel`` or ``soil`` (a shoulder); ``none``: a grass verge.
+    shoulder_m : float
+        Width of a shoulder of gravel or soil.
     """
 
     edge_m: float
@@ -84,6 +91,8 @@ class SidePlan:
     outside_high_m: float
     wear: float = 0.0
     is_avenue: bool = False
+    flush: Flush = "none"
+    shoulder_m: float = 0.0
 
     def bands(self) -> Iterator[RoadBand]:
         """The bands there are, from the asphalt outwards."""
@@ -93,6 +102,7 @@ class SidePlan:
             ("curb", curb),
             ("strip", self.strip_m),
             ("walk", self.walk_m),
+            ("shoulder", self.shoulder_m),
             ("verge", self.verge_m),
         )
         at = self.edge_m
@@ -153,27 +163,39 @@ class SectionPlan:
 
 
 def plans_of(
-    seed: int, style: Style, length_m: float, wear: float = 0.0, *, is_avenue: bool = False
+    seed: int,
+    style: Style,
+    length_m: float,
+    wear: float = 0.0,
+    *,
+    is_avenue: bool = False,
+    is_flush: bool = False,
 ) -> list[SectionPlan]:
     """All sections of a street in their order; a longer street begins like a shorter one."""
-    street = _Street(seed, style, wear, is_avenue=is_avenue)
+    street = _Street(seed, style, wear, is_avenue=is_avenue, is_flush=is_flush)
     ahead = list(street.outwards(1, length_m + MARGIN_M * 0.9))
     behind = list(street.outwards(-1, MARGIN_M * 0.9))
     return [*behind[::-1], *ahead]
 
 
 class _Street:
-    def __init__(self, seed: int, style: Style, wear: float, *, is_avenue: bool) -> None:
+    def __init__(
+        self, seed: int, style: Style, wear: float, *, is_avenue: bool, is_flush: bool
+    ) -> None:
         random = chance(seed, "street")
         self.seed, self.style, self.wear = seed, style, wear
-        self.is_avenue = is_avenue
+        self.is_avenue, self.is_flush = is_avenue, is_flush
         self.lanes = int(random.integers(style.lanes[0], style.lanes[1] + 1))
         self.lane_m = float(random.uniform(*style.lane_m))
         self.has_median = bool(random.random() < style.median_share)
         self.median_m = float(random.uniform(1.0, 3.0)) if self.has_median else 0.0
         self.shoulders_m = {side: float(random.uniform(*style.shoulder_m)) for side in SIDES}
         self.first_m = -float(random.uniform(0, style.section_m[0]))
-        self.sides = {side: self._side(chance(seed, "side", side), side) for side in SIDES}
+        self.sides = {side: self._first_side(side) for side in SIDES}
+
+    def _first_side(self, side: int) -> SidePlan:
+        made = self._side(chance(self.seed, "side", side), side)
+        return self._flush(made, chance(self.seed, "flush side", side))
 
     def outwards(self, direction: int, until_m: float) -> Iterator[SectionPlan]:
         """Sections from the beginning on, or (−1) from it backwards."""
@@ -190,7 +212,8 @@ class _Street:
             for side in SIDES:
                 fresh = chance(self.seed, "side", side, index)
                 if not is_junction and fresh.random() > _KEPT_SHARE:
-                    sides[side] = self._side(fresh, side)
+                    drawn = chance(self.seed, "flush side", side, index)
+                    sides[side] = self._flush(self._side(fresh, side), drawn)
             start, end = (at, at + long) if direction > 0 else (at - long, at)
             yield SectionPlan(
                 index,
@@ -205,6 +228,12 @@ class _Street:
                 junctions,
             )
             was_junction, at, index = is_junction, at + direction * long, index + direction
+
+    def _flush(self, side: SidePlan, random: Generator) -> SidePlan:
+        """The same side without a curb, as most are of a street that is wanted so."""
+        if not self.is_flush or random.random() > _FLUSH_SHARE:
+            return side
+        return _flush_side(random, side, self.style)
 
     def _side(self, random: Generator, side: int) -> SidePlan:
         edge = self.median_m / 2 + self.lanes * self.lane_m + self.shoulders_m[side]
@@ -291,6 +320,26 @@ def _highway_side(random: Generator, plain: SidePlan) -> SidePlan:
         verge_m=float(random.uniform(0.5, 2.5)),
         outside=outside,
         outside_high_m=_outside_high_m(random, outside),
+    )
+
+
+def _flush_side(random: Generator, side: SidePlan, style: Style) -> SidePlan:
+    """A flush walk or a soft shoulder in place of what the side has, some behind an apron."""
+    kinds: dict[Flush, float] = {"walk": 0.15, "gravel": 0.3, "soil": 0.25, "none": 0.3}
+    if style is URBAN:
+        kinds = {"walk": 0.65, "gravel": 0.2, "soil": 0.15, "none": 0.0}
+    kind = _one_of(random, kinds)
+    drains: dict[Drain, float] = {"none": 0.7, "apron": 0.2, "lids": 0.1}
+    return replace(
+        side,
+        drain=_one_of(random, drains),
+        drain_m=float(random.uniform(0.38, 0.66)),
+        curb="none",
+        strip_m=0.0,
+        walk_m=float(random.uniform(1.2, 3.5)) if kind == "walk" else 0.0,
+        has_tactile=bool(kind == "walk" and random.random() < 0.2),
+        flush=kind,
+        shoulder_m=float(random.uniform(0.5, 2.0)) if kind in ("gravel", "soil") else 0.0,
     )
 
 

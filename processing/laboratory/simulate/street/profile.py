@@ -23,6 +23,7 @@ STONE_TOP_M = 0.1
 """How much of a stone's top belongs to the run of its edge."""
 
 _LEAST_WIDE_M = 0.03
+_BROKEN_M = 0.01  # how far the broken edge of asphalt goes down to a shoulder
 _ARC = tuple((float(np.cos(one)), float(np.sin(one))) for one in np.radians([22.5, 45.0, 67.5]))
 """Places on a quarter of a circle, from the face up to the top."""
 _RAMP_DEEP_M = 1.2  # how far a walk's slope to a dropped curb reaches
@@ -116,8 +117,10 @@ def profile_of(course: Course) -> RoadProfile:
         _add_curb(profile, course)
         if course.side.strip_m > 0:
             _add_strip(profile, course)
-        if course.side.walk_m > 0:
-            _add_walk(profile, course)
+    if course.side.walk_m > 0:
+        _add_walk(profile, course)
+    if course.side.shoulder_m > 0:
+        _add_shoulder(profile, course)
     start, level = profile.away[-1], profile.above[-1]
     measures = course.measures
     verge = Strip("verge", Material.GRASS, GRASS)
@@ -128,6 +131,14 @@ def profile_of(course: Course) -> RoadProfile:
     top = start + measures.verge + measures.run
     profile.line(np.maximum(top, profile.away[-1] + 0.01), level - 0.01 + measures.rise, slope)
     return profile
+
+
+def _add_shoulder(profile: RoadProfile, course: Course) -> None:
+    measures, start, level = course.measures, profile.away[-1], profile.above[-1]
+    soft = Strip("shoulder", course.looks.shoulder, GROUND)
+    low = level - measures.shoulder_low
+    profile.line(start + _BROKEN_M, low, soft)
+    profile.line(start + measures.shoulder, low - measures.shoulder_fall * measures.shoulder, soft)
 
 
 def _add_drain(profile: RoadProfile, course: Course) -> None:

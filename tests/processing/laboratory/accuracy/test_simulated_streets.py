@@ -99,7 +99,7 @@ def test_the_rate_is_found_in_times_of_adjusted_gps(tmp_path: Path, rate_hz: flo
 
 
 def test_scores_of_disturbed_truths_fall(tmp_path: Path) -> None:
-    lines = ("wires", "markings", "barriers", "walls", "covers", "clearance")
+    lines = ("wires", "markings", "barriers", "walls", "edges", "covers", "clearance")
     for name in ("curbs", "gutters", "trees", "signs", *lines):
         _write(tmp_path / f"{name}.geojson", [])
     facts = {"kind": "pole", "type": "street_light", "height_m": 8.0, "diameter_m": 0.15}

@@ -1,0 +1,1 @@
+"""Edges of the carriageway where no curb stands: by brightness, roughness and slope."""
