@@ -32,7 +32,8 @@ def _covered(seed: int) -> tuple[StreetSection, _Gutters]:
             section = street.bare_section(row)
             built = SectionBuilder(1)
             add_gutters(section, built)
-            return section, _Gutters(built.mesh.mesh(), tuple(built.truth))
+            lids = tuple(one for one in built.truth if one.file == "gutters")
+            return section, _Gutters(built.mesh.mesh(), lids)
     raise ValueError("no covered gutter")
 
 
