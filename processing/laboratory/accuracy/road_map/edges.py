@@ -34,7 +34,7 @@ worn and recorded with the errors of good systems. Nobody looked at the streets 
 
 def section_of(rows: Sequence[LinesOfStreet]) -> str:
     """The section of the page, without its heading."""
-    heads = ["street", "found, false, missed", "P", "R", "F", "right side told", "off, RMS"]
+    heads = ["street", "found, false, missed", "P", "R", "F", "right type", "off, RMS"]
     cells = [heads]
     total = BinaryConfusionMatrix(0, 0, 0, 0)
     for row in rows:
