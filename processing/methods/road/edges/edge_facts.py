@@ -127,8 +127,8 @@ def place_facts(cells: CrossCells, monitor: Monitor) -> PlaceFacts:
     runs along the road is told from what doesn't.
     """
     alone = np.full((len(cells.ways), 2), -1, np.int32)
-    rough = _facts_by(cells, alone, monitor)
-    courses = likeliest_courses(rough.outward, cells.ways.stretches(), monitor)
+    outward = _facts_by(cells, alone, monitor).outward  # its facts take much room
+    courses = likeliest_courses(outward, cells.ways.stretches(), monitor)
     return _facts_by(cells, courses.astype(np.int32), monitor)
 
 
