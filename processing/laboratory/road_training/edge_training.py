@@ -59,19 +59,13 @@ only against it."""
 EXPECTED_OF_LINES = WeightPrior(
     (
         -5.0,
-        *EdgeLineFacts(
-            long=0.5, told=1.0, sure=4.0, restless=-2.0, unlike=-1.0, uneven=-1.0,
-            fleeting=-3.0, rough=1.0,
-        ),
+        *EdgeLineFacts(long=0.5, sure=4.0, restless=-2.0, unlike=-1.0, uneven=-1.0, rough=1.0),
     ),
     (
         4.0,
-        *EdgeLineFacts(
-            long=0.5, told=2.0, sure=4.0, restless=3.0, unlike=2.0, uneven=2.0,
-            fleeting=3.0, rough=2.0,
-        ),
+        *EdgeLineFacts(long=0.5, sure=4.0, restless=3.0, unlike=2.0, uneven=2.0, rough=2.0),
     ),
-)  # fmt: skip
+)
 """What reasoning expects of lines: long, straight ones, sure at every station."""
 
 _SEEDS, _CHECK, _CURBED = "3001-3026,3061-3074", "3031-3036", "3041-3052,3091-3097"

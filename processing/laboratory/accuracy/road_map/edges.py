@@ -28,13 +28,14 @@ where the carriageway ends without a curb, by length in plan within 10 cm, where
 {LEAST_POINTS} points lie on a metre of the 30 cm on either side. Three of four streets have flush \
 walks, gutters and shoulders of gravel or soil in place of most curbs. Neither the asphalt's edge \
 in front of a gutter with a curb behind nor corners of side streets count. Every other street is \
-worn and recorded with the errors of good systems. Nobody looked at the streets before.
+worn and recorded with the errors of good systems. Nobody looked at the streets; they were scored \
+twice, before and after entrances over lowered curbs were left to curbs, which other streets showed.
 """
 
 
 def section_of(rows: Sequence[LinesOfStreet]) -> str:
     """The section of the page, without its heading."""
-    heads = ["street", "found, false, missed", "P", "R", "F", "right side told", "off, RMS"]
+    heads = ["street", "found, false, missed", "P", "R", "F", "right type", "off, RMS"]
     cells = [heads]
     total = BinaryConfusionMatrix(0, 0, 0, 0)
     for row in rows:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
@@ -41,8 +42,10 @@ _BLADES = 1.5
 """Standard deviations that blades of grass reach above the ground they stand on."""
 
 _AROUND = 5
-"""Stations to each side by whose majority a curb stands: an entrance of a few metres is none, but
-where points are missing a curb goes on."""
+"""Stations to each side by whose majority a curb stands; where points are missing it goes on."""
+
+_ENTRANCE = 24
+"""Stations, 12 m: so wide are entrances over a lowered curb at most, which belongs to the curb."""
 
 
 @dataclass(frozen=True)
@@ -139,7 +142,18 @@ def _curbs(levels: Floats, steps: NDArray[np.float32], places: Integers) -> Flag
     above = top - own[:, None]
     is_flat = _mean_at(levels, around, _BEHIND) - top <= _BANK_M
     is_curb = (near > _CURB_M) & (above > _CURB_M) & (above < _HIGHEST_M) & is_flat
-    return np.asarray(_shares(np.asarray(is_curb.any(axis=1), np.float64), _AROUND) > 0.5)
+    mostly = _shares(np.asarray(is_curb.any(axis=1), np.float64), _AROUND) > 0.5
+    return _without_entrances(np.asarray(mostly))
+
+
+def _without_entrances(curbs: Flags) -> Flags:
+    """Curbs that go on where they are lowered to the road for a while."""
+    whole = curbs.copy()
+    standing = np.flatnonzero(curbs)
+    for before, after in itertools.pairwise(standing.tolist()):
+        if after - before <= _ENTRANCE:
+            whole[before:after] = True
+    return whole
 
 
 def _mean_at(values: Floats, at: Integers, span: tuple[int, int]) -> Floats:

@@ -22,6 +22,10 @@ _STATIONS_AT_ONCE = 50
 _NEVER = -20.0
 """Log-odds of places whose inner side wasn't seen."""
 
+_GUTTER = 11
+"""Cells out from where a drop of 7 cm or more is first told, up to 0.4 m before it, and its rim:
+nothing that lies farther out was driven on."""
+
 _BLOCK = 6  # cells: what lies so near together is one change
 _INWARDS = 1.0
 """How much the changes nearer to the way count against a place: neighbouring ones are no
@@ -123,8 +127,8 @@ def place_facts(cells: CrossCells, monitor: Monitor) -> PlaceFacts:
     runs along the road is told from what doesn't.
     """
     alone = np.full((len(cells.ways), 2), -1, np.int32)
-    rough = _facts_by(cells, alone, monitor)
-    courses = likeliest_courses(rough.outward, cells.ways.stretches(), monitor)
+    outward = _facts_by(cells, alone, monitor).outward  # its facts take much room
+    courses = likeliest_courses(outward, cells.ways.stretches(), monitor)
     return _facts_by(cells, courses.astype(np.int32), monitor)
 
 
@@ -155,6 +159,9 @@ def _facts_by(cells: CrossCells, course: NDArray[np.int32], monitor: Monitor) ->
     logits = np.full(facts.shape[:3], _NEVER)
     is_seen = facts[..., 0] != NOT_SEEN
     logits[is_seen] = log_odds(_model(), facts[is_seen], monitor)
+    drops = facts[..., EdgeFacts._fields.index("drop")] >= 1.0
+    behind = np.maximum.accumulate(drops, axis=-1)[..., :-_GUTTER]
+    logits[..., _GUTTER:] = np.where(behind, _NEVER, logits[..., _GUTTER:])
     monitor.check()
     return PlaceFacts(facts, steps, logits, outward_logits(logits))
 

@@ -13,26 +13,27 @@ from processing.methods.road.edges.edge_courses import LEFT, EdgeCourse
 
 Outside = Literal["walk", "gutter", "soil", "grass"]
 
-_ROUGH_M, _GROWN_M = 0.004, 0.012
+_ROUGH_M, _GROWN_M = 0.0035, 0.012
 """Standard deviation of heights beyond the noise of the road inside: paving has 2 mm at most (mean
 profile depths, ISO 13473-1), gravel and soil their grain of a centimetre, grass its blades."""
 
 _NEAR, _BEYOND = (1, 6), (16, 22)
 """Cells from an edge that lie on what is next to it, and beyond the widest gutter, 0.66 m."""
 
-_OTHER_TONE, _OTHER_HEIGHT_M = 0.2, 0.05
-"""Differences beyond it that make what is next to an edge a gutter."""
+_BRIGHTER, _DARKER, _OTHER_HEIGHT_M = 0.2, 0.4, 0.05
+"""Differences beyond it that make what is next to an edge a gutter; what is left of the effects of
+range and incidence makes the same surface darker farther out."""
 
 _INSIDE = (-12, -2)
-_AROUND = 5
-"""Stations to each side that decide together."""
+_AROUND = 12
+"""Stations to each side that decide together: walks and gutters go on for a dozen metres."""
 
 
 def outsides(cells: CrossCells, course: EdgeCourse) -> NDArray[np.str_]:
     """(n,) what lies outside at each station of a course; as at the nearest one that tells."""
     near, beyond, inside = (_mean_rows(cells, course, one) for one in (_NEAR, _BEYOND, _INSIDE))
     rough, far_rough = (_excess(one[0], inside[0]) for one in (near, beyond))
-    other = np.abs(beyond[1] - near[1]) > _OTHER_TONE
+    other = (beyond[1] - near[1] > _BRIGHTER) | (near[1] - beyond[1] > _DARKER)
     other |= np.abs(beyond[2] - near[2]) > _OTHER_HEIGHT_M
     other |= far_rough > _ROUGH_M
     told = np.flatnonzero(np.isfinite(near[2]) & np.isfinite(beyond[2]))
@@ -50,14 +51,17 @@ def outsides(cells: CrossCells, course: EdgeCourse) -> NDArray[np.str_]:
 def _mean_rows(
     cells: CrossCells, course: EdgeCourse, span: tuple[int, int]
 ) -> tuple[Floats, Floats, Floats]:
-    """Roughness, m, tone and height, m, of some cells at each station: (n,) float64 each."""
+    """Roughness of the quieter, m, mean tone and height, m, of some cells: (n,) float64 each."""
     half = cells.counts.shape[1] // 2
     at = np.clip(course.places[:, None] + np.arange(*span), 0, half - 1)
     columns = half + at if course.side == LEFT else half - 1 - at
     rows = course.stations[:, None]
-    values = (np.exp(cells.rough[rows, columns]), cells.tones[rows, columns])
-    heights = cells.heights[rows, columns]
-    return _known_mean(values[0]), _known_mean(values[1]), _known_mean(heights)
+    rough = np.sort(np.exp(cells.rough[rows, columns]), axis=1)  # unknown ones last
+    # Joints and handles of lids, and what stands on the ground, fill some cells only.
+    known = np.isfinite(rough).sum(axis=1)
+    quiet = rough[np.arange(len(rough)), np.maximum((known - 1) // 4, 0)]
+    tones, heights = cells.tones[rows, columns], cells.heights[rows, columns]
+    return quiet, _known_mean(tones), _known_mean(heights)
 
 
 def _known_mean(values: Floats) -> Floats:

@@ -39,6 +39,7 @@ brighter than both sides by so much of a logarithm, and have road on both sides:
 that is open."""
 
 _EARLIER = 16, 11  # cells: inside of an open gutter that is half a metre wide
+_SUNK_M = 0.07  # over 0.55 m: no carriageway falls by more than 1 in 10
 _MOST_BEND = 0.1
 _PAINTED = 0.4  # share of the inner tones that is taken: below the middle, paint is brighter
 _HALF_CHANGE = 0.3  # of a logarithm, a third more: what different pavements differ by at least
@@ -130,7 +131,7 @@ def _side_facts(
     steps[:] = 0.0
     lane = _quantile_of(coarse, weight, 0, _LANE, 0.5)
     for cell in range(_FROM, len(weight) - _LINE):
-        if weight[cell - 1] == 0 and weight[cell - 2] == 0:
+        if (weight[cell - 1] == 0 and weight[cell - 2] == 0) or _is_sunk(height, weight, cell):
             continue
         one = facts[cell]
         seen = 0
@@ -142,6 +143,14 @@ def _side_facts(
         _rough_facts(coarse, weight, cell, lane, one)
         one[_FLEETING] = one[_SHARP] * (1.0 - max(one[_FAR_TONE], one[_FAR_ROUGH]))
         steps[cell] = _slopes(height, coarse, weight, cell, one)
+
+
+@kernel
+def _is_sunk(height: Floats, weight: Floats, cell: int) -> bool:
+    """Whether the ground inside of a place lies deeper than a carriageway falls: in a gutter."""
+    before = _mean_of(height, weight, cell - 4, cell - 1)
+    earlier = _mean_of(height, weight, cell - _EARLIER[0], cell - _EARLIER[1])
+    return earlier - before > _SUNK_M
 
 
 @kernel

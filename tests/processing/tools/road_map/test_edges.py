@@ -14,6 +14,7 @@ import pytest
 from processing.core.errors import Cancelled
 from processing.core.monitor import SilentMonitor
 from processing.image.scan_lines.scanlines import ScanlineSettings, scanline_through
+from processing.methods.road.edges.edge_courses import _without_entrances
 from processing.methods.road.objects import drive_chunks
 from processing.methods.road.requested_position import RequestedPosition
 from processing.project.importing.importing import ImportRequest
@@ -213,3 +214,13 @@ def test_a_section_shows_where_the_carriageway_ends_and_why(drives: tuple[Drive,
     assert walk.outline is not None
     assert walk.points is not None
     assert len(walk.points) > 10
+
+
+def test_curbs_go_on_where_they_are_lowered_for_an_entrance() -> None:
+    flags = np.zeros(80, np.bool_)
+    flags[[*range(20), *range(40, 50)]] = True
+    whole = _without_entrances(flags)
+    assert whole[:50].all()
+    assert not whole[50:].any()
+    flags[20:60], flags[60:] = False, True
+    assert not _without_entrances(flags)[20:60].any()
