@@ -25,6 +25,7 @@ from processing.laboratory.simulate.cameras.rigs import poses_of_pass, rig_of
 from processing.laboratory.simulate.cameras.seen_street import SeenStreet
 from processing.laboratory.simulate.control_points import write_control_points
 from processing.laboratory.simulate.moving_traffic.moving import movers_of
+from processing.laboratory.simulate.plant_evidence import PlantEvidence
 from processing.laboratory.simulate.requests import StreetRequest
 from processing.laboratory.simulate.scanning.beams import ScanPattern
 from processing.laboratory.simulate.scanning.delivered_files import (
@@ -157,7 +158,7 @@ class _Work:
             request.wander_m,
         )
         self.evidence = Evidence()
-        self.walls = WallEvidence(())
+        self.walls, self.plants = WallEvidence(()), PlantEvidence(())
         self.point_files: list[str] = []
         self.trajectories: list[str] = []
         self.image_lists: list[str] = []
@@ -188,6 +189,7 @@ class _Work:
                     self.truth.setdefault((section.plan.index, position), one)
         if number == 0:  # later passes are along the same street
             self.walls = WallEvidence(self.truth.values())
+            self.plants = PlantEvidence(self.truth.values())
         with self._files(number) as files:
             for chunk in recording.chunks(PartMonitor(monitor, 0.0, points_share)):
                 self._write(driven, number, chunk, files[chunk.head.name])
@@ -200,7 +202,7 @@ class _Work:
     def finish(self) -> None:
         """Write truth, and what the whole is."""
         truth = self.folder / "truth"
-        seen = RecordingEvidence.by(self.passes[0], self.evidence, self.walls)
+        seen = RecordingEvidence.by(self.passes[0], self.evidence, self.walls, self.plants)
         features = list(self.truth.values())
         objects = write_truth(truth, features, seen, self.origin)
         write_things(truth / "instance_kinds.json", self.things.values())
@@ -276,6 +278,7 @@ class _Work:
         files.instances.write(returns.instance)
         self.evidence.count([returns])
         self.walls.count(returns)
+        self.plants.count(returns)
 
     def _mounted_rad(self, driven: SimulatedPass, head: Head) -> Floats:
         """(3,) how far a head is turned from what its calibration says; see `SimulatedPass`."""

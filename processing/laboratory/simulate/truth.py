@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from processing.formats.vectors.geojson import write_members
+from processing.laboratory.simulate.plant_evidence import PlantEvidence
 from processing.laboratory.simulate.scanning.delivered_files import CRS_NAME
 from processing.laboratory.simulate.scanning.recording import Evidence
 from processing.laboratory.simulate.scanning.simulated_passes import SimulatedPass
@@ -23,7 +24,7 @@ from processing.laboratory.simulate.wall_evidence import WallEvidence
 
 TRUTH_FILES = (
     *("curbs", "gutters", "trees", "signs", "poles", "wires", "markings"),
-    *("barriers", "walls", "covers"),
+    *("barriers", "walls", "covers", "plant_areas"),
 )
 CURB_PIECE_M, CURB_SECTION_M = 0.5, 2.0
 BREAST_PIECES, TRUNK_PIECE = range(1, 37), 37
@@ -46,19 +47,27 @@ class RecordingEvidence:
         Points by thing and piece.
     walls : WallEvidence
         Points by piece of a wall's foot.
+    plants : PlantEvidence
+        Points by area of plants.
     path : (n, 3) float64
         Where the vehicle drove, m, the street's frame.
     """
 
     evidence: Evidence
     walls: WallEvidence
+    plants: PlantEvidence
     path: Floats
 
     @staticmethod
-    def by(driven: SimulatedPass, evidence: Evidence, walls: WallEvidence) -> RecordingEvidence:
+    def by(
+        driven: SimulatedPass, evidence: Evidence, walls: WallEvidence, plants: PlantEvidence
+    ) -> RecordingEvidence:
         """What one pass, or several along the same street, show."""
         return RecordingEvidence(
-            evidence, walls, driven.positions[:: max(1, driven.positions.shape[0] // 200_000)]
+            evidence,
+            walls,
+            plants,
+            driven.positions[:: max(1, driven.positions.shape[0] // 200_000)],
         )
 
     def passes(self, positions: Floats) -> list[bool]:
@@ -140,6 +149,9 @@ def _member(one: TrueFeature, seen: RecordingEvidence, origin: Floats) -> TruthP
         facts.update(_wire(one, pieces, seen))
     elif one.file == "walls":
         facts.update(_wall(one, seen))
+    elif one.file == "plant_areas":
+        points, covered = seen.plants.of(one)
+        facts.update({"points": points, "covered": round(covered, 3)})
     else:
         shown = _cover(one, pieces) if one.file == "covers" else _SHOWN[one.file](pieces)
         facts.update(shown)
