@@ -26,6 +26,7 @@ from processing.laboratory.simulate.cameras.seen_street import SeenStreet
 from processing.laboratory.simulate.control_points import write_control_points
 from processing.laboratory.simulate.edge_evidence import EdgeEvidence
 from processing.laboratory.simulate.moving_traffic.moving import movers_of
+from processing.laboratory.simulate.plant_evidence import PlantEvidence
 from processing.laboratory.simulate.requests import StreetRequest
 from processing.laboratory.simulate.road_truth.clearance_evidence import ClearanceEvidence
 from processing.laboratory.simulate.road_truth.true_roads import true_roads, write_true_roads
@@ -166,6 +167,7 @@ class _Work:
         )
         self.evidence = Evidence()
         self.walls, self.edges = WallEvidence(()), EdgeEvidence(())
+        self.plants = PlantEvidence(())
         self.clearance = ClearanceEvidence(street, request.length_m)
         self.point_files: list[str] = []
         self.trajectories: list[str] = []
@@ -198,6 +200,7 @@ class _Work:
         if number == 0:  # later passes are along the same street
             self.walls = WallEvidence(self.truth.values())
             self.edges = EdgeEvidence(self.truth.values())
+            self.plants = PlantEvidence(self.truth.values())
         with self._files(number) as files:
             for chunk in recording.chunks(PartMonitor(monitor, 0.0, points_share)):
                 self._write(driven, number, chunk, files[chunk.head.name])
@@ -210,7 +213,8 @@ class _Work:
     def finish(self) -> None:
         """Write truth, and what the whole is."""
         truth = self.folder / "truth"
-        seen = RecordingEvidence.by(self.passes[0], self.evidence, (self.walls, self.edges))
+        counted = (self.walls, self.edges, self.plants)
+        seen = RecordingEvidence.by(self.passes[0], self.evidence, counted)
         features = list(self.truth.values())
         objects = write_truth(truth, features, seen, self.origin)
         self.clearance.write(truth, self.things, self.origin, CRS_NAME)
@@ -291,6 +295,7 @@ class _Work:
         self.walls.count(returns)
         self.clearance.count(returns)
         self.edges.count(returns)
+        self.plants.count(returns)
 
     def _mounted_rad(self, driven: SimulatedPass, head: Head) -> Floats:
         """(3,) how far a head is turned from what its calibration says; see `SimulatedPass`."""

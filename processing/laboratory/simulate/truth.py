@@ -13,6 +13,7 @@ import numpy as np
 
 from processing.formats.vectors.geojson import write_members
 from processing.laboratory.simulate.edge_evidence import EdgeEvidence
+from processing.laboratory.simulate.plant_evidence import PlantEvidence
 from processing.laboratory.simulate.scanning.delivered_files import CRS_NAME
 from processing.laboratory.simulate.scanning.recording import Evidence
 from processing.laboratory.simulate.scanning.simulated_passes import SimulatedPass
@@ -24,7 +25,7 @@ from processing.laboratory.simulate.wall_evidence import WallEvidence
 
 TRUTH_FILES = (
     *("curbs", "gutters", "trees", "signs", "poles", "wires", "markings"),
-    *("barriers", "walls", "edges", "covers"),
+    *("barriers", "walls", "edges", "covers", "plant_areas"),
 )
 CURB_PIECE_M, CURB_SECTION_M = 0.5, 2.0
 BREAST_PIECES, TRUNK_PIECE = range(1, 37), 37
@@ -49,6 +50,8 @@ class RecordingEvidence:
         Points by piece of a wall's foot.
     edges : EdgeEvidence
         Points by piece of an edge of the carriageway.
+    plants : PlantEvidence
+        Points by area of plants.
     path : (n, 3) float64
         Where the vehicle drove, m, the street's frame.
     """
@@ -56,15 +59,18 @@ class RecordingEvidence:
     evidence: Evidence
     walls: WallEvidence
     edges: EdgeEvidence
+    plants: PlantEvidence
     path: Floats
 
     @staticmethod
     def by(
-        driven: SimulatedPass, evidence: Evidence, lines: tuple[WallEvidence, EdgeEvidence]
+        driven: SimulatedPass,
+        evidence: Evidence,
+        counted: tuple[WallEvidence, EdgeEvidence, PlantEvidence],
     ) -> RecordingEvidence:
         """What one pass, or several along the same street, show."""
         return RecordingEvidence(
-            evidence, *lines, driven.positions[:: max(1, driven.positions.shape[0] // 200_000)]
+            evidence, *counted, driven.positions[:: max(1, driven.positions.shape[0] // 200_000)]
         )
 
     def passes(self, positions: Floats) -> list[bool]:
@@ -148,6 +154,9 @@ def _member(one: TrueFeature, seen: RecordingEvidence, origin: Floats) -> TruthP
         facts.update(_wall(one, seen))
     elif one.file == "edges":
         facts.update(_edge(one, seen))
+    elif one.file == "plant_areas":
+        points, covered = seen.plants.of(one)
+        facts.update({"points": points, "covered": round(covered, 3)})
     else:
         shown = _cover(one, pieces) if one.file == "covers" else _SHOWN[one.file](pieces)
         facts.update(shown)

@@ -13,6 +13,7 @@ from processing.laboratory.simulate.assembly.furniture import add_furniture
 from processing.laboratory.simulate.gutters.aprons import add_aprons
 from processing.laboratory.simulate.gutters.gutters import add_gutters
 from processing.laboratory.simulate.gutters.transverse_gutters import add_transverse_gutters
+from processing.laboratory.simulate.roadside.plants.plant_truth import add_plant_truth
 from processing.laboratory.simulate.roadway.box_lids import add_box_lids
 from processing.laboratory.simulate.roadway.edges import add_edges
 from processing.laboratory.simulate.roadway.ends import add_ends
@@ -50,6 +51,7 @@ MAKERS: tuple[SectionMaker, ...] = (
     add_transverse_gutters,
     add_furniture,
     add_parked,
+    add_plant_truth,
 )
 """What builds a section, in this order; each draws from streams of its own.
 

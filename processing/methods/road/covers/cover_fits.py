@@ -50,10 +50,10 @@ _HALO_M = 1.2
 """Around a tile: half of the longest cover and the road about it."""
 
 _STEP_M, _ALIKE = 0.1, 2.5
-_LEAST_CONTRAST = 6.0
+_LEAST_CONTRAST = 5.0
 """Sum of squares of differences over what chance makes of them."""
 
-_LEAST_GAIN = 30.0
+_LEAST_GAIN = 25.0
 """The same of a shape's edge."""
 
 _FLOORS = (0.03, 0.0008, 0.15)

@@ -35,8 +35,10 @@ from processing.recording.drive import Drive
 _FINEST = 256
 """Cells along a tile: 5 cm, half of the smallest valve; middles are told to a part of a cell."""
 
-_PIT_M = 0.12
-"""What lies so far below the ground on all sides of it is the shaft under a grating."""
+_PITS = ((7, 0.35), (3, 0.12))
+"""Widths, in cells of the coarse ground, and depths, m, of what lies below the ground on all sides:
+single points mirrored far below the road, which draw the cells around them down, and shafts under
+gratings. A carriageway between curbs is wider than the second and less deep than the first."""
 
 
 @dataclass(frozen=True)
@@ -119,16 +121,19 @@ def cover_raster(
 def _without_pits(
     plan: SparsePlan, ground: NDArray[np.float32], monitor: Monitor
 ) -> NDArray[np.float32]:
-    """The ground over shafts and ditches of up to two cells."""
+    """The ground over shafts, and over wide deep pits that mirrored points make."""
     from scipy.ndimage import grey_closing
 
-    closed = ground.copy()
+    closed, halo = ground.copy(), max(wide for wide, _ in _PITS)
     for tile in range(len(plan)):
         monitor.check()
-        around = plan.window(ground, tile, 2, np.nan)
+        around = plan.window(ground, tile, halo, np.nan)
         known = np.isfinite(around)
-        if known.any():
-            filled = np.where(known, around, np.median(around[known]))
-            level = grey_closing(filled, (3, 3))[2:-2, 2:-2]
-            closed[tile] = np.where(level > ground[tile] + _PIT_M, level, ground[tile])
+        if not known.any():
+            continue
+        filled = np.where(known, around, np.median(around[known]))
+        for wide, deep_m in _PITS:
+            level = grey_closing(filled, (wide, wide))
+            filled = np.where(level > filled + deep_m, level, filled)
+        closed[tile] = np.where(np.isfinite(ground[tile]), filled[halo:-halo, halo:-halo], np.nan)
     return closed

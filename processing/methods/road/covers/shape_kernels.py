@@ -20,10 +20,10 @@ water, which change over decimetres, hardly differ."""
 CHANNELS = 3
 """Tone, height, share of points below the surface."""
 
-PATCHY = (0.05, 0.001, 0.03)
+PATCHY = (0.05, 0.0006, 0.03)
 """What the bands on both sides of any edge on a road differ by, where nothing lies: dirt, damp and
-wheels' polish change tones by as much over a decimetre, texture and ruts heights, m (mean profile
-depths of 0.3 to 1.5 mm, ISO 13473-1)."""
+wheels' polish change tones by as much over a decimetre; of a texture of 0.3 to 1.5 mm (mean profile
+depth, ISO 13473-1) about half is left, m, in the mean of a band."""
 
 _OCTANTS, _FEWEST = 8, 20
 _STEEP_M = 0.06

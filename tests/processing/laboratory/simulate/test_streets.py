@@ -127,6 +127,8 @@ def test_counts_of_the_truth_are_those_of_the_points(made: DeliveryMaker) -> Non
             elif name == "curbs":
                 # Edges of one run share their points; pieces beyond the line belong to none.
                 assert sum(part["points"] for part in facts["sections"]) <= 2 * seen + 2
+            elif name == "plant_areas":
+                assert (facts["points"] > 0) >= (facts["covered"] > 0)
             elif name in ("walls", "edges"):
                 # Those of the ground have no instance of their own.
                 assert facts["points"] == sum(facts["piece_points"])

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.random import Generator
 
 from processing.laboratory.simulate.roadside.plants.crowns import scatter_leaves
+from processing.laboratory.simulate.roadside.plants.plant_truth import HEDGE, tell_area
 from processing.laboratory.simulate.scene.chance import chance
 from processing.laboratory.simulate.scene.materials import Material
 from processing.laboratory.simulate.scene.mesh import Floats, grid
@@ -115,6 +116,9 @@ def _add_hedge(
     rows[[0, -1], :, :2] = rows[[0, -1], :, :2].mean(axis=1, keepdims=True)
     instance = built.thing("hedge")
     built.mesh.add(grid(rows), Material.LEAVES, SHRUB, instance)
+    ring = np.concatenate([rows[:, 1], rows[::-1, -2]])
+    middle_m = (hedge.start_m + hedge.end_m) / 2
+    tell_area(built, ring, (HEDGE, instance, middle_m), hedge.high_m)
     centres = _on(random, rows, int(min(_MOST_LEAVES, 60 * (hedge.end_m - hedge.start_m))))
     leaves = scatter_leaves(random, centres, float(random.uniform(0.05, 0.1)))
     built.mesh.add(leaves, Material.LEAVES, SHRUB, instance)

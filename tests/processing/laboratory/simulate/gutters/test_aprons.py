@@ -28,8 +28,8 @@ def aprons() -> Aprons:
             add_aprons(section, built)
             mesh = built.mesh.mesh()
             if mesh.triangles.size:
-                gratings = [one for one in built.truth if one.file == "gutters"]
-                made.append((section, mesh, gratings, built))
+                own = [one for one in built.truth if one.file == "gutters"]
+                made.append((section, mesh, own, built))
     return made
 
 

@@ -24,6 +24,10 @@ class _Gutters:
     truth: tuple[TrueFeature, ...]
 
 
+def _lids_of(built: SectionBuilder) -> tuple[TrueFeature, ...]:
+    return tuple(one for one in built.truth if one.file == "gutters")
+
+
 def _covered(seed: int) -> tuple[StreetSection, _Gutters]:
     """A section of a country road with covered gutters, with nothing but them."""
     street = Street(seed, RURAL, 400.0)
@@ -32,8 +36,7 @@ def _covered(seed: int) -> tuple[StreetSection, _Gutters]:
             section = street.bare_section(row)
             built = SectionBuilder(1)
             add_gutters(section, built)
-            lids = tuple(one for one in built.truth if one.file == "gutters")
-            return section, _Gutters(built.mesh.mesh(), lids)
+            return section, _Gutters(built.mesh.mesh(), _lids_of(built))
     raise ValueError("no covered gutter")
 
 
