@@ -313,6 +313,7 @@ def test_every_format_has_a_title_in_both_languages() -> None:
         "delivery",
         "sheets",
         "sections",
+        "road",
         "las",
         "landxml",
         "opendrive",

@@ -51,7 +51,7 @@ from processing.tools.tool import Candidate
 from resources import path_of
 
 _HEADING = "## Road model"
-_SEEDS = "9591-9598"
+_SEEDS = "9641-9648"
 _LENGTH_M = 60.0
 _PITCH_M = 2.0
 _STYLES = ("urban", "rural", "urban", "highway")
@@ -72,7 +72,11 @@ no width and no fall; on roads without curbs there is nothing to find. Places be
 are those of the tool `clearance` over the carriageway against what hangs there: {LEAST_POINTS} \
 points and more below {LIMIT_M} m, {LEAST_INSIDE_M} m and more inside the edge. Every other street \
 is an avenue with low branches, every other two are recorded with the errors of good systems and \
-worn.
+worn. One pass sees one carriageway: beyond a median nothing is looked for, and missed. Nobody \
+looked at these streets. 9591 to 9598 were scored before: widths of 29 of 124 stations within \
+0.5 cm (RMS), slopes within 0.04 %, 11 places found, 4 made up, 4 missed; the falls of 9593, under \
+whose road a phase-based scanner drew arcs, were spoilt (32 %), since when the surface across is \
+held to the height of the centre line.
 """
 
 

@@ -65,6 +65,9 @@ def is_arc(offset: Floats, over: Floats) -> bool:
     The circle is that of least squares of its equation (Kåsa 1976); what is flat has none, or one
     whose bend is no larger than the noise.
     """
+    # Of places beside no way nothing is told; least squares would never end.
+    known = np.isfinite(offset) & np.isfinite(over)
+    offset, over = offset[known], over[known]
     if offset.size < _FEWEST:
         return False
     step = max(1, offset.size // _MOST)
@@ -89,7 +92,7 @@ def is_arc(offset: Floats, over: Floats) -> bool:
 def _offsets(
     lines: Integers, found: PointsOverRoad, road: RoadCells, frames: Sequence[RoadFrame]
 ) -> Floats:
-    """Of each point from the way that told its cell, m."""
+    """Of each point from the way that told its cell, m; infinite beside none."""
     offset = np.full(lines.size, np.inf)
     cells = found.cells[lines]
     for number, frame in enumerate(frames):

@@ -295,7 +295,7 @@ class _ModelMaker:
             slope = slope_along(profiles, station)
             height = slope.height + float(self.raster.plan.origin[2])
             left, right = (
-                fall_across(profiles, station, end, slope.slope, is_left=is_left)
+                fall_across(profiles, station, end, slope, is_left=is_left)
                 for end, is_left in zip(ends, (True, False), strict=True)
             )
             falls = (left, right)

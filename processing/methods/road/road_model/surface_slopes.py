@@ -18,6 +18,10 @@ _MIDDLE_M = 0.5
 _EDGE_M, _CENTRE_M = 0.3, 0.2
 """Left out of a half: the foot of the curb, and the crown or the centre line's paint."""
 
+_STEEPEST, _UNEVEN_M = 0.12, 0.1
+"""Share that a carriageway falls at most (道路構造令 第16条: 10 %, and its unevenness), and how far
+its middle may be off, m."""
+
 _FEWEST, _ROUNDS = 6, 8
 _TUKEY = 4.685
 """Of the biweight, in standard deviations: 95 % as exact as least squares where nothing is off
@@ -90,7 +94,7 @@ def slope_along(profiles: RoadProfiles, station_m: float) -> StraightFit:
 
 
 def fall_across(
-    profiles: RoadProfiles, station_m: float, edge_m: float, along: float, *, is_left: bool
+    profiles: RoadProfiles, station_m: float, edge_m: float, along: StraightFit, *, is_left: bool
 ) -> StraightFit:
     """Fall of a half outwards at a station, positive downwards; `UNKNOWN` without an edge.
 
@@ -98,16 +102,21 @@ def fall_across(
     ----------
     edge_m : float
         How far from the centre line the carriageway reaches.
-    along : float
-        Rise along the line, which rows before and behind are levelled by; NaN: none.
+    along : StraightFit
+        Slope and height of the line, which rows before and behind are levelled by. What lies
+        farther from it than the steepest carriageway falls is none, as below what a scanner that
+        measures by phase draws under the road.
     """
-    if math.isnan(edge_m):
+    if math.isnan(edge_m) or math.isnan(along.height):
         return UNKNOWN
     rows = np.abs(profiles.stations - station_m) <= _ROWS_M
     away = profiles.offsets if is_left else -profiles.offsets
     columns = (away >= _CENTRE_M) & (away <= edge_m - _EDGE_M)
-    ahead = (profiles.stations[rows] - station_m) * (0.0 if math.isnan(along) else along)
+    ahead = (profiles.stations[rows] - station_m) * along.slope
     heights = profiles.heights[rows][:, columns] - ahead[:, None]
+    room = _STEEPEST * away[columns] + _UNEVEN_M
+    with np.errstate(invalid="ignore"):
+        heights[np.abs(heights - along.height) > room[None]] = np.nan
     fit = straight_fit(away[columns], row_medians(heights.T))
     return fit._replace(slope=-fit.slope)
 

@@ -112,6 +112,7 @@ def test_an_arc_about_the_scanner_is_told_from_what_is_flat(turned: tuple[float,
     noise = random.normal(0, 0.02, 300)
     arc = np.column_stack([(2.8 + noise) * np.cos(angle), 2.0 + (2.8 + noise) * np.sin(angle)])
     assert is_arc(*arc.T)
+    assert not is_arc(np.full(300, np.inf), arc[:, 1])
     across = np.linspace(-1.5, 1.5, 300)
     assert not is_arc(across, 3.9 + noise)
     assert not is_arc(across + 1.0, 3.0 + 0.5 * across + noise)

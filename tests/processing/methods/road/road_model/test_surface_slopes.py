@@ -56,12 +56,21 @@ def test_a_crown_falls_to_both_sides_and_the_road_rises() -> None:
     slope = slope_along(profiles, 20.0)
     assert slope.slope == pytest.approx(0.05)
     for is_left in (True, False):
-        fall = fall_across(profiles, 20.0, 3.5, slope.slope, is_left=is_left)
+        fall = fall_across(profiles, 20.0, 3.5, slope, is_left=is_left)
         assert fall.slope == pytest.approx(0.02)
-    assert math.isnan(fall_across(profiles, 20.0, math.nan, 0.0, is_left=True).slope)
+    assert math.isnan(fall_across(profiles, 20.0, math.nan, slope, is_left=True).slope)
 
 
 def test_medians_leave_out_what_is_not_known() -> None:
     rows = np.array([[1.0, np.nan, 3.0], [np.nan, np.nan, np.nan], [5.0, 1.0, 2.0]])
     np.testing.assert_array_equal(row_medians(rows), [2.0, np.nan, 2.0])
     assert row_medians(np.empty((2, 0))).shape == (2,)
+
+
+def test_what_lies_far_below_most_of_the_road_is_no_surface() -> None:
+    profiles = crowned(0.02, 0.0)
+    profiles.heights[:, :33] -= 1.5
+    profiles.heights[:, 33:37] = np.nan
+    slope = slope_along(profiles, 20.0)
+    fall = fall_across(profiles, 20.0, 5.0, slope, is_left=False)
+    assert math.isnan(fall.slope) or fall.slope == pytest.approx(0.02, abs=1e-6)
