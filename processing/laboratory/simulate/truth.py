@@ -140,33 +140,30 @@ def _member(one: TrueFeature, seen: RecordingEvidence, origin: Floats) -> TruthP
             facts[name] = np.round(np.array(value) + origin, _DIGITS).tolist()
         elif isinstance(value, float):
             facts[name] = round(value, _DIGITS)
-    pieces = seen.evidence.of(one.instance)
     facts["instance"] = one.instance
-    if one.file == "curbs":
-        facts.update(_curb(one, pieces, seen))
-    elif one.file == "wires":
-        facts.update(_wire(one, pieces, seen))
-    elif one.file == "markings":
-        facts.update(_marking(one, pieces, seen))
-    elif one.file == "barriers":
-        facts.update(_wire(one, pieces, seen))
-    elif one.file == "walls":
-        facts.update(_wall(one, seen))
-    elif one.file == "edges":
-        facts.update(_edge(one, seen))
-    elif one.file == "plant_areas":
-        points, covered = seen.plants.of(one)
-        facts.update({"points": points, "covered": round(covered, 3)})
-    else:
-        shown = _cover(one, pieces) if one.file == "covers" else _SHOWN[one.file](pieces)
-        facts.update(shown)
-        passed = seen.passes(one.xyz.mean(axis=0)[None])[0]
-        facts["in_span"] = bool(passed and one.facts.get("in_span", True))
+    facts.update(_shown(one, seen))
     return {
         "type": "Feature",
         "geometry": {"type": one.geometry, "coordinates": coordinates},
         "properties": facts,
     }
+
+
+def _shown(one: TrueFeature, seen: RecordingEvidence) -> TruthProperties:
+    """What the recording shows of a thing."""
+    pieces = seen.evidence.of(one.instance)
+    if one.file in _LINES:
+        return _LINES[one.file](one, pieces, seen)
+    if one.file == "walls":
+        return _wall(one, seen)
+    if one.file == "edges":
+        return _edge(one, seen)
+    if one.file == "plant_areas":
+        points, covered = seen.plants.of(one)
+        return {"points": points, "covered": round(covered, 3)}
+    shown = _cover(one, pieces) if one.file == "covers" else _SHOWN[one.file](pieces)
+    passed = seen.passes(one.xyz.mean(axis=0)[None])[0]
+    return {**shown, "in_span": bool(passed and one.facts.get("in_span", True))}
 
 
 def _curb(one: TrueFeature, pieces: Integers, seen: RecordingEvidence) -> TruthProperties:
@@ -279,6 +276,13 @@ def _cover(one: TrueFeature, pieces: Integers) -> TruthProperties:
 def _pole(pieces: Integers) -> TruthProperties:
     return {"points": int(pieces.sum())}
 
+
+_LINES: Mapping[str, Callable[[TrueFeature, Integers, RecordingEvidence], TruthProperties]] = {
+    "curbs": _curb,
+    "wires": _wire,
+    "markings": _marking,
+    "barriers": _wire,
+}
 
 _SHOWN: Mapping[str, Callable[[Integers], TruthProperties]] = {
     "gutters": _gutter,
