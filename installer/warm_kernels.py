@@ -39,7 +39,8 @@ DEMO_TOOLS = ("classify", "curbs", "gutters", "noise", "ground")
 
 TOOLS = (
     *DEMO_TOOLS,
-    *("wires", "signs", "trees", "markings", "barriers", "edges", "covers", "clearance"),
+    *("wires", "signs", "trees", "markings", "barriers", "walls"),
+    *("edges", "covers", "clearance"),
     *("segments", "normals"),
 )
 """Tools with kernels that run on a drive as it is."""
