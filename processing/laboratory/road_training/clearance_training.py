@@ -38,7 +38,7 @@ from processing.scoring.features.clearances import LIMIT_M, clearance_things, li
 
 EXPECTED = WeightPrior(
     (-3.0, *ClearanceFacts(
-        points=4.0, dense=3.0, deep=2.0, under=1.0, low=-2.0, walk=-1.0, unseen=-1.5
+        points=4.0, dense=3.0, deep=2.0, under=1.0, low=-2.0, walk=-0.25, unseen=-1.5
     )),
     (2.0, *ClearanceFacts(
         points=2.0, dense=2.0, deep=2.0, under=1.0, low=2.0, walk=0.01, unseen=1.0

@@ -50,7 +50,7 @@ class ClearanceFacts(NamedTuple):
 # walks isn't learnt, since no truth knows them.
 _CONSTANT = -1.26
 _WEIGHTS = ClearanceFacts(
-    points=1.06, dense=2.59, deep=0.05, under=0.14, low=-1.99, walk=-1.0, unseen=-1.5
+    points=1.06, dense=2.59, deep=0.05, under=0.14, low=-1.99, walk=-0.25, unseen=-1.5
 )
 
 
