@@ -33,6 +33,11 @@ _SPARSE_AT_TRUNKS, _DENSEST = 18.0, 75.0
 recordings have 3 to 11 there, streets 30 and more, also where noise of phase fills half of them
 with a point or two."""
 
+_SPARSE_ABOUT = 40.0
+"""The same in the cubes that half of the points lie in: real sparse recordings mostly have 7 to 23,
+122 simulated streets 65 and more. Noise that fills most cubes is a small part of the points, also
+where little else stands as high as trunks."""
+
 _TRUNKS = 2, 5
 """Cubes above the lowest one in the same place, between which trunks and posts are: 0.8 to 2.4 m.
 Crowns, fronts and noise in the air fill most cubes of a dense street with a point or two."""
@@ -43,6 +48,7 @@ points lie evenly, which makes it 0.53; about one scanner their number falls wit
 distance. 95 % of simulated single scans of many heads have no more, streets 0.49 and more."""
 
 _KEPT, _KEPT_AT_TRUNKS = "points a place", "points at trunks"
+_KEPT_ABOUT = "points about a point"
 
 _ENOUGH = 1_000
 """Points, at least: a turn of the smallest head has ten times as many."""
@@ -66,17 +72,24 @@ def is_single_scan(drive: Drive) -> bool:
 def are_sparse(drives: Sequence[Drive]) -> bool:
     """Whether trunks and posts of each drive have too few points for their shape.
 
-    Few are where anything is, and at the height of trunks: large crowns and noise in the air make
-    the one low on a dense street, low leaves the other. Not of drives without points.
+    Few are where anything is, at the height of trunks, and where most points are: large crowns and
+    noise in the air make the first low on a dense street, low leaves the second. Not of drives
+    without points.
     """
     return bool(drives) and all(
-        _density_of(drive) <= _SPARSE and _density_at_trunks(drive) <= _SPARSE_AT_TRUNKS
+        _density_of(drive) <= _SPARSE
+        and _density_at_trunks(drive) <= _SPARSE_AT_TRUNKS
+        and _density_about(drive) <= _SPARSE_ABOUT
         for drive in drives
     )
 
 
 def _density_at_trunks(drive: Drive) -> float:
     return drive.kept(_KEPT_AT_TRUNKS, lambda: points_at_trunks(middle_points(drive)))
+
+
+def _density_about(drive: Drive) -> float:
+    return drive.kept(_KEPT_ABOUT, lambda: points_about_a_point(middle_points(drive)))
 
 
 def _density_of(drive: Drive) -> float:
@@ -105,6 +118,21 @@ def points_a_place(xyz: Floats) -> float:
     if not len(xyz):
         return float("inf")
     return float(np.median(_cubes_of(xyz)[1]))
+
+
+def points_about_a_point(xyz: Floats) -> float:
+    """How many points lie in the fullest of the emptiest cubes that hold half of the points.
+
+    Parameters
+    ----------
+    xyz : (n, 3) float64
+        m; finite. Infinite without points.
+    """
+    if not len(xyz):
+        return float("inf")
+    counts = np.sort(_cubes_of(xyz)[1])
+    reached = np.cumsum(counts)
+    return float(counts[np.searchsorted(reached, reached[-1] / 2)])
 
 
 def points_at_trunks(xyz: Floats) -> float:

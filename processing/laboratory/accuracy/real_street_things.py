@@ -307,9 +307,10 @@ a labelled plate counts neither way, and stems of small trees mostly have the na
 
 Both are far sparser than what round shafts are fitted on, and shaken: a pole shows as two to five \
 upright lines of points a decimetre apart, each smooth to millimetres and off its neighbours by \
-centimetres. Where half of the cubes of 0.4 m hold six points or fewer, and three quarters of \
-those at the height of trunks eighteen or fewer, trunks and poles are told by what stands on, \
-beside and above columns in decimetres, by models learnt on simulated sparse profiles and single \
+centimetres. Where half of the cubes of 0.4 m hold six points or fewer, three quarters of those at \
+the height of trunks eighteen or fewer, and those that half of the points lie in forty or fewer, \
+trunks and poles are told by what stands on, beside and above columns in decimetres, by models \
+learnt on simulated sparse profiles and single \
 scans (`python -m processing.laboratory.road_training.coarse_training`), none of them from a \
 recording; settings were chosen by simulated streets, but the figures were looked \
 at while the facts were made. The fit of shafts alone had found 4, 4, 26 and 0, 1, 20 of Oakland, \

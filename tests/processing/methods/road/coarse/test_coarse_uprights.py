@@ -23,7 +23,12 @@ from processing.methods.road.objects.columns import FoundColumns
 from processing.methods.road.objects.survey import survey_columns
 from processing.project.importing.import_request import ImportRequest
 from processing.project.importing.importing import import_drives
-from processing.recording.density import are_sparse, points_a_place, points_at_trunks
+from processing.recording.density import (
+    are_sparse,
+    points_a_place,
+    points_about_a_point,
+    points_at_trunks,
+)
 from processing.recording.drive import Drive
 from processing.tools.poles import PoleParameters, find_poles
 from processing.tools.trees import TreeParameters, find_trees
@@ -160,10 +165,21 @@ def test_noise_in_the_air_and_large_crowns_make_no_street_sparse(tmp_path: Path)
     assert not are_sparse([_drive(np.concatenate([dense, air]), tmp_path)])
 
 
+def test_nor_does_noise_about_what_is_as_high_as_trunks(tmp_path: Path) -> None:
+    dense = _street(0.04)
+    air = np.random.default_rng(7).uniform((0, -30, 0.8), (40, 30, 2.4), (90_000, 3)) + _ORIGIN
+    points = np.concatenate([dense, air])
+    assert points_a_place(points) <= 6
+    assert points_at_trunks(points) <= 6
+    assert points_about_a_point(dense) > 60
+    assert not are_sparse([_drive(points, tmp_path)])
+
+
 def test_no_drives_and_no_points_are_not_sparse() -> None:
     assert not are_sparse([])
     assert np.isinf(points_a_place(np.empty((0, 3))))
     assert np.isinf(points_at_trunks(np.empty((0, 3))))
+    assert np.isinf(points_about_a_point(np.empty((0, 3))))
     assert points_at_trunks(np.zeros((5, 3))) == 5
 
 
