@@ -28,6 +28,9 @@ def one_click_buttons() -> Mapping[str, ToolButton]:
     return {tool.id: tool.button for tool in TOOLS.values() if tool.button is not None}
 
 
+_FIRST = ("curbs", "gutters", "trees", "signs", "poles", "wires")
+"""What stands in the menu itself; what else one click finds is a menu further, with its key."""
+
 FIND_ALL = "run-extractors"
 """Id of the action that runs all of them that find things."""
 
@@ -49,7 +52,7 @@ def process_actions(parts: WindowParts) -> tuple[Action, ...]:
             run_action_of(tool),
             button.text,
             run,
-            "process",
+            "process" if tool in _FIRST else "process/map",
             (button.key,),
             button.icon,
             toolbar=_TOOLBAR,

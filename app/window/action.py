@@ -122,6 +122,7 @@ SUBMENUS: Mapping[str, Text] = {
     "edit/lines": Text("Lines", "線の編集"),
     "edit/status": Text("Status", "状態"),
     "draw/widths": Text("Widths and measurements", "幅と計測結果"),
+    "process/map": Text("Other lines and areas of a road map", "道路地図のその他の線・範囲"),
     "process/settings": Text("Settings of a tool", "ツールの設定"),
     "draw/templates": Text("Templates", "テンプレート"),
     "draw/kinds": Text("Kinds by number key", "数字キーの種別"),

@@ -78,7 +78,8 @@ def test_what_a_map_can_be_written_as_can_be_chosen() -> None:
         "sheet_division", "drawing_layers", "sheet_overlap", "section_scale",
         "section_height_scale", "profile_scale", "profile_height_scale", "sheet_paper",
         "sheet_title", "sheet_client", "sheet_maker", "sheet_surveyor", "sheet_date",
-        "encoding", "digits", "landxml_form", "section_pitch", "section_stations",
+        "digits", "road_pitch", "road_clearance", "walk_clearance", "encoding", "landxml_form",
+        "section_pitch", "section_stations",
         "section_reach", "section_depth", "sheet_heights", "lane_pitch", "sheet_route",
         "check_points", "check_map", "map_level",
     ]  # fmt: skip

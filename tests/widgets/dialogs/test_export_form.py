@@ -79,6 +79,9 @@ def test_what_is_chosen_is_asked_for(qtbot: QtBot, tmp_path: Path) -> None:
         "section_depth": 0.5,
         "landxml_form": "J-LandXML",
         "lane_pitch": 5.0,
+        "road_pitch": 20.0,
+        "road_clearance": 4.5,
+        "walk_clearance": 2.5,
         "tiny_decimals": 1,
     }
     assert request.options == expected
