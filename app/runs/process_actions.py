@@ -29,7 +29,8 @@ def one_click_buttons() -> Mapping[str, ToolButton]:
 
 
 _FIRST = ("curbs", "gutters", "trees", "signs", "poles", "wires")
-"""What stands in the menu itself; what else one click finds is a menu further, with its key."""
+"""What stands in the menu itself and in the toolbar, where the drive and its image are chosen, too;
+what else one click finds is a menu further, with its key."""
 
 FIND_ALL = "run-extractors"
 """Id of the action that runs all of them that find things."""
@@ -55,7 +56,7 @@ def process_actions(parts: WindowParts) -> tuple[Action, ...]:
             "process" if tool in _FIRST else "process/map",
             (button.key,),
             button.icon,
-            toolbar=_TOOLBAR,
+            toolbar=_TOOLBAR if tool in _FIRST else 0,
             hint=_HINT.filled(explanation=TOOLS[tool].explanation, way=_WAY),
             needs_project=True,
         )

@@ -17,6 +17,7 @@ from app.review.review_wiring import QUEUE_ACTIONS
 from app.runs.process_actions import FIND_ALL, one_click_buttons, run_action_of
 from app.settings.settings import Settings
 from app.window.window_parts import WindowParts
+from tests.app.test_one_click import open_street
 from widgets.dialogs.shortcuts import ShortcutsForm
 from widgets.parts.command_palette import CommandPalette
 
@@ -123,6 +124,17 @@ def test_every_button_of_the_toolbar_says_its_name_and_its_key(parts: WindowPart
 def test_all_buttons_of_the_toolbar_are_seen_at_1366_pixels(
     qtbot: QtBot, parts: WindowParts
 ) -> None:
+    for button in parts.window.findChildren(QWidget, "qt_toolbar_ext_button"):
+        assert not button.isVisible()
+
+
+def test_nor_is_one_hidden_in_japanese_once_a_drive_is_open(
+    qtbot: QtBot, start: WindowStarter, tmp_path: Path
+) -> None:
+    Settings(tmp_path / "settings.ini").choose_language("ja")
+    parts = start()
+    open_street(parts, tmp_path, qtbot)
+    qtbot.waitUntil(parts.image_view.isVisible)
     for button in parts.window.findChildren(QWidget, "qt_toolbar_ext_button"):
         assert not button.isVisible()
 
