@@ -48,8 +48,8 @@ from processing.methods.road.barriers.street_barriers import (
     seen_strips,
 )
 from processing.methods.road.barriers.strip_profiles import COLUMN_M
-from processing.scoring.features.barriers import OTHER
 from processing.scoring.features.line_positions import PolylineIndex, middle_positions
+from processing.scoring.features.typed_lines import OTHER
 
 
 def _expected(**others: float) -> ChanceTerms:

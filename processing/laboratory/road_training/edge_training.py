@@ -43,9 +43,10 @@ from processing.methods.road.edges.fact_kernels import CELL_M, NOT_SEEN
 from processing.methods.road.edges.street_edges import SeenEdges, seen_edges
 from processing.methods.road.objects.survey import survey_ground
 from processing.scoring.features.asked_lines import is_seen
-from processing.scoring.features.edges import LIMITS, OTHER, TOLERANCE_M
+from processing.scoring.features.edges import LIMITS, TOLERANCE_M
 from processing.scoring.features.line_positions import PolylineIndex, middle_positions
 from processing.scoring.features.mapped_features import MappedFeature
+from processing.scoring.features.typed_lines import OTHER
 
 SIZE = TreesSize(
     trees=90,

@@ -9,25 +9,13 @@ side streets.
 from __future__ import annotations
 
 from processing.core.text import Text
-from processing.scoring.features.asked_lines import (
-    ScoredLineLimits,
-    asked_places,
-    made_up_places,
-)
-from processing.scoring.features.file_scores import (
-    DetectionCounts,
-    FileScore,
-    errors_of,
-    named_share,
-)
-from processing.scoring.features.line_positions import PolylineIndex
+from processing.scoring.features.asked_lines import ScoredLineLimits
+from processing.scoring.features.file_scores import FileScore, errors_of
 from processing.scoring.features.mapped_features import MappedFile
-from processing.scoring.points.confusion_matrix import BinaryConfusionMatrix
+from processing.scoring.features.typed_lines import typed_lines
 
 EDGES: dict[str, dict[str, object]] = {"road_edge": {}, "sidewalk": {"type": "walk"}}
 """Kinds of features that are edges of the carriageway, and what they say of what lies outside."""
-
-OTHER = "other"
 
 TOLERANCE_M = 0.1
 """In plan: a fifth of a millimetre on a map of 1 : 500."""
@@ -42,7 +30,6 @@ _BESIDE_M = 0.3
 """A result so near to what isn't asked for isn't judged."""
 
 LIMITS = ScoredLineLimits(TOLERANCE_M, STEP_M, LEAST_POINTS, _BESIDE_M)
-_LINES = Text("lines, in decimetres", "線（延長、0.1 m単位）")
 _NAME = Text("edges of the carriageway", "車道の縁")
 
 
@@ -54,23 +41,12 @@ def edge_score(result: MappedFile, truth: MappedFile) -> FileScore:
     BadFile
         Features aren't edges of the carriageway.
     """
-    found = result.of_kinds(EDGES, "line", _NAME)
-    true = truth.of_kinds(EDGES, "line", _NAME)
-    lines = [one for one in true if one.facts.get("type") != OTHER]
-    others = [one for one in true if one.facts.get("type") == OTHER]
-    places = asked_places(lines, LIMITS)
-    near = PolylineIndex([one.xyz for one in found]).nearest(places.xyz, TOLERANCE_M)
-    is_hit = (near.line >= 0) & places.is_asked
-    hits, missed = int(is_hit.sum()), int(((near.line < 0) & places.is_asked).sum())
-    made_up = int(made_up_places(found, (lines, places), others, LIMITS).sum())
-    same = [
-        found[a].facts.get("type") == lines[b].facts.get("type")
-        for a, b in zip(near.line[is_hit].tolist(), places.line[is_hit].tolist(), strict=True)
-    ]
+    judged = typed_lines(result, truth, EDGES, _NAME, LIMITS)
+    near, places, is_hit = judged.near, judged.places, judged.is_hit
     return FileScore(
         "edges",
-        (DetectionCounts("lines", _LINES, BinaryConfusionMatrix(hits, made_up, missed, 0)),),
-        shares=(named_share("type", ("type is right", "種類の正解"), sum(same), len(same)),),
+        (judged.counts,),
+        shares=(judged.types,),
         errors=(
             errors_of("off", ("distance to the line", "線までの距離"), "m", near.off_m[is_hit]),
             errors_of(
@@ -80,6 +56,6 @@ def edge_score(result: MappedFile, truth: MappedFile) -> FileScore:
                 (near.xyz[is_hit] - places.xyz[is_hit])[:, 2],
             ),
         ),
-        left_out={"unseen": int((~places.is_asked).sum())},
+        left_out={"unseen": judged.unseen},
         limits={"tolerance_m": TOLERANCE_M, "least_points_per_m": LEAST_POINTS},
     )
