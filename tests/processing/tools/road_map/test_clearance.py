@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 
 from processing.core.errors import Cancelled
-from processing.core.monitor import SilentMonitor
 from processing.laboratory.simulate.scene.mesh import TriangleShape
 from processing.methods.road.objects import drive_chunks
 from processing.recording.drive import Drive
 from processing.tools.road_map.clearance import ClearanceParameters, find_clearance
+from tests.monitors import CancelledAfter
 from tests.processing.methods.road.bad_recordings import (
     HEAD_90,
     ORIGIN,
@@ -156,13 +156,5 @@ def test_recordings_without_a_road_are_told(
 
 
 def test_a_search_that_is_cancelled_ends_at_once(drives: tuple[Drive, ...]) -> None:
-    class Stopping(SilentMonitor):
-        left = 3
-
-        def check(self) -> None:
-            self.left -= 1
-            if self.left < 0:
-                raise Cancelled
-
     with pytest.raises(Cancelled):
-        find_clearance(drives, ClearanceParameters(), Stopping())
+        find_clearance(drives, ClearanceParameters(), CancelledAfter(3))

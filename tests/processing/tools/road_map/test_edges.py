@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 
 from processing.core.errors import Cancelled
-from processing.core.monitor import SilentMonitor
 from processing.image.scan_lines.scanlines import ScanlineSettings, scanline_through
 from processing.methods.road.edges.edge_courses import _without_entrances
 from processing.methods.road.objects import drive_chunks
@@ -21,6 +20,7 @@ from processing.project.importing.importing import ImportRequest
 from processing.recording.drive import Drive
 from processing.tools.road_map.edges import EdgeParameters, diagnose_edges, find_edges
 from processing.tools.tool import Candidate
+from tests.monitors import CancelledAfter
 from tests.processing.methods.road.bad_recordings import (
     HEAD_45,
     HIGH_M,
@@ -191,16 +191,8 @@ def test_a_drive_of_noise_has_no_edges(tmp_path: Path) -> None:
 
 
 def test_a_search_that_is_cancelled_ends_at_once(drives: tuple[Drive, ...]) -> None:
-    class Stopping(SilentMonitor):
-        left = 6
-
-        def check(self) -> None:
-            self.left -= 1
-            if self.left < 0:
-                raise Cancelled
-
     with pytest.raises(Cancelled):
-        find_edges(drives, EdgeParameters(), Stopping())
+        find_edges(drives, EdgeParameters(), CancelledAfter(6))
 
 
 def test_a_section_shows_where_the_carriageway_ends_and_why(drives: tuple[Drive, ...]) -> None:

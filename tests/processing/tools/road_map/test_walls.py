@@ -20,6 +20,7 @@ from processing.project.importing.importing import ImportRequest
 from processing.recording.drive import Drive
 from processing.tools.road_map.walls import WallParameters, diagnose_walls, find_walls
 from processing.tools.tool import Candidate
+from tests.monitors import CancelledAfter
 from tests.processing.methods.road.bad_recordings import (
     HEAD_45,
     ORIGIN,
@@ -204,16 +205,8 @@ def test_a_road_with_nothing_beside_it_is_told(tmp_path: Path) -> None:
 
 
 def test_a_search_that_is_cancelled_ends_at_once(drives: tuple[Drive, ...]) -> None:
-    class Stopping(SilentMonitor):
-        left = 6
-
-        def check(self) -> None:
-            self.left -= 1
-            if self.left < 0:
-                raise Cancelled
-
     with pytest.raises(Cancelled):
-        find_walls(drives, WallParameters(), Stopping())
+        find_walls(drives, WallParameters(), CancelledAfter(6))
 
 
 def test_a_section_shows_the_strip_of_each_face_and_what_decided(
