@@ -6,7 +6,9 @@ metres from the scanner, so that a post is a handful of points and a façade som
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -47,8 +49,7 @@ _GATHERED = 0.38
 points lie evenly, which makes it 0.53; about one scanner their number falls with the squared
 distance. 95 % of simulated single scans of many heads have no more, streets 0.49 and more."""
 
-_KEPT, _KEPT_AT_TRUNKS = "points a place", "points at trunks"
-_KEPT_ABOUT = "points about a point"
+_KEPT = "cubes of the middle"
 
 _ENOUGH = 1_000
 """Points, at least: a turn of the smallest head has ten times as many."""
@@ -58,12 +59,19 @@ _LAST_CUBE = (1 << _BITS) - 1
 """Along each axis: 800 km; what lies farther is counted with what lies there by chance."""
 
 
+class _Cubes(NamedTuple):
+    """The numbers of cubes that have points, those of one place in plan upwards, and how many."""
+
+    codes: Integers
+    counts: Integers
+
+
 def is_single_scan(drive: Drive) -> bool:
     """Whether most places have a few points only, and these gather about one scanner.
 
     A handful of points is none: of it nothing is known.
     """
-    if _density_of(drive) > _FEW:
+    if _in_half_of(_middle_cubes(drive)) > _FEW:
         return False
     xyz = middle_points(drive)
     return len(xyz) >= _ENOUGH and spread_of(xyz) <= _GATHERED
@@ -77,23 +85,15 @@ def are_sparse(drives: Sequence[Drive]) -> bool:
     without points.
     """
     return bool(drives) and all(
-        _density_of(drive) <= _SPARSE
-        and _density_at_trunks(drive) <= _SPARSE_AT_TRUNKS
-        and _density_about(drive) <= _SPARSE_ABOUT
-        for drive in drives
+        _in_half_of(cubes) <= _SPARSE
+        and _at_trunks_of(cubes) <= _SPARSE_AT_TRUNKS
+        and _about_a_point_of(cubes) <= _SPARSE_ABOUT
+        for cubes in map(_middle_cubes, drives)
     )
 
 
-def _density_at_trunks(drive: Drive) -> float:
-    return drive.kept(_KEPT_AT_TRUNKS, lambda: points_at_trunks(middle_points(drive)))
-
-
-def _density_about(drive: Drive) -> float:
-    return drive.kept(_KEPT_ABOUT, lambda: points_about_a_point(middle_points(drive)))
-
-
-def _density_of(drive: Drive) -> float:
-    return drive.kept(_KEPT, lambda: points_a_place(middle_points(drive)))
+def _middle_cubes(drive: Drive) -> _Cubes:
+    return drive.kept(_KEPT, lambda: _cubes_of(middle_points(drive)))
 
 
 def middle_points(drive: Drive) -> Floats:
@@ -115,9 +115,7 @@ def points_a_place(xyz: Floats) -> float:
     xyz : (n, 3) float64
         m; finite.
     """
-    if not len(xyz):
-        return float("inf")
-    return float(np.median(_cubes_of(xyz)[1]))
+    return _in_half_of(_cubes_of(xyz))
 
 
 def points_about_a_point(xyz: Floats) -> float:
@@ -128,11 +126,7 @@ def points_about_a_point(xyz: Floats) -> float:
     xyz : (n, 3) float64
         m; finite. Infinite without points.
     """
-    if not len(xyz):
-        return float("inf")
-    counts = np.sort(_cubes_of(xyz)[1])
-    reached = np.cumsum(counts)
-    return float(counts[np.searchsorted(reached, reached[-1] / 2)])
+    return _about_a_point_of(_cubes_of(xyz))
 
 
 def points_at_trunks(xyz: Floats) -> float:
@@ -145,9 +139,25 @@ def points_at_trunks(xyz: Floats) -> float:
     xyz : (n, 3) float64
         m; finite.
     """
-    if not len(xyz):
-        return float("inf")
-    codes, counts = _cubes_of(xyz)
+    return _at_trunks_of(_cubes_of(xyz))
+
+
+def _in_half_of(cubes: _Cubes) -> float:
+    return float(np.median(cubes.counts)) if len(cubes.counts) else math.inf
+
+
+def _about_a_point_of(cubes: _Cubes) -> float:
+    if not len(cubes.counts):
+        return math.inf
+    counts = np.sort(cubes.counts)
+    reached = np.cumsum(counts)
+    return float(counts[np.searchsorted(reached, reached[-1] / 2)])
+
+
+def _at_trunks_of(cubes: _Cubes) -> float:
+    codes, counts = cubes
+    if not len(counts):
+        return math.inf
     first = np.flatnonzero(np.diff(codes >> _BITS, prepend=-1))
     lowest = np.repeat(codes[first], np.diff(first, append=len(codes)))
     above = codes - lowest
@@ -155,12 +165,13 @@ def points_at_trunks(xyz: Floats) -> float:
     return float(np.percentile(at_trunks if at_trunks.size else counts, _DENSEST))
 
 
-def _cubes_of(xyz: Floats) -> tuple[Integers, Integers]:
-    """The numbers of cubes that have points, those of one place in plan upwards, and how many."""
+def _cubes_of(xyz: Floats) -> _Cubes:
+    if not len(xyz):
+        return _Cubes(np.empty(0, np.int64), np.empty(0, np.int64))
     cubes = ((xyz - xyz.min(axis=0)) / _PLACE_M).astype(np.int64) & _LAST_CUBE
     codes = (cubes[:, 0] << 2 * _BITS) | (cubes[:, 1] << _BITS) | cubes[:, 2]
     numbers, counts = np.unique(codes, return_counts=True)
-    return numbers, counts
+    return _Cubes(numbers, counts)
 
 
 def spread_of(xyz: Floats) -> float:
