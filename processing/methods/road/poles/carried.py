@@ -83,6 +83,15 @@ _WIRED_M, _CONCRETE_TAPER = 6.5, 0.003
 """Utility poles are higher: their lowest wire hangs 5 m over the road. Metres of radius lost in a
 metre: half of what poles of concrete lose (JIS A 5373), and more than straight steel pipes."""
 
+_STRAIGHT_TAPER, _SURE = 6e-4, 4.0
+"""Metres of radius lost in a metre by what is measured of straight pipes at most, 2 mm of 3 m, and
+standard deviations from which a taper isn't chance: two are 5 in 100, and beams that widen upwards
+aren't chance either."""
+
+_ROAD_ARM_M = 7.5
+"""What hangs higher on an arm is a lamp: signs and signals over roads begin at 5 m (道路標識設置基
+準) and are no taller than 2.5 m."""
+
 _THICK_M = 0.5
 """Visors of signals and tilted plates are thinner across the arm."""
 
@@ -103,9 +112,13 @@ _HELD_M, _HELD_FROM_M = 0.08, 0.3
 """How far a plate that a shaft holds stands before its surface, with its clamps; and how far from
 it patches tell that."""
 
-_LOW_PLATE_M = 1.3
-"""Middles of patches below are of no road sign: lower edges of signs hang at 1.8 m, on narrow roads
-somewhat lower (道路標識設置基準 2-2); timetables, cloths of banners and boards hang lower."""
+_LOW_PLATE_M = 1.5
+"""Middles of patches below are of no road sign: lower edges of signs hang at 1.8 m, those of the
+plates below them somewhat lower (道路標識設置基準 2-2); timetables, cloths of banners and boards
+hang lower."""
+
+_HEAD_M = 0.25
+"""So near to its end, and above, a tall post holds a lamp's head; plates reach lower."""
 
 _ONE_MIRROR_DEG = 15.0
 """Between patches of one mirror in plan: 0.25 m from the middle of one of 2.2 m radius it is 7
@@ -460,21 +473,31 @@ def type_of(shaft: Shaft, carried: Carried, *, over: float, is_reflecting: bool)
     is_board = diameter > _SIGN_POST_M and not is_reflecting
     if diameter < _CANE_M or carried.plate_low_m < _LOW_PLATE_M or is_board:
         plate = "other" if plate == "sign_pole" or diameter < _CANE_M else plate
-    is_straight = high < ARMS_FROM_M or shaft.taper < _CONCRETE_TAPER / 2
+    # Posts that grow thinner upwards are made for lamps, those of signs are straight pipes.
+    is_conical = high > ARMS_FROM_M and _is_conical(shaft)
     is_slim = diameter < (_TALL_DIAMETER_M if high < _TALL_M else _SIGN_POST_M)
-    if is_slim and has_plate and is_straight:
+    if is_slim and has_plate and not is_conical and _holds_plate(shaft, carried):
         return plate
     if _is_for_wires(shaft, carried, diameter):
         return "utility_pole"
-    if is_board and has_plate and is_straight and high < _WIRED_M and _is_high_board(carried):
+    if is_board and has_plate and not is_conical and high < _WIRED_M and _is_high_board(carried):
         return "other"
     if high > ARMS_FROM_M and carried.arm_m >= _LEAST_ARM_M:
-        return _of_arm(carried)
-    # Posts that grow thinner upwards are made for lamps, those of signs are straight pipes.
-    is_conical = high > ARMS_FROM_M and shaft.taper > _CONCRETE_TAPER
+        is_lamp = is_conical or carried.arm_height_m > _ROAD_ARM_M
+        return "street_light" if is_lamp else _of_arm(carried)
     if high > _TALL_M or is_conical:
         return "street_light" if diameter < _UTILITY_M else "utility_pole"
     return plate if has_plate else "other"
+
+
+def _is_conical(shaft: Shaft) -> bool:
+    """Whether a shaft grows thinner upwards beyond what chance and beams make of a pipe."""
+    return shaft.taper > max(_STRAIGHT_TAPER, _SURE * shaft.taper_deviation)
+
+
+def _holds_plate(shaft: Shaft, carried: Carried) -> bool:
+    """Whether what hangs on a tall post is fastened below its end, as no lamp's head is."""
+    return shaft.top_m < ARMS_FROM_M or carried.plate_low_m < shaft.top_m - _HEAD_M
 
 
 def _is_for_wires(shaft: Shaft, carried: Carried, diameter_m: float) -> bool:
@@ -490,7 +513,7 @@ def _is_for_wires(shaft: Shaft, carried: Carried, diameter_m: float) -> bool:
 def _is_high_board(carried: Carried) -> bool:
     """Whether what a post holds is wide and smooth and hangs above people."""
     is_wide = carried.smooth >= _BOARD and carried.plate_m > _BOARD_M
-    return is_wide and carried.plate_low_m > ARMS_FROM_M
+    return is_wide and ARMS_FROM_M < carried.plate_low_m < math.inf
 
 
 def _of_arm(carried: Carried) -> str:

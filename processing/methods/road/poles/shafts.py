@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -80,6 +81,9 @@ _HIDDEN_M = 1.5
 """Up to which height at least the lower part of a raised column's shaft is hidden: what shows lower
 and stands nowhere free there has a trunk's stakes or leaves about it."""
 
+_FEWEST_OF_TAPER = 10
+"""Points of fewer a line of radii says nothing."""
+
 _SAME_M = 0.1
 """Axes nearer than this are of one shaft that two columns showed."""
 
@@ -126,6 +130,18 @@ class Shaft:
     def radius_at(self, height_m: float) -> float:
         """Radius at a height above the foot, m."""
         return self.radius_m - self.taper * height_m
+
+    @property
+    def taper_deviation(self) -> float:
+        """Standard deviation of the taper by its points' noise; of half a round that of a whole.
+
+        A line of radii over heights: noise over the spread of the heights and the root of their
+        number.
+        """
+        heights = self.local[:, 2]
+        if len(heights) < _FEWEST_OF_TAPER:
+            return math.inf
+        return 2 * self.noise_m / max(float(heights.std()) * math.sqrt(len(heights)), 1e-9)
 
 
 def find_shafts(
