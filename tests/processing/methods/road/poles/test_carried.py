@@ -29,7 +29,8 @@ NOISE_M = 0.002
 NOTHING = np.empty((0, 3))
 
 
-def _shaft(diameter_m: float, top_m: float) -> Shaft:
+def _shaft(diameter_m: float, top_m: float, points: int = 900) -> Shaft:
+    heights = np.linspace(0, top_m, points)
     return Shaft(
         foot=np.zeros(3),
         lean=np.zeros(2),
@@ -42,7 +43,7 @@ def _shaft(diameter_m: float, top_m: float) -> Shaft:
         told=np.zeros(SHAFT_WIDTH),
         drives=np.zeros(0, np.int64),
         points=np.zeros(0, np.int64),
-        local=NOTHING,
+        local=np.column_stack([np.zeros(points), np.zeros(points), heights]),
     )
 
 
@@ -167,3 +168,17 @@ def test_a_conical_post_of_five_metres_is_a_lamp_and_a_straight_one_a_sign() -> 
     straight = _shaft(0.0891, 5.2)
     assert _type_of(straight, plate) == "sign_pole"
     assert _type_of(replace(straight, taper=0.011), plate) == "street_light"
+    assert _type_of(replace(straight, taper=0.0009), plate) == "street_light"
+    few = replace(_shaft(0.0891, 5.2, points=40), taper=0.0009)
+    assert _type_of(few, plate) == "sign_pole"  # so much is chance of 40 points
+
+
+def test_the_head_that_ends_a_slim_post_is_a_lamp_and_no_plate() -> None:
+    shaft = _shaft(0.0891, 5.0)
+    arm = _plate(0.08, (4.96, 5.04), 0.0, 1e6) + (0.0, -0.3, 0.0)
+    head = _plate(0.3, (4.95, 5.05), 0.0, 1e6) + (0.0, -0.85, 0.0)
+    along = np.column_stack([np.zeros(40), np.linspace(-0.1, -0.9, 40), np.full(40, 5.0)])
+    lamp = np.concatenate([arm, head, along])
+    assert _type_of(shaft, _about(lamp)) == "street_light"
+    sign = _plate(0.6, (2.6, 3.2), 0.06, 1e6)
+    assert _type_of(_shaft(0.0891, 4.0), _about(sign)) == "sign_pole"
