@@ -32,20 +32,18 @@ from processing.laboratory.road_training.varied_streets import varied_streets
 from processing.methods.road.objects.column_points import points_about
 from processing.methods.road.objects.survey import survey_columns
 from processing.methods.road.poles.pole_confidence import MODELS, SIGNS, PoleFacts, facts_of, is_low
-from processing.methods.road.poles.roofs import fellows_of
 from processing.methods.road.poles.shaft_kernels import FREE
-from processing.methods.road.poles.shaft_sides import seen_sides
 from processing.methods.road.poles.shafts import Shaft, find_shafts, with_whole_sides
 from processing.methods.road.poles.street_poles import (
     REACH_M,
-    carried_if_likely,
+    shafts_about_all,
     usual_noise_m,
 )
-from processing.methods.road.poles.surroundings import surroundings_of
+from processing.methods.road.poles.trunks_among import tree_chances
 from processing.scoring.features.object_matches import positions_of
 from processing.scoring.features.poles import POLES
 
-_SIZE = TreesSize(trees=200, leaves=4, rate=0.1, least_in_a_leaf=20, signs=SIGNS)
+_SIZE = TreesSize(trees=200, leaves=4, rate=0.1, least_in_a_leaf=60, signs=SIGNS)
 
 _NOISE_CODES = (7, 18)
 
@@ -102,16 +100,16 @@ def _judge_shafts(scene: RoadScene) -> Iterator[tuple[bool, PoleFacts, bool]]:
     feet = np.array([one.foot[:2] for one in shafts])
     around = points_about(scene.drives, plan, feet, REACH_M, monitor)
     shafts = with_whole_sides(shafts, around, monitor)
-    usual_m, fellows = usual_noise_m(shafts), fellows_of(shafts)
+    usual_m = usual_noise_m(shafts)
     labels = label_shafts(shafts, true, usual_m)
     codes = _codes(scene)
-    for number, (shaft, label) in enumerate(zip(shafts, labels, strict=True)):
+    trees = tree_chances(scene.drives, plan, np.array([one.foot[:2] for one in shafts]), monitor)
+    found = shafts, around, usual_m
+    for number, about in shafts_about_all(scene.drives, plan, found, monitor, least=0.0):
+        shaft, label = shafts[number], labels[number]
         if label is not None and not (label is False and _is_noise(shaft, codes)):
-            local = around.local[around.of(number)] - shaft.foot
-            beside = surroundings_of(local, shaft, usual_m, fellows[number])
-            carried = carried_if_likely(around, number, shafts, usual_m)
-            sides = seen_sides(scene.drives, shaft, plan.origin)
-            yield is_low(shaft), facts_of(shaft, beside, carried, sides, usual_m), label
+            about = about._replace(tree=float(trees[number]))
+            yield is_low(shaft), facts_of(shaft, about, usual_m), label
 
 
 def _codes(scene: RoadScene) -> list[NDArray[np.uint8]]:

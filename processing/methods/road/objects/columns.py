@@ -79,6 +79,10 @@ class FoundColumns:
     def __len__(self) -> int:
         return len(self.middles)
 
+    def chosen(self, which: NDArray[np.bool_]) -> FoundColumns:
+        """Some of them."""
+        return FoundColumns(self.middles[which], self.ground[which], self.slabs[which])
+
 
 def find_columns(
     drives: Sequence[Drive],

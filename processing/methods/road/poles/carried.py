@@ -112,10 +112,9 @@ _HELD_M, _HELD_FROM_M = 0.08, 0.3
 """How far a plate that a shaft holds stands before its surface, with its clamps; and how far from
 it patches tell that."""
 
-_LOW_PLATE_M = 1.5
-"""Middles of patches below are of no road sign: lower edges of signs hang at 1.8 m, those of the
-plates below them somewhat lower (道路標識設置基準 2-2); timetables, cloths of banners and boards
-hang lower."""
+_LOW_PLATE_M = 1.3
+"""Middles of patches below are of no road sign: lower edges of signs hang at 1.8 m, on narrow roads
+somewhat lower (道路標識設置基準 2-2); timetables, cloths of banners and boards hang lower."""
 
 _HEAD_M = 0.25
 """So near to its end, and above, a tall post holds a lamp's head; plates reach lower."""
@@ -447,11 +446,6 @@ def is_short(shaft: Shaft) -> bool:
     return shaft.top_m < _SHORT_M
 
 
-def asks_for_brightness(shaft: Shaft) -> bool:
-    """Whether the type of a pole follows from how bright what it carries is."""
-    return is_short(shaft) or 2 * shaft.radius_at(_BREAST_M) > _SIGN_POST_M
-
-
 def type_of(shaft: Shaft, carried: Carried, *, over: float, is_reflecting: bool) -> str:
     """The contract's name of a pole's type.
 
@@ -460,7 +454,7 @@ def type_of(shaft: Shaft, carried: Carried, *, over: float, is_reflecting: bool)
     over : float
         Share of the metre above its top that something fills near its axis.
     is_reflecting : bool
-        Whether it has a reflector or a face that shines, where that is asked.
+        Whether it has a reflector or a face that shines.
     """
     diameter, high = 2 * shaft.radius_at(min(_BREAST_M, shaft.top_m / 2)), shaft.top_m
     if is_short(shaft) and over <= _GOES_ON:
@@ -483,8 +477,7 @@ def type_of(shaft: Shaft, carried: Carried, *, over: float, is_reflecting: bool)
     if is_board and has_plate and not is_conical and high < _WIRED_M and _is_high_board(carried):
         return "other"
     if high > ARMS_FROM_M and carried.arm_m >= _LEAST_ARM_M:
-        is_lamp = is_conical or carried.arm_height_m > _ROAD_ARM_M
-        return "street_light" if is_lamp else _of_arm(carried)
+        return _of_arm(carried)
     if high > _TALL_M or is_conical:
         return "street_light" if diameter < _UTILITY_M else "utility_pole"
     return plate if has_plate else "other"
@@ -517,7 +510,7 @@ def _is_high_board(carried: Carried) -> bool:
 
 
 def _of_arm(carried: Carried) -> str:
-    if carried.tall_m < _LAMP_TALL_M:
+    if carried.tall_m < _LAMP_TALL_M or carried.arm_height_m > _ROAD_ARM_M:
         return "street_light"
     if carried.thick_m > _THICK_M:
         return "street_light"  # a crown about it

@@ -50,6 +50,9 @@ _PIPE_M = 0.07
 """Radius of the thickest posts of signs and mirrors, 101.6 mm and a wrap (JIS G 3444)."""
 
 
+_LEARNT = 0.7
+"""Share of the learnt log-odds: of streets that neither knew, what was likely was so most often."""
+
 _MOST_TOP_M, _LEAST_TAPER, _MOST_TAPER = 15.0, -0.02, 0.03
 """As far as a fact tells more of a shaft's own measures."""
 
@@ -112,6 +115,11 @@ class PoleFacts(NamedTuple):
         How high it was seen, up to 15 m, and its radius.
     taper : float
         What the radius loses in a metre, −0.02 to 0.03.
+    shines : float
+        Whether a reflector or the face of a sign is on its upper half, 0 or 1; 0.5 where no
+        intensity tells.
+    tree : float
+        How sure the search for trees is of it, 0 to 1; 0 where it was not asked.
     """
 
     rough: float
@@ -140,6 +148,22 @@ class PoleFacts(NamedTuple):
     top_m: float
     radius_m: float
     taper: float
+    shines: float
+    tree: float
+
+
+class ShaftAbout(NamedTuple):
+    """What is known about a shaft besides its own measures.
+
+    ``beside``: what stands about it; ``carried``; ``sides``: which of its sides were seen;
+    ``shines``, ``tree``: as of :class:`PoleFacts`.
+    """
+
+    beside: Surroundings
+    carried: Carried
+    sides: SeenSides
+    shines: float
+    tree: float
 
 
 _LOW_M = 1.8
@@ -147,8 +171,9 @@ _LOW_M = 1.8
 and people, which end below; the lowest plates of signs hang from there on (道路標識設置基準)."""
 
 # Logistic weights, held to what reasoning expects, of 1,761 low and 2,018 high shafts, 49 and 427
-# of them poles, of 18 usual streets and 16 avenues by scanners of the catalogue.
-_LOW_CONSTANT = -7.68
+# of them poles, of 18 usual streets and 16 avenues by scanners of the catalogue; those of what
+# shines and of trees, with the constants beside them, of the streets of `pole_training`.
+_LOW_CONSTANT = -8.22
 _LOW_WEIGHTS = PoleFacts(
     rough=-2.21,
     slabs=0.02,
@@ -176,9 +201,11 @@ _LOW_WEIGHTS = PoleFacts(
     top_m=0.0,
     radius_m=0.0,
     taper=0.0,
+    shines=4.9,
+    tree=-0.5,
 )
 
-_HIGH_CONSTANT = -4.50
+_HIGH_CONSTANT = -4.06
 _HIGH_WEIGHTS = PoleFacts(
     rough=-4.23,
     slabs=0.0,
@@ -206,12 +233,14 @@ _HIGH_WEIGHTS = PoleFacts(
     top_m=0.0,
     radius_m=0.0,
     taper=0.0,
+    shines=3.9,
+    tree=-5.0,
 )
 
 
 SIGNS = (
     *(-1, 1, -1, 1, 1, 1, 0, -1, -1, 0, -1, -1, 0, 0, 0, -1, 1, 1, 0, -1, -1, -1, -1),
-    *(0, 0, 0),
+    *(0, 0, 0, 1, -1),
 )
 """Which facts can only speak for a pole (1) or against one (−1), whatever the others are."""
 
@@ -220,13 +249,7 @@ MODELS = {True: "models/uprights/low_post.onnx", False: "models/uprights/high_po
 `python -m processing.laboratory.road_training.pole_training` learns them."""
 
 
-def facts_of(
-    shaft: Shaft,
-    beside: Surroundings,
-    carried: Carried,
-    sides: SeenSides,
-    usual_noise_m: float,
-) -> PoleFacts:
+def facts_of(shaft: Shaft, about: ShaftAbout, usual_noise_m: float) -> PoleFacts:
     """The facts of a shaft.
 
     Parameters
@@ -234,6 +257,7 @@ def facts_of(
     usual_noise_m : float
         How far points lie off the smooth shafts of this recording.
     """
+    beside, carried, sides, shines, tree = about
     told, crown = shaft.told, beside.crown
     rough = min(max(shaft.noise_m / usual_noise_m, 1.0), _MOST_NOISE)
     taper = max(-shaft.taper, shaft.taper - _USUAL_TAPER, 0.0)
@@ -264,6 +288,8 @@ def facts_of(
         top_m=min(shaft.top_m, _MOST_TOP_M),
         radius_m=shaft.radius_m,
         taper=max(_LEAST_TAPER, min(shaft.taper, _MOST_TAPER)),
+        shines=shines,
+        tree=tree,
     )
 
 
@@ -295,14 +321,14 @@ def is_low(shaft: Shaft) -> bool:
 def chance_of(facts: PoleFacts, *, is_low: bool) -> float:
     """The chance of being a pole, 0 to 1.
 
-    The mean of two log-odds: of weights that reasoning holds, and of boosted trees of decisions
-    (Friedman 2001, Greedy function approximation). On streets that neither knew both together were
-    right more often than either: trees tell more, and less of what no training street had.
+    Of two log-odds some of each: of weights that reasoning holds, and of boosted trees of decisions
+    (Friedman 2001, Greedy function approximation). Trees tell more, and less of what no training
+    street had.
     """
     constant, weights = (_LOW_CONSTANT, _LOW_WEIGHTS) if is_low else (_HIGH_CONSTANT, _HIGH_WEIGHTS)
     reasoned = constant + sum(weight * fact for weight, fact in zip(weights, facts, strict=True))
     learnt = log_odds(_model(is_low=is_low), np.array([facts], np.float32), SilentMonitor())
-    return chance_of_logit((reasoned + float(learnt[0])) / 2)
+    return chance_of_logit((1 - _LEARNT) * reasoned + _LEARNT * float(learnt[0]))
 
 
 @cache
@@ -316,5 +342,6 @@ def most_chance_of(shaft: Shaft, beside: Surroundings, usual_noise_m: float) -> 
     What is carried never speaks against a pole, and no side for one.
     """
     best = Carried(wires=math.ceil(_WIRED), smooth=1.0)
-    facts = facts_of(shaft, beside, best, SeenSides(square=0.0, behind=0.0), usual_noise_m)
+    about = ShaftAbout(beside, best, SeenSides(square=0.0, behind=0.0), shines=1.0, tree=0.0)
+    facts = facts_of(shaft, about, usual_noise_m)
     return chance_of(facts, is_low=is_low(shaft))

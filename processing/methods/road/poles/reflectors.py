@@ -64,8 +64,13 @@ class ReflectorSearch:
         above = around.local[:, 2] - np.repeat(feet, np.diff(around.starts))
         self._bounds = [self._bounds_of(number, above) for number in range(len(drives))]
 
-    def is_reflecting(self, number: int, shaft: Shaft) -> bool:
-        """Whether a reflector is on the upper half of a shaft, by its number, or a face on it."""
+    def shines(self, number: int, shaft: Shaft) -> float:
+        """Whether a reflector is on the upper half of a shaft, by its number, or a face on it.
+
+        1 or 0; 0.5 where no intensity tells.
+        """
+        if not any(np.isfinite(self._bounds[drive]).any() for drive in np.unique(shaft.drives)):
+            return 0.5
         part = self._around.of(number)
         local = self._around.local[part] - shaft.foot
         up = local[:, 2]
@@ -79,7 +84,7 @@ class ReflectorSearch:
             mine = lines[self._around.drives[lines] == drive]
             intensity = self._intensity(drive, mine)
             bright += int(np.count_nonzero(intensity >= bounds[self._classes(drive, mine)]))
-        return bright >= (_FEWEST if is_short(shaft) else _FEWEST_OF_FACE)
+        return float(bright >= (_FEWEST if is_short(shaft) else _FEWEST_OF_FACE))
 
     def _bounds_of(self, drive: int, above: Floats) -> Floats:
         """The least intensity of a bright point of a drive, for each class of ranges."""

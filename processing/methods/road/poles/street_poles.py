@@ -6,25 +6,27 @@ The steps stand in a file each: shafts among the columns, what stands beside the
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
 from processing.core.arrays import Floats, Integers
 from processing.core.monitor import Monitor, PartMonitor
 from processing.methods.road.objects.column_points import ColumnPoints, points_about_each
+from processing.methods.road.objects.sparse_plan import SparsePlan
 from processing.methods.road.objects.survey import raised_columns, survey_columns
 from processing.methods.road.poles.carried import (
     ARMS_FROM_M,
     Carried,
     ShaftNeighbourhood,
-    asks_for_brightness,
     carried_of,
     type_of,
 )
 from processing.methods.road.poles.mirror_images import mirror_images
 from processing.methods.road.poles.pole_confidence import (
+    ShaftAbout,
     chance_of,
     facts_of,
     is_low,
@@ -41,6 +43,7 @@ from processing.methods.road.poles.shafts import (
     with_whole_sides,
 )
 from processing.methods.road.poles.surroundings import Surroundings, surroundings_of
+from processing.methods.road.poles.trunks_among import tree_chances
 from processing.recording.drive import Drive
 
 REACH_M = 5.0
@@ -57,6 +60,9 @@ _NOTHING = Surroundings(rails=0.0, cover=0.0, over=0.0, roof=0.0, crown=None)
 
 _LIKELY = 0.3
 """Of what is less likely a pole nobody asks whether a pane mirrors it."""
+
+_EVEN = 0.5
+"""As likely as not."""
 
 _ROUGH = 2.5
 """Noise over the usual one beyond which nobody asks what a shaft carries."""
@@ -111,6 +117,14 @@ class StreetPole:
         return self.shaft.drives
 
 
+class _Judged(NamedTuple):
+    """A shaft by its number, what is known about it, and the chance that it is a pole."""
+
+    number: int
+    about: ShaftAbout
+    chance: float
+
+
 def street_poles(drives: Sequence[Drive], monitor: Monitor) -> tuple[StreetPole, ...]:
     """All shafts that may be poles; a confidence tells poles from the others.
 
@@ -118,7 +132,8 @@ def street_poles(drives: Sequence[Drive], monitor: Monitor) -> tuple[StreetPole,
     -----
     1. Columns stand free at some heights (:mod:`processing.methods.road.objects.columns`); in
        each, straight cones are fitted and followed upwards, pass by pass.
-    2. Rails, roofs and crowns about a shaft speak against a pole.
+    2. Rails, roofs and crowns about a shaft speak against a pole, reflectors and faces of signs
+       for one; of what a crown leaves in doubt the search for trees has its say.
     3. Wires, arms, plates and reflectors tell its type.
     """
     below, columns = survey_columns(drives, PartMonitor(monitor, 0.0, 0.4))
@@ -134,35 +149,80 @@ def street_poles(drives: Sequence[Drive], monitor: Monitor) -> tuple[StreetPole,
     feet = _feet(shafts), _feet(hidden)
     shafts, around = shafts + hidden, points_about_each(drives, plan, feet, REACH_M, part)
     shafts = with_whole_sides(shafts, around, monitor)
+    judged = _judged(drives, plan, (shafts, around, usual_m), PartMonitor(monitor, 0.9, 0.95))
+    asked = [one.number for one in judged if one.chance >= _LIKELY]
+    images = mirror_images(drives, plan, shafts, asked, PartMonitor(monitor, 0.95, 1.0))
+    poles: list[StreetPole] = []
+    for one in sorted(judged, key=lambda one: (-one.chance, one.number)):
+        shaft = shafts[one.number]
+        is_free = all(np.hypot(*(shaft.foot - pole.shaft.foot)[:2]) >= _APART_M for pole in poles)
+        if is_free and one.number not in images:
+            poles.append(_pole(shaft, one, plan.origin))
+    monitor.report(1.0)
+    return tuple(poles)
+
+
+def _judged(
+    drives: Sequence[Drive],
+    plan: SparsePlan,
+    found: tuple[list[Shaft], ColumnPoints, float],
+    monitor: Monitor,
+) -> list[_Judged]:
+    """What may be a pole, and how surely: trees are looked for where one would change that."""
+    shafts, _, usual_m = found
+    likely: list[_Judged] = []
+    doubtful: list[int] = []
+    for number, about in shafts_about_all(drives, plan, found, monitor):
+        shaft = shafts[number]
+        chance, if_tree = (
+            chance_of(facts_of(shaft, one, usual_m), is_low=is_low(shaft))
+            for one in (about, about._replace(tree=1.0))
+        )
+        if chance >= _LEAST_CHANCE:
+            if about.beside.crown is not None and chance >= _LIKELY and if_tree < _EVEN:
+                doubtful.append(len(likely))
+            likely.append(_Judged(number, about, chance))
+    feet = _feet([shafts[likely[one].number] for one in doubtful])
+    for place, tree in zip(doubtful, tree_chances(drives, plan, feet, monitor), strict=True):
+        number, about, _ = likely[place]
+        about, shaft = about._replace(tree=float(tree)), shafts[number]
+        chance = chance_of(facts_of(shaft, about, usual_m), is_low=is_low(shaft))
+        likely[place] = _Judged(number, about, chance)
+    return [one for one in likely if one.chance >= _LEAST_CHANCE]
+
+
+def shafts_about_all(
+    drives: Sequence[Drive],
+    plan: SparsePlan,
+    found: tuple[Sequence[Shaft], ColumnPoints, float],
+    monitor: Monitor,
+    *,
+    least: float = _LEAST_CHANCE,
+) -> Iterator[tuple[int, ShaftAbout]]:
+    """What is known about the shafts that may be poles, by their number; not yet of trees.
+
+    Parameters
+    ----------
+    found : tuple
+        The shafts, the points about each, and the noise of the recording's smooth shafts, m.
+    least : float
+        The least chance of what may be one.
+    """
+    shafts, around, usual_m = found
     fellows = fellows_of(shafts)
-    sure: list[tuple[float, int, tuple[Carried, float]]] = []
+    reflectors = ReflectorSearch(drives, shafts, around, plan.origin)
     for number, shaft in enumerate(shafts):
         monitor.check()
-        if most_chance_of(shaft, _NOTHING, usual_m) < _LEAST_CHANCE:
+        if most_chance_of(shaft, _NOTHING, usual_m) < least:
             continue
         local = around.local[around.of(number)] - shaft.foot
         beside = surroundings_of(local, shaft, usual_m, fellows[number])
-        if most_chance_of(shaft, beside, usual_m) < _LEAST_CHANCE:
+        if most_chance_of(shaft, beside, usual_m) < least:
             continue
         carried = carried_if_likely(around, number, shafts, usual_m)
         sides = seen_sides(drives, shaft, plan.origin)
-        facts = facts_of(shaft, beside, carried, sides, usual_m)
-        chance = chance_of(facts, is_low=is_low(shaft))
-        if chance >= _LEAST_CHANCE:
-            sure.append((chance, number, (carried, beside.over)))
-    asked = [number for chance, number, _ in sure if chance >= _LIKELY]
-    images = mirror_images(drives, plan, shafts, asked, PartMonitor(monitor, 0.9, 1.0))
-    sure = [one for one in sure if one[1] not in images]
-    reflectors = ReflectorSearch(drives, shafts, around, plan.origin)
-    poles: list[StreetPole] = []
-    for chance, number, (carried, over) in sorted(sure, key=lambda one: (-one[0], one[1])):
-        shaft = shafts[number]
-        if all(np.hypot(*(shaft.foot - one.shaft.foot)[:2]) >= _APART_M for one in poles):
-            is_reflecting = asks_for_brightness(shaft) and reflectors.is_reflecting(number, shaft)
-            kind = type_of(shaft, carried, over=over, is_reflecting=is_reflecting)
-            poles.append(_pole(shaft, (carried, kind), chance, plan.origin))
-    monitor.report(1.0)
-    return tuple(poles)
+        shines = reflectors.shines(number, shaft)
+        yield number, ShaftAbout(beside, carried, sides, shines, tree=0.0)
 
 
 def _feet(shafts: Sequence[Shaft]) -> Floats:
@@ -220,16 +280,18 @@ def usual_noise_m(shafts: Sequence[Shaft]) -> float:
     return max(float(np.quantile(noise, _SMOOTH_SHARE)), _LEAST_NOISE_M)
 
 
-def _pole(shaft: Shaft, told: tuple[Carried, str], chance: float, origin: Floats) -> StreetPole:
-    """The pole that a shaft is, by what it carries and its type."""
+def _pole(shaft: Shaft, judged: _Judged, origin: Floats) -> StreetPole:
+    """The pole that a shaft is."""
     level = min(LEVEL_M, shaft.top_m / 2)
+    about = judged.about
+    is_reflecting = about.shines > _EVEN
     return StreetPole(
         foot=shaft.foot + origin,
         shaft=shaft,
-        carried=told[0],
-        type=told[1],
+        carried=about.carried,
+        type=type_of(shaft, about.carried, over=about.beside.over, is_reflecting=is_reflecting),
         height_m=shaft.top_m,
         diameter_m=2 * shaft.radius_at(level),
         diameter_within_m=1.96 * 2 * math.hypot(shaft.deviation_m, shaft.noise_m / 2),
-        confidence=chance,
+        confidence=judged.chance,
     )

@@ -121,9 +121,19 @@ def street_trees(
 
 
 def upright_things(
-    drives: Sequence[Drive], settings: TreeSettings, monitor: Monitor
+    drives: Sequence[Drive],
+    settings: TreeSettings,
+    monitor: Monitor,
+    *,
+    about: Floats | None = None,
 ) -> tuple[StreetTree, ...]:
     """All columns with a trunk, with what stands on it; a confidence tells trees from the others.
+
+    Parameters
+    ----------
+    about : (n, 2) float64, optional
+        Places, m about the plan's origin: things there and those that may share a crown with them
+        are enough.
 
     Notes
     -----
@@ -136,9 +146,8 @@ def upright_things(
        is left out after that: it takes its share, so that nothing beside it looks like a tree.
     """
     (plan, ground), columns = survey_columns(drives, PartMonitor(monitor, 0.0, 0.4))
-    trunks = _standing_trunks(
-        drives, plan, _joined(columns), settings, PartMonitor(monitor, 0.4, 0.8)
-    )
+    asked = _joined(columns) if about is None else _near(_joined(columns), about)
+    trunks = _standing_trunks(drives, plan, asked, settings, PartMonitor(monitor, 0.4, 0.8))
     if not trunks:
         return ()
     street = GroundBelowCrowns(plan, ground, driven_places(drives, plan))
@@ -252,6 +261,14 @@ def _joined(columns: FoundColumns) -> FoundColumns:
         ground.append(columns.ground[first])
         bits.append(np.bitwise_or.reduce(columns.slabs[members]))
     return FoundColumns(np.array(middles), np.array(ground), np.array(bits, np.uint32))
+
+
+def _near(columns: FoundColumns, about: Floats) -> FoundColumns:
+    """The columns whose crowns may reach to some places."""
+    if not len(columns) or not len(about):
+        return columns.chosen(np.zeros(len(columns), np.bool_))
+    away = np.asarray(cKDTree(about).query(columns.middles)[0])
+    return columns.chosen(away < CROWN_M)
 
 
 def _standing(gathered: ColumnPoints, one: ColumnTrunk) -> _MeasuredTrunk:

@@ -10,7 +10,6 @@ import pytest
 from processing.core.arrays import Floats
 from processing.methods.road.poles.carried import (
     ShaftNeighbourhood,
-    asks_for_brightness,
     carried_of,
     type_of,
 )
@@ -97,10 +96,8 @@ def test_a_cane_carries_no_sign() -> None:
 
 def test_what_a_thick_post_carries_is_a_sign_if_it_shines() -> None:
     shaft, board = _shaft(0.14, 3.6), _about(_plate(1.0, (2.6, 3.5), 0.1, 1e6))
-    assert asks_for_brightness(shaft)
     assert _type_of(shaft, board) == "other"
     assert _type_of(shaft, board, shines=True) == "sign_pole"
-    assert not asks_for_brightness(_shaft(0.0763, 2.8))
 
 
 def test_the_board_of_a_shop_high_on_its_own_post_is_no_arm_and_no_lamp() -> None:
@@ -157,7 +154,6 @@ def test_a_reflector_tells_delineators_and_without_one_their_height(
     diameter_m: float, top_m: float, *, shines: bool, expected: str
 ) -> None:
     shaft = _shaft(diameter_m, top_m)
-    assert asks_for_brightness(shaft)
     assert _type_of(shaft, _about(NOTHING), shines=shines) == expected
     hidden = carried_of(_about(NOTHING), shaft)
     assert type_of(shaft, hidden, over=0.9, is_reflecting=shines) == "other"
@@ -175,8 +171,8 @@ def test_a_conical_post_of_five_metres_is_a_lamp_and_a_straight_one_a_sign() -> 
 
 def test_the_head_that_ends_a_slim_post_is_a_lamp_and_no_plate() -> None:
     shaft = _shaft(0.0891, 5.0)
-    arm = _plate(0.08, (4.96, 5.04), 0.0, 1e6) + (0.0, -0.3, 0.0)
-    head = _plate(0.3, (4.95, 5.05), 0.0, 1e6) + (0.0, -0.85, 0.0)
+    arm = _plate(0.08, (4.96, 5.04), 0.3, 1e6)
+    head = _plate(0.3, (4.95, 5.05), 0.85, 1e6)
     along = np.column_stack([np.zeros(40), np.linspace(-0.1, -0.9, 40), np.full(40, 5.0)])
     lamp = np.concatenate([arm, head, along])
     assert _type_of(shaft, _about(lamp)) == "street_light"
