@@ -19,6 +19,8 @@ from processing.laboratory.simulate.scene.mesh import TriangleShape, tube
 from processing.map.catalogue import Geometry
 from processing.map.catalogue_file import read_catalogue
 from processing.map.feature import Feature, Position, Vertex
+from processing.methods.road.objects.survey import survey_ground
+from processing.methods.road.poles.trunks_among import tree_chances
 from processing.methods.road.requested_position import RequestedPosition
 from processing.recording.drive import Drive
 from processing.tools.tool import Candidate
@@ -51,6 +53,7 @@ LEANING = np.array([22.0, -5.5, GROUND_M])
 LEANING_DIAMETER_M = 0.30
 LEAN = 0.1
 POST = np.array([10.0, 5.5, GROUND_M])
+LAMP_POST = np.array([17.0, -5.5, GROUND_M])
 
 
 def stem(foot: Floats, diameter_m: float, top_m: float, lean: float = 0.0) -> TriangleShape:
@@ -84,7 +87,7 @@ def street() -> tuple[TriangleShape, ...]:
         for turn, diameter in zip(turns, STEMS_M, strict=True)
     ]
     leaning = moved(LEANING, 0.3, 0.0, 4.5)
-    lamp = np.array([17.0, -5.5, GROUND_M])
+    lamp = LAMP_POST
     arm = np.array([moved(lamp, 0.0, dy, 7.0) for dy in (0.0, 1.0, 2.0)])
     return (
         road_along(LENGTH_M),
@@ -227,6 +230,16 @@ def test_what_shows_no_tree_leaves_a_sentence(tmp_path: Path, what: str) -> None
     told = told_by("trees", recorded(tmp_path, DrivenRecording(way, facing, scene)), tmp_path)
     assert told.candidates == ()
     assert told.sentence.endswith(".")
+
+
+def test_the_search_for_poles_hears_which_shafts_are_trunks(drives: tuple[Drive, ...]) -> None:
+    plan = survey_ground(drives, SilentMonitor()).plan
+    trunks, posts = (STAKED, LEANING), (POST, LAMP_POST)
+    feet = np.array([(foot + ORIGIN - plan.origin)[:2] for foot in (*trunks, *posts)])
+    chances = tree_chances(drives, plan, feet, SilentMonitor())
+    assert (chances[:2] > 0.5).all()
+    assert (chances[2:] < 0.1).all()
+    assert tree_chances(drives, plan, feet[:0], SilentMonitor()).size == 0
 
 
 def test_a_cancel_leaves_nothing(avenue_drives: tuple[Drive, ...]) -> None:

@@ -10,11 +10,14 @@ import pytest
 
 from processing.core.monitor import SilentMonitor
 from processing.laboratory.simulate.scene.mesh import TriangleShape, box, tube
+from processing.methods.road.objects.column_points import points_about
 from processing.methods.road.objects.sparse_plan import SparsePlan
 from processing.methods.road.objects.survey import survey_columns
 from processing.methods.road.poles.mirror_images import mirror_images
+from processing.methods.road.poles.reflectors import ReflectorSearch
 from processing.methods.road.poles.shaft_sides import seen_sides, towards_vehicle
 from processing.methods.road.poles.shafts import Shaft, find_shafts
+from processing.methods.road.poles.street_poles import REACH_M
 from processing.recording.drive import Drive
 from tests.processing.methods.road.bad_recordings import (
     HEAD_45,
@@ -123,3 +126,11 @@ def test_a_trunk_ends_where_only_leaves_lie_on_it(shafts: Shafts) -> None:
     top = shafts.found[shafts.at(TRUNK)].top_m + FLOOR_M
     assert top == pytest.approx(TRUNK_HIGH_M, abs=0.4)
     assert shafts.found[shafts.at(POLE)].top_m == pytest.approx(6.0 - FLOOR_M, abs=0.15)
+
+
+def test_where_all_is_as_bright_nobody_knows_what_shines(shafts: Shafts) -> None:
+    feet = np.array([one.foot[:2] for one in shafts.found])
+    around = points_about(shafts.drives, shafts.plan, feet, REACH_M, SilentMonitor())
+    number = shafts.at(POLE)
+    told = ReflectorSearch(shafts.drives, shafts.found, around, shafts.plan.origin)
+    assert told.shines(number, shafts.found[number]) == 0.5
