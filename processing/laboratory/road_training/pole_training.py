@@ -105,11 +105,12 @@ def _judge_shafts(scene: RoadScene) -> Iterator[tuple[bool, PoleFacts, bool]]:
     codes = _codes(scene)
     trees = tree_chances(scene.drives, plan, np.array([one.foot[:2] for one in shafts]), monitor)
     found = shafts, around, usual_m
-    for number, about in shafts_about_all(scene.drives, plan, found, monitor, least=0.0):
+    known = shafts_about_all(scene.drives, plan, found, monitor, least=0.0)
+    for number, about in known.items():
         shaft, label = shafts[number], labels[number]
         if label is not None and not (label is False and _is_noise(shaft, codes)):
-            about = about._replace(tree=float(trees[number]))
-            yield is_low(shaft), facts_of(shaft, about, usual_m), label
+            whole = about._replace(tree=float(trees[number]))
+            yield is_low(shaft), facts_of(shaft, whole, usual_m), label
 
 
 def _codes(scene: RoadScene) -> list[NDArray[np.uint8]]:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from functools import cache
 from typing import NamedTuple
 
 import numpy as np
 
+from processing.core.arrays import Floats
 from processing.core.monitor import SilentMonitor
 from processing.methods.noise.tree_files import read_trees
 from processing.methods.noise.trees import Trees, log_odds
@@ -318,17 +320,25 @@ def is_low(shaft: Shaft) -> bool:
     return shaft.top_m < _LOW_M
 
 
-def chance_of(facts: PoleFacts, *, is_low: bool) -> float:
-    """The chance of being a pole, 0 to 1.
+def chances_of(facts: Sequence[PoleFacts], *, are_low: Sequence[bool]) -> Floats:
+    """(n,) float64: the chance of each of being a pole, 0 to 1.
 
     Of two log-odds some of each: of weights that reasoning holds, and of boosted trees of decisions
     (Friedman 2001, Greedy function approximation). Trees tell more, and less of what no training
     street had.
     """
-    constant, weights = (_LOW_CONSTANT, _LOW_WEIGHTS) if is_low else (_HIGH_CONSTANT, _HIGH_WEIGHTS)
-    reasoned = constant + sum(weight * fact for weight, fact in zip(weights, facts, strict=True))
-    learnt = log_odds(_model(is_low=is_low), np.array([facts], np.float32), SilentMonitor())
-    return chance_of_logit((1 - _LEARNT) * reasoned + _LEARNT * float(learnt[0]))
+    rows = np.array(facts, np.float64).reshape(-1, len(PoleFacts._fields))
+    low = np.array(are_low, np.bool_)
+    odds = np.zeros(len(rows))
+    for is_low, constant, weights in (
+        (True, _LOW_CONSTANT, _LOW_WEIGHTS),
+        (False, _HIGH_CONSTANT, _HIGH_WEIGHTS),
+    ):
+        mine = low == is_low
+        reasoned = constant + rows[mine] @ np.array(weights)
+        learnt = log_odds(_model(is_low=is_low), rows[mine].astype(np.float32), SilentMonitor())
+        odds[mine] = (1 - _LEARNT) * reasoned + _LEARNT * learnt
+    return np.array([chance_of_logit(one) for one in odds.tolist()])
 
 
 @cache
@@ -336,12 +346,17 @@ def _model(*, is_low: bool) -> Trees:
     return read_trees(path_of(MODELS[is_low]))
 
 
-def most_chance_of(shaft: Shaft, beside: Surroundings, usual_noise_m: float) -> float:
-    """The chance of being a pole if all it carries and each side of it spoke for one, 0 to 1.
+def most_chances_of(
+    shafts: Sequence[Shaft], beside: Sequence[Surroundings], usual_noise_m: float
+) -> Floats:
+    """(n,) float64: the chances if all they carry and each side of them spoke for poles, 0 to 1.
 
     What is carried never speaks against a pole, and no side for one.
     """
     best = Carried(wires=math.ceil(_WIRED), smooth=1.0)
-    about = ShaftAbout(beside, best, SeenSides(square=0.0, behind=0.0), shines=1.0, tree=0.0)
-    facts = facts_of(shaft, about, usual_noise_m)
-    return chance_of(facts, is_low=is_low(shaft))
+    sides = SeenSides(square=0.0, behind=0.0)
+    facts = [
+        facts_of(shaft, ShaftAbout(one, best, sides, shines=1.0, tree=0.0), usual_noise_m)
+        for shaft, one in zip(shafts, beside, strict=True)
+    ]
+    return chances_of(facts, are_low=[is_low(shaft) for shaft in shafts])

@@ -6,7 +6,7 @@ The steps stand in a file each: shafts among the columns, what stands beside the
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -27,10 +27,10 @@ from processing.methods.road.poles.carried import (
 from processing.methods.road.poles.mirror_images import mirror_images
 from processing.methods.road.poles.pole_confidence import (
     ShaftAbout,
-    chance_of,
+    chances_of,
     facts_of,
     is_low,
-    most_chance_of,
+    most_chances_of,
 )
 from processing.methods.road.poles.reflectors import ReflectorSearch
 from processing.methods.road.poles.roofs import fellows_of
@@ -170,25 +170,27 @@ def _judged(
 ) -> list[_Judged]:
     """What may be a pole, and how surely: trees are looked for where one would change that."""
     shafts, _, usual_m = found
-    likely: list[_Judged] = []
-    doubtful: list[int] = []
-    for number, about in shafts_about_all(drives, plan, found, monitor):
-        shaft = shafts[number]
-        chance, if_tree = (
-            chance_of(facts_of(shaft, one, usual_m), is_low=is_low(shaft))
-            for one in (about, about._replace(tree=1.0))
-        )
-        if chance >= _LEAST_CHANCE:
-            if about.beside.crown is not None and chance >= _LIKELY and if_tree < _EVEN:
-                doubtful.append(len(likely))
-            likely.append(_Judged(number, about, chance))
-    feet = _feet([shafts[likely[one].number] for one in doubtful])
-    for place, tree in zip(doubtful, tree_chances(drives, plan, feet, monitor), strict=True):
-        number, about, _ = likely[place]
-        about, shaft = about._replace(tree=float(tree)), shafts[number]
-        chance = chance_of(facts_of(shaft, about, usual_m), is_low=is_low(shaft))
-        likely[place] = _Judged(number, about, chance)
-    return [one for one in likely if one.chance >= _LEAST_CHANCE]
+    known = shafts_about_all(drives, plan, found, monitor)
+    chances = _chances(shafts, known, usual_m)
+    if_trees = {number: about._replace(tree=1.0) for number, about in known.items()}
+    is_doubtful = (chances >= _LIKELY) & (_chances(shafts, if_trees, usual_m) < _EVEN)
+    is_doubtful &= [about.beside.crown is not None for about in known.values()]
+    doubtful = [number for number, asked in zip(known, is_doubtful, strict=True) if asked]
+    feet = _feet([shafts[number] for number in doubtful])
+    for number, tree in zip(doubtful, tree_chances(drives, plan, feet, monitor), strict=True):
+        known[number] = known[number]._replace(tree=float(tree))
+    chances = _chances(shafts, known, usual_m)
+    return [
+        _Judged(number, about, chance)
+        for (number, about), chance in zip(known.items(), chances.tolist(), strict=True)
+        if chance >= _LEAST_CHANCE
+    ]
+
+
+def _chances(shafts: Sequence[Shaft], known: Mapping[int, ShaftAbout], usual_m: float) -> Floats:
+    """(n,) the chances of those of which something is known, in its order."""
+    facts = [facts_of(shafts[number], about, usual_m) for number, about in known.items()]
+    return chances_of(facts, are_low=[is_low(shafts[number]) for number in known])
 
 
 def shafts_about_all(
@@ -198,7 +200,7 @@ def shafts_about_all(
     monitor: Monitor,
     *,
     least: float = _LEAST_CHANCE,
-) -> Iterator[tuple[int, ShaftAbout]]:
+) -> dict[int, ShaftAbout]:
     """What is known about the shafts that may be poles, by their number; not yet of trees.
 
     Parameters
@@ -211,18 +213,33 @@ def shafts_about_all(
     shafts, around, usual_m = found
     fellows = fellows_of(shafts)
     reflectors = ReflectorSearch(drives, shafts, around, plan.origin)
-    for number, shaft in enumerate(shafts):
+    beside = dict.fromkeys(range(len(shafts)), _NOTHING)
+    beside = _likely(shafts, beside, usual_m, least)
+    for number in beside:
         monitor.check()
-        if most_chance_of(shaft, _NOTHING, usual_m) < least:
-            continue
-        local = around.local[around.of(number)] - shaft.foot
-        beside = surroundings_of(local, shaft, usual_m, fellows[number])
-        if most_chance_of(shaft, beside, usual_m) < least:
-            continue
+        local = around.local[around.of(number)] - shafts[number].foot
+        beside[number] = surroundings_of(local, shafts[number], usual_m, fellows[number])
+    told: dict[int, ShaftAbout] = {}
+    for number, one in _likely(shafts, beside, usual_m, least).items():
+        monitor.check()
         carried = carried_if_likely(around, number, shafts, usual_m)
-        sides = seen_sides(drives, shaft, plan.origin)
-        shines = reflectors.shines(number, shaft)
-        yield number, ShaftAbout(beside, carried, sides, shines, tree=0.0)
+        sides = seen_sides(drives, shafts[number], plan.origin)
+        shines = reflectors.shines(number, shafts[number])
+        told[number] = ShaftAbout(one, carried, sides, shines, tree=0.0)
+    return told
+
+
+def _likely(
+    shafts: Sequence[Shaft], beside: Mapping[int, Surroundings], usual_m: float, least: float
+) -> dict[int, Surroundings]:
+    """Those that may be poles by what stands beside them."""
+    some = [shafts[number] for number in beside]
+    chances = most_chances_of(some, list(beside.values()), usual_m)
+    return {
+        number: one
+        for (number, one), chance in zip(beside.items(), chances.tolist(), strict=True)
+        if chance >= least
+    }
 
 
 def _feet(shafts: Sequence[Shaft]) -> Floats:
