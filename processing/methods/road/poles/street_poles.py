@@ -25,10 +25,10 @@ from processing.methods.road.poles.carried import (
 )
 from processing.methods.road.poles.mirror_images import mirror_images
 from processing.methods.road.poles.pole_confidence import (
-    chance_of,
+    chances_of,
     facts_of,
     is_low,
-    most_chance_of,
+    most_chances_of,
 )
 from processing.methods.road.poles.reflectors import ReflectorSearch
 from processing.methods.road.poles.roofs import fellows_of
@@ -134,35 +134,53 @@ def street_poles(drives: Sequence[Drive], monitor: Monitor) -> tuple[StreetPole,
     feet = _feet(shafts), _feet(hidden)
     shafts, around = shafts + hidden, points_about_each(drives, plan, feet, REACH_M, part)
     shafts = with_whole_sides(shafts, around, monitor)
-    fellows = fellows_of(shafts)
-    sure: list[tuple[float, int, tuple[Carried, float]]] = []
-    for number, shaft in enumerate(shafts):
+    besides = _hopeful(shafts, around, usual_m, monitor)
+    carried, facts = {}, []
+    for number, beside in besides.items():
         monitor.check()
-        if most_chance_of(shaft, _NOTHING, usual_m) < _LEAST_CHANCE:
-            continue
-        local = around.local[around.of(number)] - shaft.foot
-        beside = surroundings_of(local, shaft, usual_m, fellows[number])
-        if most_chance_of(shaft, beside, usual_m) < _LEAST_CHANCE:
-            continue
-        carried = carried_if_likely(around, number, shafts, usual_m)
-        sides = seen_sides(drives, shaft, plan.origin)
-        facts = facts_of(shaft, beside, carried, sides, usual_m)
-        chance = chance_of(facts, is_low=is_low(shaft))
-        if chance >= _LEAST_CHANCE:
-            sure.append((chance, number, (carried, beside.over)))
-    asked = [number for chance, number, _ in sure if chance >= _LIKELY]
+        carried[number] = carried_if_likely(around, number, shafts, usual_m)
+        sides = seen_sides(drives, shafts[number], plan.origin)
+        facts.append(facts_of(shafts[number], beside, carried[number], sides, usual_m))
+    chances = chances_of([shafts[number] for number in besides], facts)
+    sure = [
+        (chance, number)
+        for chance, number in zip(chances.tolist(), besides, strict=True)
+        if chance >= _LEAST_CHANCE
+    ]
+    asked = [number for chance, number in sure if chance >= _LIKELY]
     images = mirror_images(drives, plan, shafts, asked, PartMonitor(monitor, 0.9, 1.0))
     sure = [one for one in sure if one[1] not in images]
     reflectors = ReflectorSearch(drives, shafts, around, plan.origin)
     poles: list[StreetPole] = []
-    for chance, number, (carried, over) in sorted(sure, key=lambda one: (-one[0], one[1])):
+    for chance, number in sorted(sure, key=lambda one: (-one[0], one[1])):
         shaft = shafts[number]
         if all(np.hypot(*(shaft.foot - one.shaft.foot)[:2]) >= _APART_M for one in poles):
             is_reflecting = asks_for_brightness(shaft) and reflectors.is_reflecting(number, shaft)
-            kind = type_of(shaft, carried, over=over, is_reflecting=is_reflecting)
-            poles.append(_pole(shaft, (carried, kind), chance, plan.origin))
+            over = besides[number].over
+            kind = type_of(shaft, carried[number], over=over, is_reflecting=is_reflecting)
+            poles.append(_pole(shaft, (carried[number], kind), chance, plan.origin))
     monitor.report(1.0)
     return tuple(poles)
+
+
+def _hopeful(
+    shafts: Sequence[Shaft], around: ColumnPoints, usual_m: float, monitor: Monitor
+) -> dict[int, Surroundings]:
+    """What stands beside those shafts that may be poles if all else spoke for it, by number."""
+    fellows = fellows_of(shafts)
+    hopeful = most_chances_of(shafts, [_NOTHING] * len(shafts), usual_m) >= _LEAST_CHANCE
+    besides = {}
+    for number in np.flatnonzero(hopeful).tolist():
+        monitor.check()
+        local = around.local[around.of(number)] - shafts[number].foot
+        besides[number] = surroundings_of(local, shafts[number], usual_m, fellows[number])
+    own = [shafts[number] for number in besides]
+    chances = most_chances_of(own, list(besides.values()), usual_m)
+    return {
+        number: beside
+        for (number, beside), chance in zip(besides.items(), chances.tolist(), strict=True)
+        if chance >= _LEAST_CHANCE
+    }
 
 
 def _feet(shafts: Sequence[Shaft]) -> Floats:
@@ -175,18 +193,20 @@ def own_points(around: ColumnPoints, number: int, shafts: Sequence[Shaft]) -> Sh
     Passes lie centimetres apart, which would make two plates of one and no smooth surface.
     """
     shaft = shafts[number]
-    part, heads = around.of(number), np.unique(shaft.drives)
-    is_own = np.isin(around.drives[part], heads)
+    part = around.of(number)
+    is_head = np.zeros(int(around.drives.max(initial=0)) + 1, np.bool_)
+    is_head[shaft.drives] = True
+    is_own = is_head[around.drives[part]]
     beyond = [np.empty((0, 3))]
     if shaft.top_m > ARMS_FROM_M:
-        for other, neighbour in enumerate(shafts):
-            if 0 < np.hypot(*(neighbour.foot - shaft.foot)[:2]) < 2 * REACH_M:
-                theirs = around.of(other)
-                high = np.flatnonzero(around.local[theirs, 2] - shaft.foot[2] > ARMS_FROM_M)
-                local = around.local[theirs].take(high, axis=0) - shaft.foot
-                is_near = np.hypot(local[:, 0], local[:, 1]) < REACH_M
-                is_near &= np.isin(around.drives[theirs].take(high), heads)
-                beyond.append(local[is_near])
+        away = np.hypot(*(_feet(shafts) - shaft.foot[:2]).T)
+        for other in np.flatnonzero((away > 0) & (away < 2 * REACH_M)).tolist():
+            theirs = around.of(other)
+            high = np.flatnonzero(around.local[theirs, 2] - shaft.foot[2] > ARMS_FROM_M)
+            local = around.local[theirs].take(high, axis=0) - shaft.foot
+            is_near = np.hypot(local[:, 0], local[:, 1]) < REACH_M
+            is_near &= is_head[around.drives[theirs].take(high)]
+            beyond.append(local[is_near])
     return ShaftNeighbourhood(
         around.local[part][is_own] - shaft.foot,
         around.drives[part][is_own],
