@@ -8,7 +8,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from processing.image.scan_lines.scanline_rows import read_rows, scan_rows
+from processing.image.scan_lines.scanline_rows import scan_rows
+from processing.recording.columns.counted_classes import class_columns
+from processing.recording.columns.damaged_pulses import damaged_pulses
 from processing.recording.drive import Drive
 from processing.recording.passes import Pass
 
@@ -42,11 +44,23 @@ def height_above_road(drive: Drive, vehicle_path: Pass) -> float:
     rows = scan_rows(
         drive.revolutions, vehicle_path, max(vehicle_path.length_m / _ROWS, _LEAST_ADVANCE_M)
     )
+    asked = vehicle_path.beside(_ASIDE_M, -np.inf, _ABOVE_M)
+    classes, pulses, times = (
+        class_columns(drive.columns),
+        drive.columns["pulse"],
+        drive.columns["time"],
+    )
     heights = []
-    for row in range(len(rows)):
-        points = read_rows(drive, vehicle_path, rows.part(row, row + 1), rows.half_width)
-        _, across, above = points.arrays.on_path.T
-        is_below = (np.abs(across) <= _ASIDE_M) & (above < _ABOVE_M) & ~points.arrays.is_noise
+    for bounds in rows.ends:
+        start, stop = (int(end) for end in np.searchsorted(pulses, bounds))
+        if start > stop:
+            raise damaged_pulses(drive.folder)
+        # Mapped: checksums are of blocks a hundred times as long as a row, and whoever asks how
+        # high a pass lies reads all rows later.
+        local = drive.coordinates.about(slice(start, stop), vehicle_path.origin)
+        _, across, above = vehicle_path.stations_of_local(local, times[start:stop], asked).T
+        is_below = (np.abs(across) <= _ASIDE_M) & (above < _ABOVE_M)
+        is_below &= ~classes.noise_between(start, stop)
         if np.count_nonzero(is_below) >= _FEWEST:
             heights.append(-float(np.median(above[is_below])))
     return float(np.median(heights)) if heights else USUAL_HEIGHT_M

@@ -133,6 +133,10 @@ class Coordinates:
         """Coordinates of points: (n, 3) float64, m, project CRS, a copy."""
         return self._metres(self.integers(points))
 
+    def about(self, points: PointSelection, origin: Floats) -> Floats:
+        """Metres about an origin of points: (n, 3) float64, a copy; mapped, for few of them."""
+        return self._metres(self.integers(points), origin)
+
     def local_xyz(self, points: PointSelection, origin: Floats) -> NDArray[np.float32]:
         """Coordinates about a local origin, exact enough for drawing: (n, 3) float32.
 
@@ -141,7 +145,7 @@ class Coordinates:
         origin : (3,) float64
             m, project CRS; subtracted before rounding to float32.
         """
-        return self._metres(self.integers(points), origin).astype(np.float32)
+        return self.about(points, origin).astype(np.float32)
 
     def chunk(self, start: int, stop: int) -> NDArray[np.int32]:
         """Integers of the points ``start … stop − 1``: (k, 3) int32, read into memory."""

@@ -62,13 +62,8 @@ def find_covers(
     drives: tuple[Drive, ...], parameters: CoverParameters, monitor: Monitor
 ) -> CandidateResult:
     """Covers of a survey: one result for all heads and passes."""
-    found = street_covers(drives, 0.0, monitor)
-    kept = [
-        one
-        for one in found.covers
-        if one.confidence >= parameters.least_confidence
-        and min(one.sides_m) >= parameters.smallest_m
-    ]
+    found = street_covers(drives, parameters.least_confidence, monitor)
+    kept = [one for one in found.covers if min(one.sides_m) >= parameters.smallest_m]
     return CandidateResult(tuple(_candidate(one) for one in kept), _note(drives, found, kept))
 
 
@@ -122,15 +117,15 @@ def _note(drives: Sequence[Drive], found: FoundCovers, kept: Sequence[StreetCove
             "covers are missing.",
             f"反射強度が飽和しています（路面の点の{share:.0%}が最大値）。抽出できない蓋があります。",
         )
-    if not found.covers:
+    if not found.shapes:
         return Text(
             "Nothing in the road has an edge all around as a cover would have.",
             "路面・歩道に、蓋のように周囲と区別できる形は計測されていません。",
         )
     if not kept:
         return Text(
-            f"None of {len(found.covers)} shapes in the road is likely enough to be a cover.",
-            f"路面・歩道の形{len(found.covers)}件のうち、蓋とみなせるものはありませんでした。",
+            f"None of {found.shapes} shapes in the road is likely enough to be a cover.",
+            f"路面・歩道の形{found.shapes}件のうち、蓋とみなせるものはありませんでした。",
         )
     if all(drive.trajectory is None for drive in drives):
         return Text(

@@ -306,3 +306,24 @@ def _second(off: Floats) -> float:
         elif value < second:
             second = value
     return float(max(second, 0.0))
+
+
+@kernel
+def apart_kernel(places: Floats, halves: Floats, alike: float, is_left: Flags) -> None:
+    """Leave out boxes that are nearly the same as one before them that stays.
+
+    ``places``, ``halves``: (n, 2) middles and half sides; ``alike``: how many times as long one may
+    be as another that it is nearly the same as.
+    """
+    for one in range(len(places)):
+        if not is_left[one]:
+            continue
+        for other in range(one + 1, len(places)):
+            ratio = halves[other, 0] / halves[one, 0]
+            if (
+                abs(places[other, 0] - places[one, 0]) < 0.5 * min(halves[one, 0], halves[other, 0])
+                and abs(places[other, 1] - places[one, 1])
+                < 0.5 * min(halves[one, 1], halves[other, 1])
+                and 1 / alike < ratio < alike
+            ):
+                is_left[other] = False

@@ -22,6 +22,7 @@ from processing.core.monitor import Monitor
 from processing.core.worked_ahead import in_order
 from processing.methods.road.covers.cell_kernels import (
     LAYERS,
+    apart_kernel,
     contrast_kernel,
     integral_kernel,
     window_kernel,
@@ -69,7 +70,9 @@ _SHARED = 0.2
 _CORNER_COST = 1.04
 """How much clearer a rectangle's edge has to be than a circle's: it has two measures more."""
 
-_RADII_M = (0.075, 0.1, 0.125, 0.15, 0.18, 0.21, 0.25, 0.3, 0.36, 0.42, 0.48, 0.56, 0.65)
+_RADII_M: Floats = np.array(
+    [0.075, 0.1, 0.125, 0.15, 0.18, 0.21, 0.25, 0.3, 0.36, 0.42, 0.48, 0.56, 0.65]
+)
 _REACH_M = (0.3, 1.5, 0.25)
 """About a place that is looked at: least, and over the half side of its box."""
 
@@ -162,6 +165,11 @@ class _Place(NamedTuple):
     cell: tuple[int, int]
     half_m: tuple[float, float]
 
+    @property
+    def reach_m(self) -> float:
+        """How far about it cells are looked at."""
+        return max(_REACH_M[0], _REACH_M[1] * max(self.half_m) + _REACH_M[2])
+
 
 def fitted_covers(raster: CoverRaster, monitor: Monitor) -> tuple[FittedCover, ...]:
     """All shapes that differ from the road about them; which are covers is asked later."""
@@ -202,11 +210,19 @@ def _of_tile(
     layers: NDArray[np.float32] = np.empty((LAYERS, frame.size, frame.size), np.float32)
     place = (*(middle / raster.cell_m).tolist(), math.cos(angle), math.sin(angle))
     window_kernel((road.table, raster.counts, raster.sums), per, place, usual, _MOST_WEIGHT, layers)
-    for one in _places(layers, raster.cell_m):
+    corner = np.array(tile) * TILE_M
+    places = _places(layers, raster.cell_m)
+    about = frame.placed(np.array([one.cell for one in places]).reshape(-1, 2) * raster.cell_m)
+    outside = np.maximum(corner - about, about - corner - TILE_M).max(axis=1)
+    cells = np.empty((_MOST_CELLS, 9))
+    for one, outside_m in zip(places, outside.tolist(), strict=True):
+        # No edge is seen all around whose middle lies beyond the cells of its place.
+        if outside_m > one.reach_m:
+            continue
         monitor.check()
-        cover = _fitted(layers, frame, one)
+        cover = _fitted(layers, frame, one, cells)
         if cover is not None:
-            inner = cover.middle - np.array(tile) * TILE_M
+            inner = cover.middle - corner
             if (inner >= 0).all() and (inner < TILE_M).all():
                 yield cover
 
@@ -250,31 +266,23 @@ def _places(layers: NDArray[np.float32], cell_m: float) -> list[_Place]:
 def _apart(places: Floats, halves: Floats) -> NDArray[np.int64]:
     """Which boxes aren't nearly the same as one before them."""
     is_left = np.ones(len(places), np.bool_)
-    kept = []
-    for number in range(len(places)):
-        if not is_left[number]:
-            continue
-        kept.append(number)
-        rest = slice(number + 1, None)
-        least = 0.5 * np.minimum(halves[number], halves[rest])
-        is_near = (np.abs(places[rest] - places[number]) < least).all(axis=1)
-        ratio = halves[rest, 0] / halves[number, 0]
-        is_left[rest] &= ~(is_near & (ratio < _ALIKE) & (ratio > 1 / _ALIKE))
-    return np.array(kept, np.int64)
+    apart_kernel(places, halves, _ALIKE, is_left)
+    return np.flatnonzero(is_left)
 
 
-def _fitted(layers: NDArray[np.float32], frame: _Frame, about: _Place) -> FittedCover | None:
-    cell_m, half = frame.cell_m, max(about.half_m)
-    reach_m = max(_REACH_M[0], _REACH_M[1] * half + _REACH_M[2])
-    cells = np.empty((_MOST_CELLS, 9))
+def _fitted(
+    layers: NDArray[np.float32], frame: _Frame, about: _Place, room: Floats
+) -> FittedCover | None:
+    """The better of the circle and the rectangle about a place; ``room``: for its cells."""
+    cell_m, reach_m = frame.cell_m, about.reach_m
     at = (float(about.cell[0]), float(about.cell[1]))
-    cells = cells[: cells_about(layers, at, reach_m / cell_m, cells)]
+    cells = room[: cells_about(layers, at, reach_m / cell_m, room)]
     cells[:, :2] *= cell_m
     plane, noise, shapes = np.zeros(3), np.array(_FLOORS), np.zeros((2, 5))
     if not level_kernel(cells, about.half_m, _OFF_PLANE_M, plane):
         return None
     noise_kernel(cells, noise)
-    radii = np.array([one for one in _RADII_M if 0.6 * min(about.half_m) < one < reach_m - 0.05])
+    radii = _RADII_M[(0.6 * min(about.half_m) < _RADII_M) & (reach_m - 0.05 > _RADII_M)]
     starts = radii, np.array(about.half_m)
     gain, other = fit_shapes(cells, noise, cell_m, starts, shapes)
     if max(gain, other) < _LEAST_GAIN:

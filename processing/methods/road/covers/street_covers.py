@@ -80,11 +80,14 @@ class FoundCovers:
 
     Attributes
     ----------
+    shapes : int
+        How many there are that may be covers, likely or not.
     covers : tuple of StreetCover
-        The likeliest first.
+        Those that are likely enough, the likeliest first.
     heads : tuple of HeadTones
     """
 
+    shapes: int
     covers: tuple[StreetCover, ...]
     heads: tuple[HeadTones, ...]
 
@@ -123,17 +126,19 @@ def street_covers(drives: Sequence[Drive], least: float, monitor: Monitor) -> Fo
     """
     seen = seen_covers(drives, monitor)
     if seen.raster is None:
-        return FoundCovers((), seen.heads)
+        return FoundCovers(0, (), seen.heads)
     chances = np.array([chance_of(facts) for _, facts in seen.covers])
     fitted = [one for one, _ in seen.covers]
-    kept = [one for one in without_overlaps(fitted, chances) if chances[one] >= least]
+    kept = without_overlaps(fitted, chances)
     surface = seen.raster.surface()
     told = (
-        _street_cover(seen.raster, surface, seen.covers[one], float(chances[one])) for one in kept
+        _street_cover(seen.raster, surface, seen.covers[one], float(chances[one]))
+        for one in kept
+        if chances[one] >= least
     )
     covers = tuple(told)
     monitor.report(1.0)
-    return FoundCovers(covers, seen.heads)
+    return FoundCovers(len(kept), covers, seen.heads)
 
 
 def seen_covers(drives: Sequence[Drive], monitor: Monitor) -> SeenCovers:

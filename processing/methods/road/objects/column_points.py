@@ -177,7 +177,8 @@ def place_kernel(
     for point in range(part.owners.size):
         place = free[part.owners[point]]
         free[part.owners[point]] += 1
-        local[place] = part.local[point]
+        for axis in range(3):
+            local[place, axis] = part.local[point, axis]
         drives[place] = part.drive
         points[place] = part.points[point]
 

@@ -257,7 +257,8 @@ def _peaks(
         part = (slice(row - 1, row + 2), slice(column - 1, column + 2))
         cells = np.argwhere(weights[part] > 0) + np.array([row - 1, column - 1])
         where = tuple(cells.T)
-        middle = np.average(cells + 0.5, axis=0, weights=weights[where]) - border
+        weight = weights[where]
+        middle = weight @ (cells + 0.5) / weight.sum() - border
         found.append((np.asarray(middle), int(np.bitwise_or.reduce(free[where]))))
     return found
 

@@ -252,18 +252,20 @@ def own_points(around: ColumnPoints, number: int, shafts: Sequence[Shaft]) -> Sh
     Passes lie centimetres apart, which would make two plates of one and no smooth surface.
     """
     shaft = shafts[number]
-    part, heads = around.of(number), np.unique(shaft.drives)
-    is_own = np.isin(around.drives[part], heads)
+    part = around.of(number)
+    is_head = np.zeros(int(around.drives.max(initial=0)) + 1, np.bool_)
+    is_head[shaft.drives] = True
+    is_own = is_head[around.drives[part]]
     beyond = [np.empty((0, 3))]
     if shaft.top_m > ARMS_FROM_M:
-        for other, neighbour in enumerate(shafts):
-            if 0 < np.hypot(*(neighbour.foot - shaft.foot)[:2]) < 2 * REACH_M:
-                theirs = around.of(other)
-                high = np.flatnonzero(around.local[theirs, 2] - shaft.foot[2] > ARMS_FROM_M)
-                local = around.local[theirs].take(high, axis=0) - shaft.foot
-                is_near = np.hypot(local[:, 0], local[:, 1]) < REACH_M
-                is_near &= np.isin(around.drives[theirs].take(high), heads)
-                beyond.append(local[is_near])
+        away = np.hypot(*(_feet(shafts) - shaft.foot[:2]).T)
+        for other in np.flatnonzero((away > 0) & (away < 2 * REACH_M)).tolist():
+            theirs = around.of(other)
+            high = np.flatnonzero(around.local[theirs, 2] - shaft.foot[2] > ARMS_FROM_M)
+            local = around.local[theirs].take(high, axis=0) - shaft.foot
+            is_near = np.hypot(local[:, 0], local[:, 1]) < REACH_M
+            is_near &= is_head[around.drives[theirs].take(high)]
+            beyond.append(local[is_near])
     return ShaftNeighbourhood(
         around.local[part][is_own] - shaft.foot,
         around.drives[part][is_own],

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -368,9 +369,13 @@ def _best_fits(lines: Floats, empty: Floats, outlines: _Outlines) -> list[tuple[
         fine += _rectangles(lines, every, boxes)
     fine.sort(key=lambda one: one[0])
     found: list[tuple[SignShape, Floats]] = []
+    places: list[tuple[float, float]] = []
     for _, shape, pose in fine:
-        if all(shape != one or np.hypot(*(pose - at)[:2]) > SIGMA_M for one, at in found):
+        place = float(pose[0]), float(pose[1])
+        near = [n for n, at in enumerate(places) if math.dist(place, at) <= SIGMA_M]
+        if all(shape != found[n][0] for n in near):
             found.append((shape, pose))
+            places.append(place)
     return found
 
 
@@ -457,8 +462,8 @@ def _parts_beside_gaps(lines: Floats) -> list[Floats]:
     for axis in range(2):
         first, last = float(low[:, axis].min()), float(high[:, axis].max())
         levels = np.arange(first + _LEAST_PART_M, last - _LEAST_PART_M, _LEVEL_M)
-        is_on = (low[:, axis, None] <= levels) & (high[:, axis, None] >= levels)
-        crossed = is_on.sum(axis=0)
+        crossed = np.searchsorted(np.sort(low[:, axis]), levels, "right")
+        crossed -= np.searchsorted(np.sort(high[:, axis]), levels, "left")
         if not levels.size or crossed.min() > _FEW_CROSS * crossed.max():
             continue
         gap = np.flatnonzero(crossed == crossed.min())

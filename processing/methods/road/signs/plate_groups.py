@@ -171,14 +171,16 @@ def _planes(pieces: ScanPieces, members: Integers) -> list[PlateGroup]:
 
 def _may_be_dull(pieces: ScanPieces, group: PlateGroup) -> bool:
     """Whether lines of a group that isn't bright cross it from rim to rim."""
-    values = pieces.values[group.pieces]
     size = group.high - group.low
     if size.min() < _DULL_LEAST_M or size.max() > _DULL_LARGEST_M:
+        return False
+    values = pieces.values[group.pieces]
+    if values[:, COUNT].sum() < _DULL_POINTS:
         return False
     key = pieces.drive[group.pieces] * (pieces.row.max() + 1) + pieces.row[group.pieces]
     order = np.lexsort([values[:, FIRST], key])
     starts = np.flatnonzero(np.diff(key[order], prepend=-1))
-    if starts.size < _DULL_TURNS or values[:, COUNT].sum() < _DULL_POINTS:
+    if starts.size < _DULL_TURNS:
         return False
     first, last = order[starts], order[np.append(starts[1:], key.size) - 1]
     is_clear = (values[first, BEFORE] != GOES_ON) & (values[last, BEHIND] != GOES_ON)
@@ -221,10 +223,7 @@ def _joined(
         return groups
     points = [float(pieces.values[one.pieces, COUNT].sum()) for one in groups]
     order = np.argsort(-np.array(points), kind="stable")
-    rank = np.argsort(order)
-    middles = np.array([one.middle for one in groups])
-    normals = np.array([one.normal for one in groups])
-    tree = cKDTree(middles)
+    beside = _beside(groups, order)
     taken = np.zeros(len(groups), np.bool_)
     found: list[PlateGroup] = []
     for first in order.tolist():
@@ -232,11 +231,7 @@ def _joined(
             continue
         taken[first] = True
         whole = groups[first]
-        reach = float(np.hypot(*(whole.high - whole.low))) + 1
-        near = np.array(tree.query_ball_point(whole.middle, reach), np.int64)
-        near = near[np.abs(normals[near] @ whole.normal) >= _LIKELY_WAY]
-        near = near[np.abs((middles[near] - whole.middle) @ whole.normal) <= _LIKELY_M]
-        for other in near[np.argsort(rank[near])].tolist():
+        for other in beside.get(first, ()):
             if taken[other] or not _are_one(pieces.values, whole, groups[other]):
                 continue
             if not _is_plate_on_wall(pieces, (whole, groups[other]), is_bright):
@@ -245,6 +240,28 @@ def _joined(
                     whole, taken[other] = both, True
         found.append(whole)
     return found
+
+
+def _beside(groups: list[PlateGroup], order: Integers) -> dict[int, list[int]]:
+    """Which groups may be of one plate with another one, in their order; most are with none."""
+    planes = np.array([one.plane for one in groups])
+    middles, normals = planes[:, PLANE_MIDDLE:PLANE_RIGHT], planes[:, PLANE_NORMAL:PLANE_NOISE]
+    reach = np.hypot(*(planes[:, PLANE_HIGH:] - planes[:, PLANE_LOW:PLANE_HIGH]).T) + 1
+    near = cKDTree(middles).query_ball_point(middles, reach)
+    first = np.repeat(np.arange(len(groups)), [len(one) for one in near])
+    other = np.concatenate(near).astype(np.int64)
+    is_likely = first != other
+    for least, told in (
+        (_LIKELY_WAY, np.abs((normals[first] * normals[other]).sum(axis=1))),
+        (-_LIKELY_M, -np.abs(((middles[other] - middles[first]) * normals[first]).sum(axis=1))),
+    ):
+        is_likely &= told >= least
+    rank = np.argsort(order)
+    first, other = first[is_likely], other[is_likely]
+    beside: dict[int, list[int]] = {}
+    for number in np.lexsort([rank[other], first]).tolist():
+        beside.setdefault(int(first[number]), []).append(int(other[number]))
+    return beside
 
 
 def _are_one(values: Floats, whole: PlateGroup, other: PlateGroup) -> bool:
@@ -307,8 +324,10 @@ def _completed(
     about += middles[:, 1] * planes[:, PLANE_UP:PLANE_NORMAL]
     reach = np.hypot(*(high - low + 2 * RIM_M).T) / 2
     is_own = np.zeros(len(pieces), np.bool_)
-    for number, group in enumerate(groups):
-        near = np.array(tree.query_ball_point(about[number], reach[number]), np.int64)
+    for number, (group, found) in enumerate(
+        zip(groups, tree.query_ball_point(about, reach, return_sorted=False), strict=True)
+    ):
+        near = np.array(found, np.int64)
         chosen = np.empty(near.size, np.int64)
         count = complete_kernel(
             values, near, group.pieces, planes[number], is_bright, is_own, chosen

@@ -150,6 +150,7 @@ def outline_of(shape: SignShape) -> Floats:
     return rounded_corners(corners, _CORNER_SHARE * min(shape.size_m, shape.high_m), _ARC)
 
 
+@lru_cache(maxsize=_KEPT)
 def centroid_of(shape: SignShape) -> Floats:
     """(2,) middle of the area, right and up of the middle of the outline's box."""
     corners = outline_of(shape)

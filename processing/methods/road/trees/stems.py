@@ -200,8 +200,9 @@ def stems_of(
     most_circles : int
         Of a slab.
     """
+    rising = _Rising.of(points)
     for thick_m in (THICK_M, _SPARSE_THICK_M):
-        slabs = slab_circles(points, most_diameter_m, thick_m)
+        slabs = _slab_circles(rising, most_diameter_m, thick_m)
         slabs.circles[:, most_circles:] = 0.0
         found = [
             stem
@@ -262,15 +263,34 @@ def slab_circles(points: Floats, most_diameter_m: float, thick_m: float = THICK_
     thick_m : float
         Of a slab.
     """
+    return _slab_circles(_Rising.of(points), most_diameter_m, thick_m)
+
+
+class _Rising(NamedTuple):
+    """Points of a column from the lowest on: heights (n,), and places in plan (n, 2)."""
+
+    heights: Floats
+    plan: Floats
+
+    @staticmethod
+    def of(points: Floats) -> _Rising:
+        """Points without those above and below all slabs."""
+        up = points[:, 2]
+        chosen = np.flatnonzero(
+            (up >= LOWEST_M - _SPARSE_THICK_M) & (up <= HIGHEST_M + _SPARSE_THICK_M)
+        )
+        order = chosen[np.argsort(up[chosen], kind="stable")]
+        return _Rising(up[order], points[:, :2].take(order, axis=0))
+
+
+def _slab_circles(rising: _Rising, most_diameter_m: float, thick_m: float) -> SlabCircles:
     count = round((HIGHEST_M - LOWEST_M) / STEP_M) + 1
     heights = np.linspace(LOWEST_M, HIGHEST_M, count)
     circles = np.zeros((heights.size, MOST_CIRCLES, CIRCLE_WIDTH))
-    order = np.argsort(points[:, 2], kind="stable")
-    rising = points[order, 2]
-    first = np.searchsorted(rising, heights - thick_m / 2)
-    end = np.searchsorted(rising, heights + thick_m / 2)
+    first = np.searchsorted(rising.heights, heights - thick_m / 2)
+    end = np.searchsorted(rising.heights, heights + thick_m / 2)
     if (end > first).any():
-        plan = np.ascontiguousarray(points[order, :2])
+        plan = rising.plan
         members = np.empty(int((end - first).sum()), np.int64)
         starts = np.empty(heights.size + 1, np.int64)
         spans = np.column_stack([first, end])
@@ -283,6 +303,8 @@ def slab_circles(points: Floats, most_diameter_m: float, thick_m: float = THICK_
 def _chains(circles: Floats, heights: Floats) -> list[Floats]:
     """Circles that follow each other upwards: (k, 5) height, middle, radius, arc."""
     free = circles[..., RADIUS] > 0
+    if np.count_nonzero(free) < _FEWEST_SLABS:
+        return []
     worth = np.where(free, circles[..., WORTH], 0.0)
     limits = ChainLimits(_SHIFT_M, _STEEP * STEP_M, _SWELL_M, _SWELL, _SKIPPED, _REMEMBERED)
     chains = np.empty((np.count_nonzero(free) // _FEWEST_SLABS + 1, len(circles)), np.int64)
@@ -369,10 +391,11 @@ def _body_of(chain: Floats) -> Floats:
     height = chain[:, 0] - BREAST_M
     body = np.zeros(NUMBERS)
     weight = (0.1 + chain[:, 4]) ** 2
-    about = height - np.average(height, weights=weight)
+    weight /= weight.sum()
+    about = height - weight @ height
     slope = (weight * about) @ chain[:, 1:3] / max(float(weight @ about**2), 1e-9)
     body[2:4] = slope
-    body[:2] = np.average(chain[:, 1:3] - height[:, None] * slope, axis=0, weights=weight)
+    body[:2] = weight @ (chain[:, 1:3] - height[:, None] * slope)
     body[4] = float(np.median(chain[:, 3]))
     return body
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -15,6 +16,7 @@ from processing.core.kernels import kernel
 from processing.core.monitor import Monitor
 from processing.methods.road.objects.ground_heights import GROUND_CELLS
 from processing.methods.road.objects.sparse_plan import TILE, SparsePlan, cell_of
+from processing.methods.road.walls.fit_kernels import station_medians_kernel
 from processing.methods.road.walls.wall_cells import (
     FACE_SLABS,
     GROUND_BIT,
@@ -115,7 +117,7 @@ class FaceStations:
     is_ground_behind: float
     is_open: float
 
-    @property
+    @cached_property
     def long_m(self) -> float:
         """Length in plan."""
         return float(np.hypot(*np.diff(self.line[:, :2], axis=0).T).sum())
@@ -315,18 +317,13 @@ class _Guide:
     def of(along: Floats, off: Floats, is_on: Flags, fewest: int) -> _Guide:
         """The medians of what is on it, where that is enough."""
         chosen = np.flatnonzero(is_on)
+        if not chosen.size:
+            return _Guide(np.empty(0), np.empty(0))
         station = np.floor(along[chosen] / BIN_M).astype(np.int64)
-        order = np.lexsort((off[chosen], station))
-        chosen, station = chosen[order], station[order]
-        firsts = np.flatnonzero(np.r_[True, np.diff(station) > 0]) if chosen.size else chosen
-        counts = np.diff(np.r_[firsts, chosen.size])
-        is_kept = counts >= fewest
-        firsts, counts = firsts[is_kept], counts[is_kept]
-        low, high = firsts + (counts - 1) // 2, firsts + counts // 2
-        middle = (off[chosen[low]] + off[chosen[high]]) / 2
-        total = np.r_[0.0, np.cumsum(along[chosen] - along[0])] if along.size else np.zeros(1)
-        at = (total[firsts + counts] - total[firsts]) / np.maximum(counts, 1) + along[:1].sum()
-        return _Guide(np.asarray(at), np.asarray(middle))
+        station -= station.min()
+        told = np.empty((int(station.max()) + 1, 2))
+        told = told[: station_medians_kernel(station, along[chosen], off[chosen], fewest, told)]
+        return _Guide(told[:, 0].copy(), told[:, 1].copy())
 
     def off_at(self, along: Floats) -> Floats:
         """Between the stations, and as at the last ones beyond them."""

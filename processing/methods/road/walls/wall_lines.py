@@ -10,6 +10,7 @@ import numpy as np
 
 from processing.core.arrays import Flags, Floats, Integers
 from processing.methods.road.walls.face_fits import FaceStations, FaceSurroundings
+from processing.methods.road.walls.fit_kernels import robust_fit_kernel, running_fit_kernel
 from processing.methods.road.walls.wall_cells import GROUND_BIT, LOWEST_M, SLAB_M, SLABS
 
 WallType = Literal["wall", "retaining", "building"]
@@ -350,15 +351,9 @@ def _bends(along: Floats, values: Floats, within_m: float) -> Flags:
 
 def _robust_fit(at: Floats, values: Floats, degree: int) -> Floats:
     """Coefficients, the constant first: least squares with the weights of Huber."""
-    weights = np.ones(at.size)
-    terms = np.vander(at, degree + 1, increasing=True)
     found = np.zeros(degree + 1)
-    for _ in range(6):
-        root = np.sqrt(weights)
-        found[:] = np.linalg.lstsq(terms * root[:, None], values * root, rcond=None)[0]
-        left = np.abs(values - terms @ found)
-        weights = _HUBER_M / np.maximum(left, _HUBER_M)
-    return np.asarray(found)
+    robust_fit_kernel(np.vander(at, degree + 1, increasing=True), values, _HUBER_M, found)
+    return found
 
 
 _RUN = 2
@@ -368,13 +363,7 @@ _RUN = 2
 def _running_fit(along: Floats, values: Floats) -> Floats:
     """Each station on the straight line through those about it."""
     found = np.empty(len(along))
-    for at in range(len(along)):
-        low, high = max(0, at - _RUN), min(len(along), at + _RUN + 1)
-        if high - low < 3:
-            found[at] = values[at]
-            continue
-        fit = _robust_fit(along[low:high] - along[at], values[low:high], 1)
-        found[at] = fit[0]
+    running_fit_kernel(along, values, _RUN, _HUBER_M, found)
     return found
 
 

@@ -138,11 +138,11 @@ def spans_of(points: WirePoints, monitor: Monitor) -> list[WireSpan]:
     """The wires that groups of points are."""
     local, group = points.local, points.group
     order = np.argsort(group, kind="stable")
-    _, first = np.unique(group[order], return_index=True)
+    _, first, sizes = np.unique(group[order], return_index=True, return_counts=True)
+    large = sizes >= _FEWEST
     pieces: list[WireSpan] = []
-    for lines in np.split(order, first[1:]):
-        if lines.size >= _FEWEST:
-            pieces += _pieces(points, lines, monitor)
+    for start, size in zip(first[large].tolist(), sizes[large].tolist(), strict=True):
+        pieces += _pieces(points, order[start : start + size], monitor)
     return _followed_to_ends(points.thin, _joined(local, pieces, monitor))
 
 
@@ -244,10 +244,14 @@ def _joined(local: Floats, pieces: Sequence[WireSpan], monitor: Monitor) -> list
             joined_to[number] = number = joined_to[joined_to[number]]
         return number
 
-    for a, b in _neighbours(pieces):
-        monitor.check()
+    pairs = _neighbours(pieces)
+    for (a, b), is_away in zip(pairs, _turn_away(ways, pairs), strict=True):
         first, second = whole(a), whole(b)
-        if first == second or _turns_away(ways[first], ways[second]):
+        # Most pairs were never joined to others and turn away: all of them were asked at once.
+        if (is_away and first == a and second == b) or first == second:
+            continue
+        monitor.check()
+        if _turns_away(ways[first], ways[second]):
             continue
         both = _both(local, spans[first], spans[second])
         if both is not None:
@@ -271,6 +275,24 @@ def _way_of(span: WireSpan) -> _PieceWay:
     east, north, height = span.at(np.zeros(1))[0].tolist()
     way = (float(span.way[0]), float(span.way[1]))
     return _PieceWay((east, north, height), way, float(span.rise[1]), span.long_m)
+
+
+def _turn_away(ways: Sequence[_PieceWay], pairs: Sequence[tuple[int, int]]) -> list[bool]:
+    """Whether the pieces of each pair can't be of one wire, as `_turns_away` tells it."""
+    if not pairs:
+        return []
+    values = np.array([(*one.middle, *one.way, one.slope, one.long_m) for one in ways])
+    one, other = (values[side].T for side in np.array(pairs).T)
+    east, north, up = other[:3] - one[:3]
+    turn, facing = one[3] * other[4] - one[4] * other[3], one[3] * other[3] + one[4] * other[4]
+    least = _TURN + 0.1 / np.minimum(one[6], other[6])
+    aside = np.abs(one[3] * north - one[4] * east)
+    along = one[3] * east + one[4] * north
+    foretold = along * (one[5] + np.copysign(1.0, facing) * other[5]) / 2
+    most = _SIDE_M + least * np.hypot(east, north)
+    is_away = (np.abs(turn) > least) | (aside > most) | (np.abs(up - foretold) > most)
+    told: list[bool] = is_away.tolist()
+    return told
 
 
 def _turns_away(one: _PieceWay, other: _PieceWay) -> bool:
