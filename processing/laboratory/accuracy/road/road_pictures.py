@@ -29,10 +29,10 @@ _PX_PER_M = 50.0
 _UP_PX_PER_M = 300.0
 _SLAB_M = 0.12
 _ROOM_M = 4.0
-_COLUMNS, _ROWS = 3, 5
+_SHEET_PX, _ROWS = 1700, 5
 _SCANLINE = (204, 121, 167)
-_BACKGROUND, _INK = (20, 20, 28), (235, 235, 235)
-_TRUE, _FOUND, _WRONG = (0, 200, 120), (230, 159, 0), (255, 70, 40)
+BACKGROUND, INK = (20, 20, 28), (235, 235, 235)
+TRUE, FOUND, _WRONG = (0, 200, 120), (230, 159, 0), (255, 70, 40)
 _HEIGHT_COLOURS = ((86, 180, 233), (200, 200, 200))  # of moving things, of all else
 _MOVING = 64
 _INTENSITY_PERCENT = (2.0, 98.0)
@@ -53,21 +53,27 @@ class RoadMaps:
 
 def paint_failure(failure: Failure, maps: RoadMaps, around: StreetSurroundings) -> Picture:
     """One failure: (rows, columns, 3) uint8."""
-    import cv2
-
     middle, across = failure.middle, _across(failure, around)
     plan = _plan(failure, maps, around)
     section = _section(middle, across, maps, around)
-    caption = np.full((_CAPTION_PX, _PLAN_PX + _SECTION_PX, 3), _BACKGROUND, np.uint8)
+    return np.vstack([caption_of(failure, _PLAN_PX + _SECTION_PX), np.hstack([plan, section])])
+
+
+def caption_of(failure: Failure, width_px: int) -> Picture:
+    """What went wrong where, in two lines: (rows, width, 3) uint8."""
+    import cv2
+
+    middle = failure.middle
+    caption = np.full((_CAPTION_PX, width_px, 3), BACKGROUND, np.uint8)
     words = (
         f"{failure.what}: {failure.type}",
         f"{failure.street}  {middle[0]:.1f} {middle[1]:.1f}  {failure.detail}",
     )
     for row, text in enumerate(words):
-        colour = _INK if row else _WRONG
+        colour = INK if row else _WRONG
         position = (4, 16 + 20 * row)
         cv2.putText(caption, text, position, cv2.FONT_HERSHEY_SIMPLEX, 0.42, colour, 1, cv2.LINE_AA)
-    return np.vstack([caption, np.hstack([plan, section])])
+    return caption
 
 
 def write_sheets(
@@ -87,20 +93,21 @@ def write_sheets(
     for key, group in sorted(grouped.items()):
         stem = "-".join(key).replace(",", "").replace(" ", "_")
         written[key] = []
-        for number, start in enumerate(range(0, len(group), _COLUMNS * _ROWS), 1):
-            sheet = _sheet(group[start : start + _COLUMNS * _ROWS])
+        columns = max(_SHEET_PX // group[0].shape[1], 1)
+        for number, start in enumerate(range(0, len(group), columns * _ROWS), 1):
+            sheet = _sheet(group[start : start + columns * _ROWS], columns)
             path = folder / f"{stem}-{number:02d}.png"
             write_png(path, (sheet.shape[0], sheet.shape[1]), [sheet])
             written[key].append(path)
     return written
 
 
-def _sheet(pictures: Sequence[Picture]) -> Picture:
+def _sheet(pictures: Sequence[Picture], columns: int) -> Picture:
     high, wide = pictures[0].shape[:2]
-    rows = -(-len(pictures) // _COLUMNS)
-    sheet = np.zeros((rows * (high + 4), _COLUMNS * (wide + 4), 3), np.uint8)
+    rows = -(-len(pictures) // columns)
+    sheet = np.zeros((rows * (high + 4), columns * (wide + 4), 3), np.uint8)
     for number, picture in enumerate(pictures):
-        row, column = divmod(number, _COLUMNS)
+        row, column = divmod(number, columns)
         top, left = row * (high + 4), column * (wide + 4)
         sheet[top : top + high, left : left + wide] = picture
     return sheet
@@ -119,7 +126,7 @@ def _across(failure: Failure, around: StreetSurroundings) -> Floats:
 
 def _plan(failure: Failure, maps: RoadMaps, around: StreetSurroundings) -> Picture:
     middle = failure.middle
-    picture = np.full((_PLAN_PX, _PLAN_PX, 3), _BACKGROUND, np.uint8)
+    picture = np.full((_PLAN_PX, _PLAN_PX, 3), BACKGROUND, np.uint8)
     points = around.near(middle[None], _ROOM_M)
     xyz = around.cloud.xyz[points]
     # The highest are drawn last; crowns and wires would hide the road.
@@ -132,8 +139,8 @@ def _plan(failure: Failure, maps: RoadMaps, around: StreetSurroundings) -> Pictu
     dark, bright = np.percentile(strength, _INTENSITY_PERCENT) if points.size else (0.0, 1.0)
     grey = np.clip((strength - dark) / max(bright - dark, 1.0), 0, 1) * 190 + 30
     picture[pixels[order, 1], pixels[order, 0]] = grey[order, None].astype(np.uint8)
-    _draw_map(picture, maps.truth, middle, _TRUE)
-    _draw_map(picture, maps.result, middle, _FOUND)
+    _draw_map(picture, maps.truth, middle, TRUE)
+    _draw_map(picture, maps.result, middle, FOUND)
     _draw_line(picture, failure.xyz, middle, _WRONG, thick=3)
     return picture
 
@@ -165,7 +172,7 @@ def _plan_pixels(xyz: Floats, middle: Floats) -> Floats:
 
 
 def _section(middle: Floats, across: Floats, maps: RoadMaps, around: StreetSurroundings) -> Picture:
-    picture = np.full((_PLAN_PX, _SECTION_PX, 3), _BACKGROUND, np.uint8)
+    picture = np.full((_PLAN_PX, _SECTION_PX, 3), BACKGROUND, np.uint8)
     picture[:, ::50] = 45  # a line each metre
     picture[::30] = 45  # and every ten centimetres up
     points = around.near(middle[None], _ROOM_M)
@@ -178,7 +185,7 @@ def _section(middle: Floats, across: Floats, maps: RoadMaps, around: StreetSurro
     _dots(picture, positions, colours[np.where(is_moving, 0, 1)], size=2)
     for drive in around.drives:
         _draw_scanline(picture, drive, middle, across)
-    for file, colour in ((maps.truth, _TRUE), (maps.result, _FOUND)):
+    for file, colour in ((maps.truth, TRUE), (maps.result, FOUND)):
         crossed = _crossings(file, middle, across)
         _dots(picture, crossed, np.tile(np.array(colour, np.uint8), (len(crossed), 1)), size=6)
     return picture

@@ -16,7 +16,7 @@ from processing.core.arrays import Floats
 from processing.laboratory.accuracy.road.road_scenes import RoadScene, StreetCloud
 from processing.scoring.features.line_positions import PolylineIndex, length_m, middle_positions
 
-FailureKind = Literal["missed", "false"]
+FailureKind = Literal["missed", "false", "wrong"]
 
 ROAD, CURB, BUILDING, GROUND = 11, 67, 6, 2
 PLANTS = (3, 4, 5)
@@ -40,16 +40,16 @@ place; and how far apart places of a path must be to tell a direction."""
 
 @dataclass(frozen=True)
 class Failure:
-    """A section or slot that was missed or made up.
+    """A section, slot or thing that was missed, made up or told wrongly.
 
     Attributes
     ----------
     tool, street : str
-    what : "missed" or "false"
+    what : "missed", "false" or "wrong"
     type : str
-        One of `CURB_TYPES` or `GUTTER_TYPES`.
+        One of `CURB_TYPES` or `GUTTER_TYPES`; of things what they are.
     xyz : (n, 3) float64
-        The section, or the slot's middle, m.
+        The section, or the slot's middle or the thing's place, m.
     detail : str
         What it is or lies on, in a word or two.
     """
