@@ -71,7 +71,7 @@ _PLAN_M = 1.6
 
 
 @dataclass(frozen=True)
-class ThingKind:
+class PaintedKind:
     """How things of one kind are held against the truth.
 
     Attributes
@@ -119,9 +119,9 @@ def _wrong_shape(pair: ObjectMatch) -> str:
 
 
 KINDS = {
-    "trees": ThingKind("trunk_points", LEAST_TRUNK_POINTS, TREES_WITHIN_M, _wrong_girth),
-    "poles": ThingKind("points", LEAST_POINTS, POLES_WITHIN_M, _wrong_type),
-    "signs": ThingKind("front_points", LEAST_FRONT_POINTS, SIGNS_WITHIN_M, _wrong_shape),
+    "trees": PaintedKind("trunk_points", LEAST_TRUNK_POINTS, TREES_WITHIN_M, _wrong_girth),
+    "poles": PaintedKind("points", LEAST_POINTS, POLES_WITHIN_M, _wrong_type),
+    "signs": PaintedKind("front_points", LEAST_FRONT_POINTS, SIGNS_WITHIN_M, _wrong_shape),
 }
 
 
