@@ -67,6 +67,9 @@ _MOST_TURNS = 0.4
 """Share of the directions in which something reaches as far: an arm's strip fills a quarter of
 them, a crown or a wall more."""
 
+_ONE_WAY = 6
+"""Directions that one arm fills as far as points were taken: a strip of a metre 5 m away."""
+
 _LEAST_ARM_M = 0.55
 """Reach of an arm beyond the shaft's surface; steps, bands and boxes of meters are shorter."""
 
@@ -289,7 +292,11 @@ def _arm(points: Floats, beyond: Floats, shaft: Shaft) -> tuple[float, float, fl
     most = int(reach.max())
     ties = np.flatnonzero(reach >= max(most - 1, 1))
     wide = np.count_nonzero(reach > 0.6 * most)
-    if most * _BIN_M < _LEAST_ARM_M or most == count or wide > _MOST_TURNS * _TURNS:
+    if most * _BIN_M < _LEAST_ARM_M or wide > _MOST_TURNS * _TURNS:
+        return none
+    # What leads out of sight to one side of a straight pipe is an arm, of others and to more wires.
+    is_long = shaft.taper < _CONCRETE_TAPER and ties.size <= _ONE_WAY
+    if most == count and not (is_long and np.ptp(ties - ties[0]) in (ties.size - 1, _TURNS - 1)):
         return none
     # Of directions that reach as far, the one along whose middle the points lie.
     off = [float(np.abs(across[inside[:, one], one]).mean()) for one in ties]
@@ -510,6 +517,8 @@ def _is_high_board(carried: Carried) -> bool:
 
 
 def _of_arm(carried: Carried) -> str:
+    if carried.arm_m >= _FAR_M:
+        return "arm_pole"  # no lamp's arm is as long
     if carried.tall_m < _LAMP_TALL_M or carried.arm_height_m > _ROAD_ARM_M:
         return "street_light"
     if carried.thick_m > _THICK_M:

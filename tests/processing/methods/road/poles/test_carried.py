@@ -178,3 +178,17 @@ def test_the_head_that_ends_a_slim_post_is_a_lamp_and_no_plate() -> None:
     assert _type_of(shaft, _about(lamp)) == "street_light"
     sign = _plate(0.6, (2.6, 3.2), 0.06, 1e6)
     assert _type_of(_shaft(0.0891, 4.0), _about(sign)) == "sign_pole"
+
+
+def test_what_leads_out_of_sight_to_one_side_of_a_pipe_is_an_arm_and_to_two_are_wires() -> None:
+    shaft = _shaft(0.3, 6.9)
+    along = np.arange(0.15, 5.4, 0.05)
+    pipes = [
+        np.column_stack([0 * along, way * along, np.full(along.size, high)])
+        for way in (-1.0, 1.0)
+        for high in (6.0, 6.8)
+    ]
+    assert _type_of(shaft, _about(np.concatenate(pipes[:2]))) == "arm_pole"
+    assert _type_of(shaft, _about(np.concatenate(pipes))) != "arm_pole"
+    concrete = replace(shaft, taper=0.006)
+    assert _type_of(concrete, _about(np.concatenate(pipes[:2]))) == "utility_pole"
