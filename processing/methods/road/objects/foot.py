@@ -48,7 +48,7 @@ _PLAN_CELL_M, _STANDING, _WIDER = 0.15, 8, 1.5
 many times as many cells ground fills: a trunk fills as many in each layer, a ring of rails too."""
 
 
-def ground_seen(points: Floats, coarse_m: float) -> float:
+def ground_seen(points: Floats, coarse_m: float, least_rise_m: float = _LEAST_RISE_M) -> float:
     """The ground of the coarse map, or what lies above it where that is a few mirrored points.
 
     Parameters
@@ -57,6 +57,8 @@ def ground_seen(points: Floats, coarse_m: float) -> float:
         About a column, m about any origin.
     coarse_m : float
         The ground of the coarse map, about the same.
+    least_rise_m : float
+        What lies less above it isn't looked for.
 
     Notes
     -----
@@ -73,7 +75,7 @@ def ground_seen(points: Floats, coarse_m: float) -> float:
         return coarse_m
     first = _above_images(counts, filled)
     seen = lowest + (float(first) + 0.5) * _LAYER_M
-    if first == filled[0] and seen <= coarse_m + _LEAST_RISE_M:
+    if first == filled[0] and seen <= coarse_m + least_rise_m:
         return coarse_m
     cells = np.floor(points[is_asked, :2] / _PLAN_CELL_M).astype(np.int64)
     places = np.unique(np.column_stack([layer[is_asked], cells]), axis=0)
