@@ -3,13 +3,24 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
+
+from processing.core.arrays import Floats, Integers
+from processing.core.kernels import kernel
 
 
-def nearest_rising(at: NDArray[np.float64], positions: NDArray[np.float64]) -> NDArray[np.int64]:
+def nearest_rising(at: Floats, positions: Floats) -> Integers:
     """(k,) index of the value nearest to each of (k,) places, among (n,) rising ones, n > 0."""
-    after = np.clip(np.searchsorted(at, positions), 1, max(1, at.size - 1))
-    after = np.minimum(after, at.size - 1)
-    before = np.maximum(after - 1, 0)
-    is_before = np.abs(positions - at[before]) <= np.abs(at[after] - positions)
-    return np.where(is_before, before, after)
+    found = np.empty(positions.size, np.int64)
+    nearest_kernel(np.ascontiguousarray(at), np.ascontiguousarray(positions), found)
+    return found
+
+
+@kernel
+def nearest_kernel(at: Floats, positions: Floats, found: Integers) -> None:
+    """Write the index of the value nearest to each place; of two as near the first."""
+    for one in range(positions.size):
+        after = min(max(np.searchsorted(at, positions[one]), 1), max(1, at.size - 1))
+        after = min(after, at.size - 1)
+        before = max(after - 1, 0)
+        is_before = abs(positions[one] - at[before]) <= abs(at[after] - positions[one])
+        found[one] = before if is_before else after

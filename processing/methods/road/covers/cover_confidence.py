@@ -5,8 +5,10 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from processing.core.arrays import Floats
+import numpy as np
+
 from processing.methods.road.covers.cover_fits import CoverEdge, FittedCover
+from processing.methods.road.covers.edge_kernels import edge_means_kernel
 from processing.methods.road.covers.shape_kernels import PATCHY
 from processing.methods.road.logistic import chance_of_logit
 
@@ -129,34 +131,9 @@ class EdgeMeans(NamedTuple):
 
 def edge_means(edge: CoverEdge) -> EdgeMeans:
     """What an edge parts on the whole, and how alike its sectors are."""
-    inner, outer = edge.bands[:, 0], edge.bands[:, 1]
-    is_seen = (inner[:, 0] >= _LEAST_WEIGHT) & (outer[:, 0] >= _LEAST_WEIGHT)
-    all_seen = (inner[:, 3] >= _LEAST_WEIGHT) & (outer[:, 3] >= _LEAST_WEIGHT)
-    tone = _mean_and_spread(inner[is_seen, 1] - outer[is_seen, 1])
-    height = _mean_and_spread(inner[is_seen, 2] - outer[is_seen, 2])
-    below = inner[all_seen, 4] - outer[all_seen, 4]
-    outside = outer[outer[:, 0] >= _LEAST_WEIGHT]
-    within = inner[inner[:, 0] >= _LEAST_WEIGHT]
-    return EdgeMeans(
-        tone=tone[0],
-        height_m=height[0],
-        below=float(below.mean()) if below.size else 0.0,
-        tone_spread=tone[1],
-        height_spread_m=height[1],
-        outer_tone_spread=_mean_and_spread(outside[:, 1])[1],
-        outer_height_spread_m=_mean_and_spread(outside[:, 2])[1],
-        inner_tone_spread=_mean_and_spread(within[:, 1])[1],
-        seen=float(all_seen.mean()),
-    )
-
-
-def _mean_and_spread(values: Floats) -> tuple[float, float]:
-    """Of a dozen values at most: numpy's own take five times as long for so few."""
-    few: list[float] = values.tolist()
-    if not few:
-        return 0.0, 0.0
-    mean = sum(few) / len(few)
-    return mean, math.sqrt(sum((one - mean) ** 2 for one in few) / len(few))
+    told = np.empty(len(EdgeMeans._fields))
+    edge_means_kernel(edge.bands, _LEAST_WEIGHT, told)
+    return EdgeMeans(*told.tolist())
 
 
 def facts_of(cover: FittedCover) -> RoadCoverFacts:

@@ -28,16 +28,8 @@ from processing.methods.road.covers.cell_kernels import (
     window_kernel,
 )
 from processing.methods.road.covers.cover_raster import CoverRaster
-from processing.methods.road.covers.shape_kernels import (
-    BAND_M,
-    PATCHY,
-    SECTORS,
-    cells_about,
-    edge_kernel,
-    fit_shapes,
-    level_kernel,
-    noise_kernel,
-)
+from processing.methods.road.covers.edge_kernels import SECTORS, edge_kernel
+from processing.methods.road.covers.shape_kernels import BAND_M, PATCHY, LookedAt, fit_kernel
 from processing.methods.road.markings.paint_raster import TILE_M
 
 _HALVES_M = (
@@ -274,20 +266,13 @@ def _fitted(
     layers: NDArray[np.float32], frame: _Frame, about: _Place, room: Floats
 ) -> FittedCover | None:
     """The better of the circle and the rectangle about a place; ``room``: for its cells."""
-    cell_m, reach_m = frame.cell_m, about.reach_m
     at = (float(about.cell[0]), float(about.cell[1]))
-    cells = room[: cells_about(layers, at, reach_m / cell_m, room)]
-    cells[:, :2] *= cell_m
-    plane, noise, shapes = np.zeros(3), np.array(_FLOORS), np.zeros((2, 5))
-    if not level_kernel(cells, about.half_m, _OFF_PLANE_M, plane):
-        return None
-    noise_kernel(cells, noise)
-    radii = _RADII_M[(0.6 * min(about.half_m) < _RADII_M) & (reach_m - 0.05 > _RADII_M)]
-    starts = radii, np.array(about.half_m)
-    gain, other = fit_shapes(cells, noise, cell_m, starts, shapes)
+    looked = LookedAt(at, about.half_m, about.reach_m, _OFF_PLANE_M, frame.cell_m)
+    noise, plane, shapes = np.array(_FLOORS), np.zeros(3), np.zeros((2, 5))
+    count, gain, other = fit_kernel(layers, looked, _RADII_M, room, (noise, plane, shapes))
     if max(gain, other) < _LEAST_GAIN:
         return None
-    place = frame, np.array(at) * cell_m, plane
+    cells, place = room[:count], (frame, np.array(at) * frame.cell_m, plane)
     if other > _CORNER_COST * gain:
         return _told(cells, noise, (shapes[1], (other, gain)), place)
     return _told(cells, noise, (shapes[0], (gain, other)), place)

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from processing.core.arrays import Floats, Integers
 from processing.core.kernels import kernel
-
-SECTORS = 12
-"""Of a cover's edge."""
 
 BAND_M = 0.1
 """Of an edge's inside and outside that are compared: so near to each other that patches of dirt and
@@ -52,20 +50,6 @@ _MOST_LONG = 2.6
 
 _RATIOS = ((0.88, 0.88), (1.0, 0.75), (1.25, 0.62), (1.7, 0.85), (1.35, 0.9))
 """Half sides of rectangles that are begun with, over the radius of the best circle."""
-
-
-@kernel
-def depth_of(cell: Floats, shape: Floats) -> float:
-    """How far a cell's middle lies within a shape's edge; negative outside.
-
-    ``shape``: middle, half length and half width, angle; a half width of 0 makes it a circle.
-    """
-    x, y = cell[0] - shape[0], cell[1] - shape[1]
-    if shape[3] <= 0.0:
-        return float(shape[2] - math.sqrt(x * x + y * y))
-    cosine, sine = math.cos(shape[4]), math.sin(shape[4])
-    along, across = abs(x * cosine + y * sine), abs(y * cosine - x * sine)
-    return float(min(shape[2] - along, shape[3] - across))
 
 
 @kernel
@@ -187,16 +171,68 @@ def _sure_of(sums: Floats, noise: Floats) -> float:
     return found
 
 
+class LookedAt(NamedTuple):
+    """A place that shapes are laid about.
+
+    ``place``: in cells; ``half_m``: half sides of the box that differs there; ``reach_m``: how far
+    about it cells count; ``off_m``: off the road's plane, beyond which they don't; ``cell_m``: how
+    wide they are.
+    """
+
+    place: tuple[float, float]
+    half_m: tuple[float, float]
+    reach_m: float
+    off_m: float
+    cell_m: float
+
+
+@kernel
+def fit_kernel(
+    layers: NDArray[np.float32],
+    looked: LookedAt,
+    radii: Floats,
+    room: Floats,
+    told: tuple[Floats, Floats, Floats],
+) -> tuple[int, float, float]:
+    """How many cells lie about a place, and the gains of the best circle and rectangle on them.
+
+    Parameters
+    ----------
+    radii : (r,) float64
+        That circles may be begun with.
+    room : (n, 9) float64
+        Gets the cells, flat and in m about the place.
+    told : (noise, plane, shapes)
+        (3,) the least standard deviations of cells, raised here; (3,) and (2, 5) get the road's
+        plane, and the circle and the rectangle.
+    """
+    noise, plane, shapes = told
+    count = cells_about(layers, looked.place, looked.reach_m / looked.cell_m, room)
+    cells = room[:count]
+    cells[:, :2] *= looked.cell_m
+    if not level_kernel(cells, looked.half_m, looked.off_m, plane):
+        return count, 0.0, 0.0
+    noise_kernel(cells, noise)
+    least = 0.6 * min(looked.half_m[0], looked.half_m[1])
+    begun = radii[(least < radii) & (radii < looked.reach_m - 0.05)]
+    gain, other = fit_shapes(cells, noise, looked.cell_m, (begun, looked.half_m), shapes)
+    return count, gain, other
+
+
 @kernel
 def fit_shapes(
-    cells: Floats, noise: Floats, cell_m: float, starts: tuple[Floats, Floats], shapes: Floats
+    cells: Floats,
+    noise: Floats,
+    cell_m: float,
+    starts: tuple[Floats, tuple[float, float]],
+    shapes: Floats,
 ) -> tuple[float, float]:
     """The best circle and the best rectangle about a place; their gains, 0 where there is none.
 
-    ``starts``: radii of circles about the middle, and half sides of boxes there. ``shapes``: (2, 5)
-    gets them.
+    ``starts``: radii of circles about the middle, and half sides of the box there. ``shapes``:
+    (2, 5) gets them.
     """
-    radii, boxes = starts
+    radii, box = starts
     rows = _rows_about(cells, cell_m)
     shifted, begun = np.zeros(5), np.zeros((_MOST_STARTS, 5))
     best, other = 0.0, 0.0
@@ -206,7 +242,7 @@ def fit_shapes(
         if gain > best:
             best = gain
             shapes[0] = shifted
-    for k in range(rectangles_about(shapes[0], boxes, begun)):
+    for k in range(rectangles_about(shapes[0], box, begun)):
         gain = gain_of(cells, rows, noise, cell_m, begun[k])
         if gain > other:
             other = gain
@@ -216,7 +252,7 @@ def fit_shapes(
     if best > 0.0:
         best = _climb(cells, rows, noise, cell_m, shapes[0], best)
     # What the best circle tells after its climb is worth a second look; the box was looked at.
-    for k in range(_BOXES, rectangles_about(shapes[0], boxes, begun)):
+    for k in range(_BOXES, rectangles_about(shapes[0], box, begun)):
         gain = gain_of(cells, rows, noise, cell_m, begun[k])
         if gain > other:
             other = gain
@@ -239,7 +275,7 @@ def _rows_about(cells: Floats, cell_m: float) -> Integers:
 
 
 @kernel
-def rectangles_about(circle: Floats, box: Floats, start: Floats) -> int:
+def rectangles_about(circle: Floats, box: tuple[float, float], start: Floats) -> int:
     """Rectangles to begin with: a box, and those as large as a circle; how many.
 
     ``start``: (n, 5) gets them.
@@ -313,66 +349,6 @@ def _is_cover(shape: Floats) -> bool:
         return True
     long, wide = max(shape[2], shape[3]), min(shape[2], shape[3])
     return bool(wide >= _SMALLEST_M and long <= _LARGEST_M and long <= _MOST_LONG * wide)
-
-
-@kernel
-def edge_kernel(cells: Floats, shape: Floats, found: Floats, core: Floats) -> None:
-    """What lies inside and outside of a shape's edge, sector by sector, and within.
-
-    ``found``: (SECTORS, 2, 5) of the bands inside and outside: weight, tone, height, weight of all,
-    share below. ``core``: (4, 5) the same of all that lies inside; number of its cells and weighted
-    squares of their tones and heights; the same as the first of the halves of the bands that are
-    next to the edge, inside and outside.
-    """
-    found[:] = 0.0
-    core[:] = 0.0
-    for k in range(len(cells)):
-        depth = depth_of(cells[k], shape)
-        w, v = cells[k, 5], cells[k, 6]
-        t, h = cells[k, 2], cells[k, 3]
-        if depth > 0.02:
-            core[0, 0] += w
-            core[0, 1] += w * t
-            core[0, 2] += w * h
-            core[0, 3] += v
-            core[0, 4] += v * cells[k, 4]
-            core[1, 0] += 1.0
-            core[1, 1] += w * t * t
-            core[1, 2] += w * h * h
-        if not -BAND_M < depth < BAND_M or abs(depth) < 0.015:
-            continue
-        x, y = cells[k, 0] - shape[0], cells[k, 1] - shape[1]
-        if shape[3] > 0.0:
-            cosine, sine = math.cos(shape[4]), math.sin(shape[4])
-            x, y = (x * cosine + y * sine) / shape[2], (y * cosine - x * sine) / shape[3]
-        if abs(depth) < BAND_M / 2:
-            near = core[2 if depth > 0 else 3]
-            near[0] += w
-            near[1] += w * t
-            near[2] += w * h
-            near[3] += v
-            near[4] += v * cells[k, 4]
-        sector = int((math.atan2(y, x) / (2 * math.pi) + 0.5) * SECTORS) % SECTORS
-        side = 0 if depth > 0 else 1
-        found[sector, side, 0] += w
-        found[sector, side, 1] += w * t
-        found[sector, side, 2] += w * h
-        found[sector, side, 3] += v
-        found[sector, side, 4] += v * cells[k, 4]
-    for sector in range(SECTORS):
-        for side in range(2):
-            _to_means(found[sector, side])
-    for row in (0, 2, 3):
-        _to_means(core[row])
-
-
-@kernel
-def _to_means(sums: Floats) -> None:
-    if sums[0] > 0:
-        sums[1] /= sums[0]
-        sums[2] /= sums[0]
-    if sums[3] > 0:
-        sums[4] /= sums[3]
 
 
 @kernel
