@@ -204,7 +204,7 @@ def _stems_of(trunks: Sequence[UprightTrunk]) -> StandingStems:
             axis = one.foot[:2] + stem.base - one.trunk.base
             high = one.rise.high_m if stem is thickest else stem.high_m
             wide = stem.radius_m + _BESIDE_M
-            rows.append((*axis, *stem.lean, wide, high + _ABOVE_M, number))
+            rows.append((*axis, *stem.slope, wide, high + _ABOVE_M, number))
         starts.append(len(rows))
     heights = np.array([one.foot[2] for one in trunks])
     return StandingStems(np.array(starts, np.int64), np.array(rows, np.float64), heights)

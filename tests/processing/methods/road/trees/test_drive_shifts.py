@@ -119,3 +119,10 @@ def test_what_a_wet_road_mirrors_far_below_it_is_no_ground_though_it_is_a_tenth_
 def test_a_trunk_whose_foot_a_wall_hides_does_not_end_where_it_is_seen_first() -> None:
     trunk = about(np.random.default_rng(3).uniform(1.1, 3.8, 400), 0.2)
     assert ground_seen(trunk, 0.0) == 0.0
+
+
+def test_what_hides_the_ground_from_most_sides_is_not_the_ground() -> None:
+    random = np.random.default_rng(8)
+    ground, trunk = random.normal(0.0, 0.01, 60), random.uniform(0.3, 3.5, 400)
+    both = np.vstack([about(ground, 0.9), about(trunk, 0.15)])
+    assert ground_seen(both, 0.55) == pytest.approx(0.0, abs=0.08)

@@ -245,13 +245,13 @@ def test_a_circle_through_stakes_is_no_trunk_beside_one_that_goes_on() -> None:
 
 def test_a_crowded_short_or_thinly_measured_stem_has_a_wider_error() -> None:
     stem = trunk_in(bark(0.2, 0.2, 4.0)).stems[0]
-    sure = wider(causes_of(stem, 0.2))
+    sure = wider(causes_of((stem,), 0.2))
     crowded = replace(stem, free_slabs=2)
     short = replace(stem, low_m=1.0, high_m=1.6)
     thin = replace(stem, lines=stem.lines[::20])
     assert sure < 1.5
     for one in (crowded, short, thin):
-        assert wider(causes_of(one, 0.2)) > 1.15 * sure
+        assert wider(causes_of((one,), 0.2)) > 1.15 * sure
     trunk = Trunk((crowded,), ())
     assert trunk.diameter_within_m > 1.15 * Trunk((stem,), ()).diameter_within_m
     assert trunk.fitted_within_m == pytest.approx(Trunk((stem,), ()).fitted_within_m)
