@@ -186,3 +186,8 @@ def _on_kernel(
         on[at], nearest, off = True, at, away
     slabs = round((high - low) / _STEP_M) + 1
     return count if count >= _FEWEST_PIECES and count >= _FILLED * slabs else 0
+
+
+def warm_up() -> None:
+    """Compile the kernels."""
+    lines_of(np.zeros((_FEWEST_PIECES, 3)), np.zeros(4), _STEP_M)

@@ -274,7 +274,7 @@ def _drives_joined(
         shifts = dict(shifted.shifts) if are_apart else {}
         # What neighbours agree on is surer than what a slender stem tells.
         shifts |= agreed_shifts(shifted, [moved[told[number]] for number in near[:_BESIDE]])
-        if shifts:
+        if any(shift.any() for shift in shifts.values()):
             points = laid_by(one.about, gathered.drives[one.lines], shifts)
             anew = _trunks_in(points, gathered.drives[one.lines], most_diameter_m)
             joined.append(one._replace(about=points, trunk=_nearest(anew, one.trunk)))

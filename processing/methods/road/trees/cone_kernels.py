@@ -279,10 +279,11 @@ def arc_kernel(local: Floats, body: Floats, near: NDArray[np.bool_]) -> float:
 
 @kernel
 def evenness_kernel(local: Floats, body: Floats, near: NDArray[np.bool_]) -> float:
-    """How much of a body's seen side its points fill in slabs, over what as many by chance would.
+    """How evenly points fill the seen side of a body: in slabs or in all, whichever is more.
 
-    Of bark a scan line shows all that it sees; of bars, and of stems that a circle goes through, it
-    shows the same few sides at every height.
+    In slabs over what as many by chance would, in all by how many sides would hold as many alike.
+    Of bark a flat scan line shows all that it sees, and steep ones show all together; of bars, and
+    of stems that a circle goes through, each shows the same few sides at every height.
     """
     lowest = np.inf
     for point in range(len(local)):
@@ -306,7 +307,9 @@ def evenness_kernel(local: Floats, body: Floats, near: NDArray[np.bool_]) -> flo
         if count >= _FEWEST_OF_SLAB:
             filled += np.count_nonzero(counts[slab])
             likely += seen * (1.0 - (1.0 - 1.0 / seen) ** count)
-    return filled / likely if likely > 0.0 else 1.0
+    whole = counts.sum(axis=0)
+    alike = whole.sum() ** 2 / max((whole * whole).sum(), 1) / max(seen, 1)
+    return max(filled / likely, alike) if likely > 0.0 else 1.0
 
 
 @kernel

@@ -21,7 +21,7 @@ _USUAL_M, _LONG_M, _USUAL_DENSITY = 0.2, 2.0, 2_000.0
 
 # Learnt by `python -m processing.laboratory.road_training.tree_training`: the 95th per cent of
 # errors over what the fit alone tells (Koenker and Bassett 1978, Regression quantiles).
-WEIGHTS = (0.47, -0.29, 0.37, 1.99, -0.56)
+WEIGHTS = (0.07, -0.11, 0.53, 2.39, -0.24)
 """A constant, and in the order of the causes."""
 
 

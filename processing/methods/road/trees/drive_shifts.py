@@ -34,6 +34,9 @@ _AGREE, _SURELY, _LEAST_ERROR_M = 3, 3.0, 0.001
 """Stems that have to agree on how drives lie apart; over how many standard errors they have to; and
 the least such error: three that agree by chance within a millimetre are no surer."""
 
+_NONE_M = 0.003
+"""Standard error of what stems agree on, below which they agree that there is no shift."""
+
 _SPREAD, _MEDIAN = 1.4826, 1.2533
 """Standard deviation over the median distance from the median, and of a median over that of a
 mean; of what is distributed normally."""
@@ -63,6 +66,8 @@ class JoinedPoints(NamedTuple):
 def agreed_shifts(own: JoinedPoints, near: Sequence[JoinedPoints]) -> dict[int, Floats]:
     """How far drives lie aside where a stem and those near it agree; empty where they don't.
 
+    Zero where they agree that a drive doesn't.
+
     One trunk doesn't tell a shift of a centimetre from bark that isn't round; several do, since
     bark is out of round in another direction on each.
 
@@ -85,6 +90,8 @@ def agreed_shifts(own: JoinedPoints, near: Sequence[JoinedPoints]) -> dict[int, 
         error = float(np.hypot(*spread)) * _MEDIAN / math.sqrt(len(both))
         if np.hypot(*middle) > _SURELY * max(error, _LEAST_ERROR_M):
             agreed[drive] = middle
+        elif error < _NONE_M:
+            agreed[drive] = np.zeros(2)
     return agreed
 
 

@@ -89,7 +89,7 @@ class StemBody(NamedTuple):
     lines : (n,) int64
         Its points, by their line among those of the column.
     evenness : float
-        How much of its seen side they fill in slabs, over what as many by chance would.
+        How evenly they fill its seen side, 1: as by chance.
     outer : (10,) float64
         The body about what clings to it: where the fit from the circles themselves ends.
     """

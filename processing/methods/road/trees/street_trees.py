@@ -100,7 +100,7 @@ class StreetTree:
 
 
 class _MeasuredTrunk(NamedTuple):
-    """A trunk where it stands, whether it has flat sides, and its points."""
+    """A trunk where it stands, whether all its stems have flat sides, and its points."""
 
     standing: UprightTrunk
     has_flat_sides: bool
@@ -264,7 +264,9 @@ def _standing(gathered: ColumnPoints, one: ColumnTrunk) -> _MeasuredTrunk:
     foot = np.array([*(one.middle + trunk.base), one.height_m + higher])
     return _MeasuredTrunk(
         UprightTrunk(trunk, foot, rise),
-        has_flat_sides(one.trunk.stems[0], one.about, gathered.drives[one.lines]),
+        all(
+            has_flat_sides(stem, one.about, gathered.drives[one.lines]) for stem in one.trunk.stems
+        ),
         gathered.points[one.lines[lines]],
         gathered.drives[one.lines[lines]],
     )

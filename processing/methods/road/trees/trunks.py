@@ -92,7 +92,7 @@ it by slabs and sides, which count; circles among stray points have fewer. And h
 many a stem holds that goes on below what begins in its crown."""
 
 _BETTER = 1.5
-"""Times as much of its circumference and of its length a stem shows than a wider circle beside it
+"""Times as much of its circumference a stem shows, and as many points, as a wider circle beside it
 among leaves or at a corner."""
 
 _ROOT_M = 0.25
@@ -314,11 +314,11 @@ def _is_sparse(stem: FittedStem, others: Sequence[FittedStem]) -> bool:
 
 
 def _is_worse(stem: FittedStem, others: Sequence[FittedStem]) -> bool:
-    """Whether a thinner one beside it is seen much better, all round and along its length."""
+    """Whether a thinner one beside it is seen much better, all round and by more points."""
     return any(
         one.radius_m < stem.radius_m
         and one.arc > _BETTER * stem.arc
-        and one.high_m - one.low_m > _BETTER * (stem.high_m - stem.low_m)
+        and one.lines.size > _BETTER * stem.lines.size
         for one in others
     )
 

@@ -58,7 +58,8 @@ def test_above_a_bent_stem_its_end_goes_straight_on() -> None:
     on = stem.straight_on
     end = on[:2] + (stem.high_m - 1.2) * on[2:4]
     assert end == pytest.approx(stem.middle_at(stem.high_m))
-    assert on[2:4] == pytest.approx((stem.middle_at(stem.high_m + 1e-4) - end) / 1e-4, abs=1e-3)
+    assert on[2:4] == pytest.approx((end - stem.middle_at(1.2)) / (stem.high_m - 1.2))
+    assert stem.middle_at(8.0) == pytest.approx(on[:2] + 6.8 * on[2:4])
     assert not on[8:].any()
 
 

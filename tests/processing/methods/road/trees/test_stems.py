@@ -255,3 +255,13 @@ def test_a_crowded_short_or_thinly_measured_stem_has_a_wider_error() -> None:
     trunk = Trunk((crowded,), ())
     assert trunk.diameter_within_m > 1.15 * Trunk((stem,), ()).diameter_within_m
     assert trunk.fitted_within_m == pytest.approx(Trunk((stem,), ()).fitted_within_m)
+
+
+def test_a_wide_circle_that_shows_less_is_none_beside_a_stem_that_shows_more() -> None:
+    stem = replace(trunk_in(bark(0.2, 0.2, 4.0)).stems[0], arc=0.8)
+    aside = np.array([stem.base[0] + 0.2, stem.base[1] + 0.15])
+    fewer = stem.lines[::3]
+    wide = replace(stem, radius_m=0.18, arc=0.34, low_m=1.3, base=aside, lines=fewer)
+    trunk = trunk_of([wide, stem])
+    assert trunk is not None
+    assert trunk.diameter_m == pytest.approx(0.2, abs=0.01)
