@@ -192,8 +192,8 @@ class FittedStem:
 
     @property
     def _end_slope(self) -> Floats:
-        """(2,) how far its axis moves in a metre from 1.2 m on to where it was last seen."""
-        slope: Floats = self.lean + self.high_m * self.bend
+        """(2,) how far its axis moves in a metre, from where it was first seen to where last."""
+        slope: Floats = self.lean + (self.low_m + self.high_m - BREAST_M) * self.bend
         return slope
 
     def middle_at(self, height_m: float) -> Floats:

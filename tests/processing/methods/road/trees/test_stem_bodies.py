@@ -55,10 +55,10 @@ def test_a_bent_stem_is_the_same_about_a_higher_foot() -> None:
 
 def test_above_a_bent_stem_its_end_goes_straight_on() -> None:
     stem = thickest(bark(0.2, bend=0.06))
-    on = stem.straight_on
+    on, low = stem.straight_on, stem.low_m
     end = on[:2] + (stem.high_m - 1.2) * on[2:4]
     assert end == pytest.approx(stem.middle_at(stem.high_m))
-    assert on[2:4] == pytest.approx((end - stem.middle_at(1.2)) / (stem.high_m - 1.2))
+    assert on[2:4] == pytest.approx((end - stem.middle_at(low)) / (stem.high_m - low))
     assert stem.middle_at(8.0) == pytest.approx(on[:2] + 6.8 * on[2:4])
     assert not on[8:].any()
 
