@@ -123,4 +123,4 @@ def _trunks(drives: tuple[Drive, ...], monitor: Monitor) -> Iterator[FoundShaft]
             foot = one.foot + np.array([*stem.base, 0.0])
             radius_m = stem.radius_m + stem.taper * _BREAST_M
             rises = one.upright.rise.high_m if stem.lean is thickest.lean else stem.high_m
-            yield FoundShaft(foot, stem.lean, radius_m, stem.taper, rises, one.confidence)
+            yield FoundShaft(foot, stem.slope, radius_m, stem.taper, rises, one.confidence)

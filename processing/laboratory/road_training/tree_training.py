@@ -37,7 +37,7 @@ from processing.laboratory.road_training.boosted_confidence import learn_model
 from processing.laboratory.road_training.learned_confidence import LabelledThings
 from processing.laboratory.road_training.varied_streets import varied_streets
 from processing.methods.road.trees.diameter_errors import ErrorCauses, causes_of, wider
-from processing.methods.road.trees.stems import BREAST_M
+from processing.methods.road.trees.stem_bodies import BREAST_M
 from processing.methods.road.trees.street_trees import StreetTree, TreeSettings, upright_things
 from processing.methods.road.trees.tree_confidence import MODEL, SIGNS, TreeFacts, facts_of
 from processing.scoring.features.mapped_features import MappedFeature, MappedFile
@@ -93,7 +93,7 @@ def known_trees(scenes: Iterator[RoadScene]) -> KnownTrees:
             rows.append((facts_of(one.upright, one.crown), which is not None, 1.0, number))
             if which is not None and shows_enough(truth, which, "arc_deg", LEAST_ARC_DEG):
                 off = abs(one.trunk.diameter_m - truth.number(which, "dbh_m"))
-                causes.append(causes_of(one.trunk.stems[0], one.trunk.diameter_m))
+                causes.append(causes_of(one.trunk.stems, one.trunk.diameter_m))
                 errors.append(max(off, _LEAST_ERROR_M) / one.trunk.fitted_within_m)
         say(f"{scene.name}: {len(rows)} upright things")
     return KnownTrees(

@@ -36,12 +36,13 @@ _MIRRORED = 0.05
 """Of the points of the fullest layer: windows and wet roads mirror few beams, and the ground beside
 a hedge, which hides some of it, holds more."""
 
-_EMPTY, _FEW = 3, 0.2
+_EMPTY, _FEW = 3, 0.3
 """Layers that hold hardly anything between the ground and what it mirrors, where that is more: a
 hedge and a trunk fill them; and share of the ground's points that lie below them."""
 
-_LEAST_RISE_M = 0.5
-"""What lies less below the ground isn't looked for: gutters and tree pits have such steps."""
+_LEAST_RISE_M, _LEAST_FALL_M, _LOWEST_M = 0.5, 0.3, 1.0
+"""What lies less above or below the ground isn't looked for: gutters and tree pits have such steps;
+and how far below it is looked for."""
 
 _PLAN_CELL_M, _STANDING, _WIDER = 0.15, 8, 1.5
 """Cells of the plan that are counted; layers above the ground that hold what stands on it; and how
@@ -49,7 +50,7 @@ many times as many cells ground fills: a trunk fills as many in each layer, a ri
 
 
 def ground_seen(points: Floats, coarse_m: float, least_rise_m: float = _LEAST_RISE_M) -> float:
-    """The ground of the coarse map, or what lies above it where that is a few mirrored points.
+    """The ground of the coarse map, or what lies above or below it where that is off.
 
     Parameters
     ----------
@@ -62,11 +63,12 @@ def ground_seen(points: Floats, coarse_m: float, least_rise_m: float = _LEAST_RI
 
     Notes
     -----
-    What lies above is ground if it takes up more room in plan than what stands on it: where rails
-    and walls hide the ground, the lowest that was seen is the trunk itself.
+    The coarse map may hold a few mirrored points, or what hides the ground from most sides. What
+    lies above or below is ground if it takes up more room in plan than what stands on it: where
+    rails and walls hide the ground, the lowest that was seen is the trunk itself.
     """
-    layers = round((_HIGHEST_M + _LEAST_RISE_M) / _LAYER_M)
-    lowest = coarse_m - _LEAST_RISE_M
+    layers = round((_HIGHEST_M + _LOWEST_M) / _LAYER_M)
+    lowest = coarse_m - _LOWEST_M
     layer = np.floor((points[:, 2] - lowest) / _LAYER_M).astype(np.int64)
     is_asked = (layer >= 0) & (layer < layers)
     counts = np.bincount(layer[is_asked], minlength=layers)
@@ -75,7 +77,8 @@ def ground_seen(points: Floats, coarse_m: float, least_rise_m: float = _LEAST_RI
         return coarse_m
     first = _above_images(counts, filled)
     seen = lowest + (float(first) + 0.5) * _LAYER_M
-    if first == filled[0] and seen <= coarse_m + least_rise_m:
+    is_near = coarse_m - _LEAST_FALL_M <= seen <= coarse_m + least_rise_m
+    if first == filled[0] and is_near:
         return coarse_m
     cells = np.floor(points[is_asked, :2] / _PLAN_CELL_M).astype(np.int64)
     places = np.unique(np.column_stack([layer[is_asked], cells]), axis=0)

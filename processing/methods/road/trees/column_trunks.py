@@ -29,7 +29,8 @@ from processing.methods.road.trees.drive_shifts import (
     without_shifts,
 )
 from processing.methods.road.trees.rises import followed
-from processing.methods.road.trees.stems import BREAST_M, FittedStem, stems_of
+from processing.methods.road.trees.stem_bodies import BREAST_M
+from processing.methods.road.trees.stems import FittedStem, stems_of
 from processing.methods.road.trees.trunks import (
     CLUMP_M,
     Trunk,
@@ -122,7 +123,15 @@ def _trunks_about(
 def _trunks_in(about: Floats, drives: Integers, most_diameter_m: float) -> tuple[Trunk, ...]:
     """The trunks among points about a foot; what has flat sides is one where nothing else is."""
     stems = followed(about, stems_of(about, most_diameter_m))
-    trunks = trunks_of([stem for stem in stems if not has_flat_sides(stem, about, drives)])
+    is_flat = [has_flat_sides(stem, about, drives) for stem in stems]
+    round_ones = [stem for stem, flat in zip(stems, is_flat, strict=True) if not flat]
+    # What parts at its root from what bends is no pier, however ill it shows that it bends.
+    round_ones += [
+        stem
+        for stem, flat in zip(stems, is_flat, strict=True)
+        if flat and any(leave_together(stem, one, np.zeros(2)) for one in round_ones)
+    ]
+    trunks = trunks_of(round_ones)
     return trunks or trunks_of(stems)
 
 
@@ -261,11 +270,12 @@ def _drives_joined(
         monitor.check()
         near = np.asarray(tree.query(place, k=_NEIGHBOURS)[1])
         near = near[near < len(told)]
-        points = shifted.points if is_apart[near].mean() > _MOST else None
-        agreed = agreed_shifts(shifted, [moved[told[number]] for number in near[:_BESIDE]])
-        if points is None and agreed:
-            points = laid_by(one.about, gathered.drives[one.lines], agreed)
-        if points is not None:
+        are_apart = shifted.points is not None and is_apart[near].mean() > _MOST
+        shifts = dict(shifted.shifts) if are_apart else {}
+        # What neighbours agree on is surer than what a slender stem tells.
+        shifts |= agreed_shifts(shifted, [moved[told[number]] for number in near[:_BESIDE]])
+        if any(shift.any() for shift in shifts.values()):
+            points = laid_by(one.about, gathered.drives[one.lines], shifts)
             anew = _trunks_in(points, gathered.drives[one.lines], most_diameter_m)
             joined.append(one._replace(about=points, trunk=_nearest(anew, one.trunk)))
         else:
@@ -275,10 +285,14 @@ def _drives_joined(
 
 def _nearest(trunks: Sequence[Trunk], before: Trunk) -> Trunk:
     """The trunk that stands where one stood; that one itself where none does."""
-    place = before.stems[0].middle_at(BREAST_M)
 
     def away(trunk: Trunk) -> float:
-        return float(np.hypot(*(trunk.stems[0].middle_at(BREAST_M) - place)))
+        return min(
+            float(np.hypot(*(one.middle_at(BREAST_M) - other.middle_at(BREAST_M))))
+            for one in trunk.stems
+            for other in before.stems
+        )
 
-    near = min(trunks, key=away, default=before)
-    return near if away(near) < max(_SAME_M, before.stems[0].radius_m) else before
+    reach = max(_SAME_M, before.stems[0].radius_m)
+    near = [one for one in trunks if away(one) < reach]
+    return min(near, key=lambda one: (-len(one.stems), away(one)), default=before)

@@ -1,8 +1,9 @@
-"""The leaning, tapering, oval body through the points of a stem: the loops.
+"""The leaning, tapering, oval, bent body through the points of a stem: the loops.
 
-A body has eight numbers: east and north of its axis 1.2 m above the foot, how far that moves in a
-metre of height, radius, what that gains in a metre, and how far from round it is (cosine and sine
-of the doubled direction).
+A body has ten numbers: east and north of its axis 1.2 m above the foot, how far that moves there in
+a metre of height, radius, what that gains in a metre, how far from round it is (cosine and sine
+of the doubled direction), and how far to the east and north the axis bends off its tangent a metre
+above and below. A body that begins straight stays so.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from numpy.typing import NDArray
 from processing.core.arrays import Floats, Integers
 from processing.core.kernels import kernel
 
-NUMBERS = 8
+NUMBERS = 10
 
 TOLERANCE_M = 0.012
 """First tolerance, before the noise is known: three times the 4 mm of usual scanners."""
@@ -35,11 +36,18 @@ OVAL = 0.06
 """Standard deviation of half the difference of a trunk's two diameters, as a share of their mean:
 trunks of street trees are seldom wider one way than the other by more than a quarter."""
 
-_LEAN, _TAPER = 0.1, 0.02
-"""Standard deviations of lean and taper of trees, by which they are held."""
+_LEAN, _TAPER, _BEND_M = 0.1, 0.02, 0.05
+"""Standard deviations of lean, taper and bend (m off the tangent in a metre) of trees, by which
+they are held: slender stems of one tree curve out by 0.1 m in a metre and a half."""
+
+_STRAIGHT_M = 1e-9
+"""The same of an axis that is not to bend."""
 
 _FEWEST_POINTS = 8
-"""As many as a body has numbers."""
+"""As many as a straight body has numbers."""
+
+_HALF_SEEN = 2.0 / math.pi
+"""How far the mean of directions to the points of half a circle lies from its middle."""
 
 _TURNS = 6
 """Steps of the fit; it ends within four. By trial; no measurement is recorded."""
@@ -55,12 +63,18 @@ FREE_SLAB_M, _FREE_FROM_M, _FREE_TO_M, _FREE_SHARE = 0.2, 0.03, 0.15, 0.15
 it stands free, beyond bark and noise and nearer than most of what stands beside; and points there
 over those on it: along a wall there are as many."""
 
+_FEWEST_OF_SLAB = 5
+"""Points of a slab that tell which sides of a stem it shows."""
+
 _ONE_SIDE = 3
 """Sectors that hold a stake or another stem a hand's breadth away."""
 
 _APART_M = 0.03
 """Standard deviation of how far drives lie apart, by which shifts are held where few points of a
 drive tell them; passes in towns differ by 2 to 5 cm."""
+
+_STEPS_M = (0.02, 0.005)
+"""From place to place that is asked; the first finds what half the tolerance catches."""
 
 _SHRINKS, _APART_TURNS = 0.7, 10
 """The tolerance of each step over that of the one before, until it is `TOLERANCE_M`; steps of the
@@ -82,7 +96,7 @@ def settle_kernel(
         m about the foot, but for the height: about 1.2 m above it.
     shape_m : float
         How far bark and mixed points make the shape seem off, however many there are.
-    body : (8,) float64
+    body : (10,) float64
         Where it begins; where it ends is written.
     off : (n,) float64
         How far each point lies outside the body of the last turn. Written.
@@ -96,7 +110,7 @@ def settle_kernel(
         few points are near.
     """
     tolerance, deviation, noise = TOLERANCE_M, -1.0, -1.0
-    row = np.empty(NUMBERS)
+    row, bend_m = np.empty(NUMBERS), _bend_m(body)
     for _ in range(_TURNS):
         normal, right = np.zeros((NUMBERS, NUMBERS)), np.zeros(NUMBERS)
         count, square = 0, 0.0
@@ -113,9 +127,10 @@ def settle_kernel(
         if count < _FEWEST_POINTS:
             return -1.0, -1.0
         spread = max(LEAST_NOISE_M, math.sqrt(square / count))
-        _hold(body, spread, shape_m, count, normal, right)
-        step = np.linalg.solve(normal, right)
-        body += step
+        _hold(body, bend_m, (spread, shape_m, count), normal, right)
+        body += np.linalg.solve(normal, right)
+        if bend_m == _STRAIGHT_M:
+            body[8:10] = 0.0
         body[5] = min(max(body[5], -MOST_TAPER), MOST_TAPER)
         deviation = spread * math.sqrt(max(np.linalg.inv(normal)[4, 4], 0.0))
         noise = max(LEAST_NOISE_M, 1.4826 * np.median(np.abs(off[near])))
@@ -124,10 +139,27 @@ def settle_kernel(
 
 
 @kernel
+def _bend_m(body: Floats) -> float:
+    """How far an axis may bend: one that begins straight stays so."""
+    return _BEND_M if body[8] != 0.0 or body[9] != 0.0 else _STRAIGHT_M
+
+
+@kernel
 def _hold(
-    body: Floats, spread: float, shape_m: float, count: int, normal: Floats, right: Floats
+    body: Floats,
+    bend_m: float,
+    found: tuple[float, float, int],
+    normal: Floats,
+    right: Floats,
 ) -> None:
-    """Hold lean, taper and flattening, and fill the other half of the normal equations."""
+    """Hold lean, taper, flattening and bend, and fill the other half of the normal equations.
+
+    Parameters
+    ----------
+    found : (float, float, int)
+        How far points lie off the body, how far bark makes its shape seem off, and how many points.
+    """
+    spread, shape_m, count = found
     oval = OVAL * abs(body[4])
     for i in range(len(normal)):
         for j in range(i):
@@ -138,6 +170,8 @@ def _hold(
             weight = (spread / _LEAN) ** 2
         elif i == 5:
             weight = (spread / _TAPER) ** 2
+        elif i > 7:
+            weight = (spread / bend_m) ** 2
         elif i > 5:
             weight = (spread / oval) ** 2 + count * (shape_m / oval) ** 2
         normal[i, i] += weight + 1e-9
@@ -146,16 +180,17 @@ def _hold(
 
 @kernel
 def off_of(local: Floats, point: int, body: Floats, row: Floats) -> float:
-    """How far a point lies outside a body, and how that changes with its eight numbers."""
+    """How far a point lies outside a body, and how that changes with its numbers."""
     up = local[point, 2]
-    east = local[point, 0] - body[0] - body[2] * up
-    north = local[point, 1] - body[1] - body[3] * up
+    east = local[point, 0] - body[0] - (body[2] + body[8] * up) * up
+    north = local[point, 1] - body[1] - (body[3] + body[9] * up) * up
     away = max(math.hypot(east, north), 1e-6)
     east, north = east / away, north / away
     row[0], row[1] = -east, -north
     row[2], row[3] = -east * up, -north * up
     row[4], row[5] = -1.0, -up
     row[6], row[7] = north * north - east * east, -2 * east * north
+    row[8], row[9] = -east * up * up, -north * up * up
     return float(away - body[4] - body[5] * up + row[6] * body[6] + row[7] * body[7])
 
 
@@ -172,16 +207,109 @@ def scatter_kernel(local: Floats, body: Floats, near: NDArray[np.bool_]) -> floa
 
 
 @kernel
+def speaks_kernel(local: Floats, body: Floats) -> float:
+    """How many points lie on a body, less for those beside it, and fewer by those inside it."""
+    row, speaks = np.empty(NUMBERS), 0.0
+    for point in range(len(local)):
+        off = off_of(local, point, body, row) / TOLERANCE_M
+        if off < -1.0:
+            speaks -= 1.0
+        elif off < 1.0:
+            speaks += 1.0 - off * off
+    return speaks
+
+
+@kernel
+def inside_kernel(local: Floats, body: Floats) -> float:
+    """How many points lie inside a body, over those on it."""
+    row, on, inside = np.empty(NUMBERS), 0, 0
+    for point in range(len(local)):
+        off = off_of(local, point, body, row)
+        on += abs(off) <= TOLERANCE_M
+        inside += off < -TOLERANCE_M
+    return inside / max(on, 1)
+
+
+@kernel
+def thinner_kernel(local: Floats, share: float, body: Floats) -> None:
+    """Make a body thinner whose surface stays where its points are.
+
+    Parameters
+    ----------
+    share : float
+        Of its radius that is left.
+    """
+    row = np.empty(NUMBERS)
+    east, north, count = 0.0, 0.0, 0
+    for point in range(len(local)):
+        if abs(off_of(local, point, body, row)) <= TOLERANCE_M:
+            east, north, count = east - row[0], north - row[1], count + 1
+    # Seen all round, its middle stays.
+    away = math.hypot(east, north)
+    if away > 0.0:
+        moved = (1.0 - share) * body[4] * min(1.0, away / (_HALF_SEEN * count)) / away
+        body[0] += moved * east
+        body[1] += moved * north
+    body[4] *= share
+
+
+@kernel
+def near_kernel(local: Floats, body: Floats) -> NDArray[np.bool_]:
+    """Which points lie on a body: (n,) bool."""
+    row = np.empty(NUMBERS)
+    near = np.empty(len(local), np.bool_)
+    for point in range(len(local)):
+        near[point] = abs(off_of(local, point, body, row)) <= TOLERANCE_M
+    return near
+
+
+@kernel
 def arc_kernel(local: Floats, body: Floats, near: NDArray[np.bool_]) -> float:
     """Share of the circumference that has points."""
     seen = np.zeros(_SECTORS, np.bool_)
     for point in range(len(local)):
         if near[point]:
-            east = local[point, 0] - body[0] - body[2] * local[point, 2]
-            north = local[point, 1] - body[1] - body[3] * local[point, 2]
+            up = local[point, 2]
+            east = local[point, 0] - body[0] - (body[2] + body[8] * up) * up
+            north = local[point, 1] - body[1] - (body[3] + body[9] * up) * up
             sector = int((math.atan2(north, east) / math.pi + 1) / 2 * _SECTORS)
             seen[min(sector, _SECTORS - 1)] = True
     return float(seen.sum() / _SECTORS)
+
+
+@kernel
+def evenness_kernel(local: Floats, body: Floats, near: NDArray[np.bool_]) -> float:
+    """How evenly points fill the seen side of a body: in slabs or in all, whichever is more.
+
+    In slabs over what as many by chance would, in all by how many sides would hold as many alike.
+    Of bark a flat scan line shows all that it sees, and steep ones show all together; of bars, and
+    of stems that a circle goes through, each shows the same few sides at every height.
+    """
+    lowest = np.inf
+    for point in range(len(local)):
+        if near[point]:
+            lowest = min(lowest, local[point, 2])
+    slabs = 1
+    for point in range(len(local)):
+        if near[point]:
+            slabs = max(slabs, int((local[point, 2] - lowest) / FREE_SLAB_M) + 1)
+    counts, row = np.zeros((slabs, _SECTORS), np.int64), np.empty(NUMBERS)
+    for point in range(len(local)):
+        if near[point]:
+            off_of(local, point, body, row)
+            sector = int((math.atan2(-row[1], -row[0]) / math.pi + 1) / 2 * _SECTORS)
+            slab = int((local[point, 2] - lowest) / FREE_SLAB_M)
+            counts[slab, min(sector, _SECTORS - 1)] += 1
+    seen = np.count_nonzero(counts.sum(axis=0))
+    filled, likely = 0.0, 0.0
+    for slab in range(slabs):
+        count = counts[slab].sum()
+        if count >= _FEWEST_OF_SLAB:
+            filled += np.count_nonzero(counts[slab])
+            likely += seen * (1.0 - (1.0 - 1.0 / seen) ** count)
+    whole = counts.sum(axis=0)
+    alike = whole.sum() ** 2 / max((whole * whole).sum(), 1) / max(seen, 1)
+    return max(filled / likely, alike) if likely > 0.0 else 1.0
 
 
 @kernel
@@ -230,6 +358,32 @@ def free_slabs_kernel(
 
 
 @kernel
+def shift_kernel(local: Floats, body: Floats, most_m: float, shift: Floats) -> None:
+    """How far points of one drive lie aside of a body that another shows, to half a centimetre.
+
+    Parameters
+    ----------
+    shift : (2,) float64
+        m to the east and north. Written.
+    """
+    moved, east, north, most = local.copy(), 0.0, 0.0, -np.inf
+    for step in _STEPS_M:
+        middle_east, middle_north = east, north
+        around = round((most_m if step == _STEPS_M[0] else _STEPS_M[0]) / step)
+        for column in range(-around, around + 1):
+            for row in range(-around, around + 1):
+                aside = middle_east + step * column, middle_north + step * row
+                for point in range(len(local)):
+                    moved[point, 0] = local[point, 0] - aside[0]
+                    moved[point, 1] = local[point, 1] - aside[1]
+                # Of places alike the nearest.
+                speaks = speaks_kernel(moved, body) * (1.0 - math.hypot(*aside))
+                if speaks > most:
+                    most, east, north = speaks, aside[0], aside[1]
+    shift[0], shift[1] = east, north
+
+
+@kernel
 def apart_kernel(
     local: Floats, numbers: tuple[Integers, Integers], shape_m: float, body: Floats, shifts: Floats
 ) -> float:
@@ -239,10 +393,10 @@ def apart_kernel(
     ----------
     numbers : (drive of each point, shift of each drive)
         (n,) and (drives,) int64; −1: a drive has none.
-    body : (8,) float64
+    body : (10,) float64
         Where it begins; where it ends is written.
     shifts : (drives, 2) float64
-        m to the east and north. Written.
+        m to the east and north, as they begin. Written.
 
     Returns
     -------
@@ -251,14 +405,15 @@ def apart_kernel(
     """
     drive, shift = numbers
     size = NUMBERS + 2 * (int(shift.max()) + 1)
-    moved, tolerance = local.copy(), CAPTURED_M
+    moved, tolerance, bend_m = local.copy(), CAPTURED_M, _bend_m(body)
+    _move(local, drive, shifts, moved)
     for _ in range(_APART_TURNS):
         normal, right = np.zeros((size, size)), np.zeros(size)
         on, square = _add_rows(moved, numbers, tolerance, body, (normal, right))
         if on < size:
             return 0.0
         spread = max(LEAST_NOISE_M, math.sqrt(square / on))
-        _hold(body, spread, shape_m, on, normal, right)
+        _hold(body, bend_m, (spread, shape_m, on), normal, right)
         for one in range(shift.size):
             for axis in range(2 if shift[one] >= 0 else 0):
                 at = NUMBERS + 2 * shift[one] + axis
@@ -266,18 +421,26 @@ def apart_kernel(
                 right[at] -= (spread / _APART_M) ** 2 * shifts[one, axis]
         step = np.linalg.solve(normal, right)
         body += step[:NUMBERS]
+        if bend_m == _STRAIGHT_M:
+            body[8:10] = 0.0
         for one in range(shift.size):
             if shift[one] >= 0:
                 at = NUMBERS + 2 * shift[one]
                 shifts[one] += step[at : at + 2]
-        for point in range(len(local)):
-            moved[point, 0] = local[point, 0] - shifts[drive[point], 0]
-            moved[point, 1] = local[point, 1] - shifts[drive[point], 1]
+        _move(local, drive, shifts, moved)
         tolerance = max(_SHRINKS * tolerance, TOLERANCE_M)
     row, lies = np.empty(NUMBERS), 0.0
     for point in range(len(moved)):
         lies += max(0.0, 1.0 - (off_of(moved, point, body, row) / TOLERANCE_M) ** 2)
     return lies
+
+
+@kernel
+def _move(local: Floats, drive: Integers, shifts: Floats, moved: Floats) -> None:
+    """Write points without the shifts of their drives."""
+    for point in range(len(local)):
+        moved[point, 0] = local[point, 0] - shifts[drive[point], 0]
+        moved[point, 1] = local[point, 1] - shifts[drive[point], 1]
 
 
 @kernel

@@ -8,7 +8,10 @@ errors lie is learnt from known trunks.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import NamedTuple
+
+import numpy as np
 
 from processing.methods.road.trees.cone_kernels import FREE_SLAB_M
 from processing.methods.road.trees.stems import FittedStem
@@ -18,7 +21,7 @@ _USUAL_M, _LONG_M, _USUAL_DENSITY = 0.2, 2.0, 2_000.0
 
 # Learnt by `python -m processing.laboratory.road_training.tree_training`: the 95th per cent of
 # errors over what the fit alone tells (Koenker and Bassett 1978, Regression quantiles).
-WEIGHTS = (0.47, -0.29, 0.37, 1.99, -0.56)
+WEIGHTS = (0.07, -0.11, 0.53, 2.39, -0.24)
 """A constant, and in the order of the causes."""
 
 
@@ -30,9 +33,9 @@ class ErrorCauses(NamedTuple):
     thick : float
         Natural logarithm of the diameter over 0.2 m.
     crowded : float
-        Share of the stem's length along which something stands beside it.
+        Share of a stem's length along which something stands beside it.
     short_m : float
-        What the seen piece lacks of 2 m.
+        What its seen piece lacks of 2 m.
     dense : float
         Decimal logarithm of the points on its surface over 2,000 a square metre.
     """
@@ -43,15 +46,17 @@ class ErrorCauses(NamedTuple):
     dense: float
 
 
-def causes_of(stem: FittedStem, diameter_m: float) -> ErrorCauses:
-    """What makes a trunk's diameter unsure, by its thickest stem."""
-    seen = stem.high_m - stem.low_m
-    free = stem.free_slabs * FREE_SLAB_M / max(seen, FREE_SLAB_M / 2)
+def causes_of(stems: Sequence[FittedStem], diameter_m: float) -> ErrorCauses:
+    """What makes a trunk's diameter unsure, in the mean of its stems."""
+    seen = np.array([one.high_m - one.low_m for one in stems])
+    slabs = np.array([one.free_slabs for one in stems])
+    density = np.array([one.density for one in stems])
+    free = slabs * FREE_SLAB_M / np.maximum(seen, FREE_SLAB_M / 2)
     return ErrorCauses(
         thick=math.log(max(diameter_m, _USUAL_M / 10) / _USUAL_M),
-        crowded=1.0 - min(free, 1.0),
-        short_m=max(0.0, _LONG_M - seen),
-        dense=math.log10(max(stem.density, 10.0) / _USUAL_DENSITY),
+        crowded=float(1.0 - np.minimum(free, 1.0).mean()),
+        short_m=float(np.maximum(0.0, _LONG_M - seen).mean()),
+        dense=float(np.log10(np.maximum(density, 10.0) / _USUAL_DENSITY).mean()),
     )
 
 

@@ -15,9 +15,10 @@ import numpy as np
 
 from processing.core.arrays import Floats, Integers
 from processing.core.kernels import kernel
-from processing.methods.road.trees.cone_kernels import settle_kernel
-from processing.methods.road.trees.stems import BREAST_M, SHAPE_M, THICK_M, FittedStem
+from processing.methods.road.trees.cone_kernels import NUMBERS, settle_kernel
+from processing.methods.road.trees.stem_bodies import BREAST_M, SHAPE_M
 from processing.methods.road.trees.stems import HIGHEST_M as LOOKED_M
+from processing.methods.road.trees.stems import THICK_M, FittedStem
 
 HIGHEST_M = 8.0
 """Above the foot: what goes on straight up to there is no trunk with branches below."""
@@ -36,6 +37,9 @@ _SLEEVES_M = (0.01, 0.02, 0.03, 0.04)
 
 _BESIDE_M = 0.3
 """Beyond the surface: leaves there tell how many would lie near it by chance."""
+
+_STRAIGHT_M = 0.6
+"""The last piece of a stem that bends, from which it is followed straight on."""
 
 _FEWEST = 3
 """Points on the surface of a slab."""
@@ -94,10 +98,12 @@ def rise_of(points: Floats, stem: FittedStem) -> StemRise:
     points : (n, 3) float64
         About the foot, of all heights.
     """
-    body = stem.body
+    body = stem.straight_on
     near = points[_within(points, body)]
     near = near[np.argsort(near[:, 2], kind="stable")]
     low, top = stem.low_m, stem.high_m
+    if stem.bend.any():
+        low = max(low, top - _STRAIGHT_M)
     if not _climbed(near, body, top):
         body, low = _thinner(near, body, top), top
     for _ in range(_ROUNDS):
@@ -144,7 +150,8 @@ def _climbed(near: Floats, body: Floats, top: float) -> int:
 
 def _thinner(near: Floats, body: Floats, top: float) -> Floats:
     """The body without a sleeve about it, if one so much thinner goes on above it."""
-    bodies = [body - np.array([0, 0, 0, 0, less, 0, 0, 0]) for less in _SLEEVES_M]
+    thinner = np.eye(NUMBERS)[4]
+    bodies = [body - less * thinner for less in _SLEEVES_M]
     bodies = [one for one in bodies if one[4] > _TOLERANCE_M]
     return max(bodies, key=lambda one: _climbed(near, one, top), default=body)
 

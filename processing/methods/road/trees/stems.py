@@ -8,15 +8,15 @@ cone whose axis may lean.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from processing.core.arrays import Floats, Integers
+from processing.methods.road.trees.alike_stems import lines_of, pieces_of
 from processing.methods.road.trees.circle_kernels import (
     ARC,
     CIRCLE_WIDTH,
@@ -34,15 +34,10 @@ from processing.methods.road.trees.cone_kernels import (
     EVEN_NOISE_M,
     NUMBERS,
     TOLERANCE_M,
-    arc_kernel,
     free_slabs_kernel,
-    scatter_kernel,
-    settle_kernel,
 )
+from processing.methods.road.trees.stem_bodies import BREAST_M, body_through
 from processing.methods.road.trees.wall_kernels import without_rows_kernel
-
-BREAST_M = 1.2
-"""Height of the diameter above the foot: 胸高 in Japan (Takahashi 2022, 5.1)."""
 
 LOWEST_M, HIGHEST_M = 0.3, 2.6
 """Of the slabs above the foot: above grass and the flare of the roots, below most crowns."""
@@ -50,6 +45,9 @@ LOWEST_M, HIGHEST_M = 0.3, 2.6
 STEP_M, THICK_M = 0.1, 0.2
 """From slab to slab, and how thick one is: scan lines of a moving scanner lie up to 0.2 m apart on
 a trunk, so one of them crosses most slabs. A lean of 10 degrees moves a circle by 3.5 cm in it."""
+
+HEIGHTS_M = np.linspace(LOWEST_M, HIGHEST_M, round((HIGHEST_M - LOWEST_M) / STEP_M) + 1)
+"""Of the slabs' middles above the foot."""
 
 _SPARSE_THICK_M = 0.4
 """How thick slabs are where no stem was found: of a slender trunk far from the scanner, two points
@@ -80,45 +78,35 @@ _STEEPEST = 0.5
 _STEEP = 0.35
 """Run over rise of the stems of a tree that has several: they lean outwards by up to 20 degrees."""
 
-_THINNEST_M = 0.015
+_THINNEST_M = 0.01
 """Radius: a cane of 3 cm; what is thinner shows as a few points however near it stands."""
 
-_ABOUT_M = 0.1
-"""From a body's surface to the points that are looked at: what it may move while it is fitted."""
+_SLENDER_M, _FROM_M, _BESIDE_M = 0.08, 1.7, 0.03
+"""Radius of stems that have others like them which show too little; below which height one is seen;
+and how far off its surface others' points lie."""
 
-SHAPE_M = 0.003
-"""How far bark and the points at a trunk's edges make its shape seem off; as for the girth."""
+_LEANS = 0.03
+"""Run over rise: posts and stakes are set plumber, stems of one tree lean away from each other."""
 
-_SHAPES_M = (SHAPE_M, 0.001, 0.0)
-"""Less and less of what is seen is held for bark, and more for a trunk that isn't round. Of the
-stems that were looked at, sectors of 15 degrees lie 0.4 to 1.3 mm off an ellipse."""
-
-_ALIKE = 10
-"""Points that lie off a trunk together: a burr or a lobe of bark holds so many."""
-
-_FLATTER = (0.0, 5.0, 6.0)
-"""How much likelier (natural logarithm, halves) each shape must make the points: Akaike's 2 for
-each of the two numbers of an ellipse, and somewhat more, since few trunks are flat."""
-
+_THICKER, _TOLD_ARC = 2.0, 0.3
+"""How many times as thick stems of one tree are as others; and share of a circumference that few
+points show."""
 
 EVENLY_M = 0.75 * EVEN_NOISE_M
 """Off a stem: points that lie so far off it fill what is allowed nearly evenly. There is no stem,
 or it bends."""
 
-_PIECE_M, _STRAIGHTER = 0.65, 0.75
-"""m to either side of 1.2 m in which a stem that bends is straight enough: slender stems of one
-tree curve out by 0.1 m in a metre and a half, a hundredth of a metre there; and how far its points
-lie off it then, over how far they lay: mere noise stays as it is."""
+_LEAST_EVEN = 0.6
+"""How evenly a stem's points fill its seen side: of 92 trunks on eight own streets, two of them by
+scanners whose lines cross a trunk steeply, one had less than 0.65; circles through several stems,
+or through the bars of a guard, had 0.54 to 0.58. Slender ones may have less: bars of a guard hide
+sides of them."""
 
 _FEWEST_FREE = 2
 """Slabs of 0.2 m in which a stem stands free: circles at the corner of a wall and among twigs have
 as many points beside them as on them at every height. Of 110 trees of own avenues that were looked
 at one stood free in fewer than three, with a cane beside it; of things taken for trees that were
 corners and shrubs all but one in none."""
-
-_OPEN = 0.5
-"""Standard deviation of the radius over what its shapes differ in it: where they do, half a trunk
-was seen, and how flat it is stays open."""
 
 
 @dataclass(frozen=True)
@@ -130,7 +118,8 @@ class FittedStem:
     base : (2,) float64
         Its axis at the foot's height, m about the column.
     lean : (2,) float64
-        Metres that the axis moves to the east and north in a metre of height.
+        Metres that the axis moves to the east and north in a metre of height, from the foot to
+        1.2 m above it.
     radius_m, taper : float
         Radius 1.2 m above the foot, m; what it loses in a metre of height.
     deviation_m : float
@@ -143,6 +132,8 @@ class FittedStem:
         Share of its circumference that was seen.
     lines : (n,) int64
         Its points, by their line among those of the column.
+    bend : (2,) float64
+        How far east and north the axis leaves its tangent a metre above and below, m.
     """
 
     base: Floats
@@ -156,12 +147,14 @@ class FittedStem:
     arc: float
     free_slabs: int
     lines: Integers
+    bend: Floats = field(default_factory=lambda: np.zeros(2))
 
     def about(self, higher_m: float) -> FittedStem:
         """The same with a foot that lies so much higher."""
         return replace(
             self,
-            base=self.base + self.lean * higher_m,
+            base=self.middle_at(higher_m),
+            lean=self.lean + 2 * higher_m * self.bend,
             radius_m=self.radius_m - self.taper * higher_m,
             low_m=self.low_m - higher_m,
             high_m=self.high_m - higher_m,
@@ -175,16 +168,44 @@ class FittedStem:
 
     @property
     def body(self) -> Floats:
-        """(8,) as kernels have it, round."""
+        """(10,) as kernels have it, round."""
         body = np.zeros(NUMBERS)
-        body[:2], body[2:4] = self.middle_at(BREAST_M), self.lean
+        body[:2], body[2:4] = self.base + BREAST_M * self.lean, self.lean + BREAST_M * self.bend
         body[4], body[5] = self.radius_m, -self.taper
+        body[8:10] = self.bend
         return body
+
+    @property
+    def slope(self) -> Floats:
+        """(2,) how far its axis moves in a metre, from the foot to where it was last seen."""
+        slope: Floats = self.lean + (self.high_m - BREAST_M) * self.bend
+        return slope
+
+    @property
+    def straight_on(self) -> Floats:
+        """(10,) the straight body that goes on above it."""
+        body = self.body
+        body[2:4] = self._end_slope
+        body[:2] = self.middle_at(self.high_m) - (self.high_m - BREAST_M) * body[2:4]
+        body[8:10] = 0.0
+        return body
+
+    @property
+    def _end_slope(self) -> Floats:
+        """(2,) how far its axis moves in a metre, from where it was first seen to where last."""
+        slope: Floats = self.lean + (self.low_m + self.high_m - BREAST_M) * self.bend
+        return slope
 
     def middle_at(self, height_m: float) -> Floats:
         """Its axis at a height above the foot: (2,) float64."""
-        middle: Floats = self.base + self.lean * height_m
+        middle: Floats = self.axis_at(np.array([height_m]))[0]
         return middle
+
+    def axis_at(self, heights_m: Floats) -> Floats:
+        """Its axis at heights above the foot, straight above where it was seen: (n, 2) float64."""
+        up = np.minimum(heights_m, self.high_m)[:, None]
+        axis: Floats = self.base + up * (self.lean + (up - BREAST_M) * self.bend)
+        return axis + (heights_m[:, None] - up) * self._end_slope
 
 
 def stems_of(
@@ -200,42 +221,112 @@ def stems_of(
     most_circles : int
         Of a slab.
     """
-    rising = _Rising.of(points)
     for thick_m in (THICK_M, _SPARSE_THICK_M):
-        slabs = _slab_circles(rising, most_diameter_m, thick_m)
+        slabs = slab_circles(points, most_diameter_m, thick_m)
         slabs.circles[:, most_circles:] = 0.0
         found = [
             stem
             for chain in _chains(slabs.circles, slabs.heights)
             if (stem := _fitted(points, chain, most_diameter_m)) is not None
         ]
-        free = _standing_free(points, found)
+        free = [one.stem for one in _standing_free(points, found)]
+        alike = _alike(points, free, most_diameter_m)
+        free = [one for one in free if all(_are_apart(one, other) for other in alike)] + alike
         if any(stem.low_m < BREAST_M < stem.high_m for stem in free):
             break
     return tuple(sorted(free, key=lambda stem: -stem.lines.size))
 
 
-def _standing_free(points: Floats, stems: Sequence[FittedStem]) -> list[FittedStem]:
+class _CladStem(NamedTuple):
+    """A stem, and the body about what clings to it."""
+
+    stem: FittedStem
+    outer: Floats
+
+    @property
+    def is_free(self) -> bool:
+        """Whether it is no piece of a wall, of a shrub or of a crown."""
+        return self.stem.free_slabs >= _FEWEST_FREE
+
+    def told_free(self, points: Floats) -> _CladStem:
+        """The same with the slabs in which it stands free of points: ivy stands on it."""
+        heights = self.stem.low_m, self.stem.high_m
+        slabs = max(
+            int(free_slabs_kernel(points, BREAST_M, body, heights))
+            for body in (self.stem.body, self.outer)
+        )
+        return self._replace(stem=replace(self.stem, free_slabs=slabs))
+
+
+def _standing_free(points: Floats, stems: Sequence[_CladStem]) -> list[_CladStem]:
     """Stems without what is a piece of a wall, of a shrub or of a crown.
 
     What stands beside one that is free counts without it: stems of one tree stand close.
     """
-    told = [_told_free(points, stem) for stem in stems]
+    told = [one.told_free(points) for one in stems]
     left = np.ones(len(points), np.bool_)
-    for stem in told:
-        if stem.free_slabs >= _FEWEST_FREE:
-            left[stem.lines] = False
+    for one in told:
+        if one.is_free:
+            left[one.stem.lines] = False
     if not left.all():
         others = points[left]
-        told = [
-            stem if stem.free_slabs >= _FEWEST_FREE else _told_free(others, stem) for stem in told
-        ]
-    return [stem for stem in told if stem.free_slabs >= _FEWEST_FREE]
+        told = [one if one.is_free else one.told_free(others) for one in told]
+    return [one for one in told if one.is_free]
 
 
-def _told_free(points: Floats, stem: FittedStem) -> FittedStem:
-    slabs = free_slabs_kernel(points, BREAST_M, stem.body, (stem.low_m, stem.high_m))
-    return replace(stem, free_slabs=int(slabs))
+def _alike(points: Floats, free: Sequence[FittedStem], most_m: float) -> list[FittedStem]:
+    """Stems that show too little for circles but leave the ground with a slender one.
+
+    Circles that end below the tape may have shown a piece of one.
+    """
+    known = [one for one in free if _has_others(one)]
+    if not known:
+        return []
+    whole = [one for one in free if one.high_m >= BREAST_M or one.radius_m > _SLENDER_M]
+    radius = float(np.median([one.radius_m for one in known]))
+    pieces = pieces_of(points[_beside(points, whole)], HEIGHTS_M, THICK_M, radius)
+    alike: list[FittedStem] = []
+    for one in known:
+        aside = (points[one.lines, :2] - one.axis_at(points[one.lines, 2])).mean(axis=0)
+        axis = np.concatenate([one.base, one.slope])
+        for line in lines_of(pieces, axis, max(one.radius_m, TOLERANCE_M)):
+            told = np.full((len(line), 2), (one.radius_m, _TOLD_ARC))
+            chain = np.column_stack([line[:, 0], line[:, 1:] - aside, told])
+            found = _fitted(points, chain, most_m)
+            stem = found.told_free(points).stem if found is not None else None
+            if stem is not None and _is_like(stem, one):
+                alike += [stem] if all(_are_apart(stem, it) for it in (*whole, *alike)) else []
+    return alike
+
+
+def _has_others(stem: FittedStem) -> bool:
+    """Whether it may be one of several stems of a tree: slender ones that lean, unlike posts."""
+    is_seen = stem.low_m <= _FROM_M and stem.high_m >= BREAST_M
+    return is_seen and stem.radius_m <= _SLENDER_M and float(np.hypot(*stem.slope)) > _LEANS
+
+
+def _beside(points: Floats, stems: Sequence[FittedStem]) -> NDArray[np.bool_]:
+    """Which points lie off the surfaces of stems."""
+    left = np.ones(len(points), np.bool_)
+    for one in stems:
+        over = np.maximum(one.radius_m - one.taper * (points[:, 2] - BREAST_M), 0.0)
+        away = np.hypot(*(points[:, :2] - one.axis_at(points[:, 2])).T)
+        left &= np.abs(away - over) > _BESIDE_M
+    return left
+
+
+def _is_like(stem: FittedStem, known: FittedStem) -> bool:
+    """Whether it stands free, is as thick, about, and shows a surface."""
+    thick = stem.radius_m / known.radius_m
+    is_surface = stem.noise_m < EVENLY_M and stem.free_slabs >= _FEWEST_FREE
+    return is_surface and 1 / _THICKER < thick < _THICKER
+
+
+def _are_apart(one: FittedStem, other: FittedStem) -> bool:
+    """Whether two stems don't go through each other, as one that drives show twice does."""
+    middle = (one.low_m + one.high_m) / 2
+    away = np.hypot(*(one.middle_at(middle) - other.middle_at(middle)))
+    return bool(away > one.radius_m + other.radius_m)
 
 
 class SlabCircles(NamedTuple):
@@ -263,34 +354,14 @@ def slab_circles(points: Floats, most_diameter_m: float, thick_m: float = THICK_
     thick_m : float
         Of a slab.
     """
-    return _slab_circles(_Rising.of(points), most_diameter_m, thick_m)
-
-
-class _Rising(NamedTuple):
-    """Points of a column from the lowest on: heights (n,), and places in plan (n, 2)."""
-
-    heights: Floats
-    plan: Floats
-
-    @staticmethod
-    def of(points: Floats) -> _Rising:
-        """Points without those above and below all slabs."""
-        up = points[:, 2]
-        chosen = np.flatnonzero(
-            (up >= LOWEST_M - _SPARSE_THICK_M) & (up <= HIGHEST_M + _SPARSE_THICK_M)
-        )
-        order = chosen[np.argsort(up[chosen], kind="stable")]
-        return _Rising(up[order], points[:, :2].take(order, axis=0))
-
-
-def _slab_circles(rising: _Rising, most_diameter_m: float, thick_m: float) -> SlabCircles:
-    count = round((HIGHEST_M - LOWEST_M) / STEP_M) + 1
-    heights = np.linspace(LOWEST_M, HIGHEST_M, count)
+    heights = HEIGHTS_M
     circles = np.zeros((heights.size, MOST_CIRCLES, CIRCLE_WIDTH))
-    first = np.searchsorted(rising.heights, heights - thick_m / 2)
-    end = np.searchsorted(rising.heights, heights + thick_m / 2)
+    order = np.argsort(points[:, 2], kind="stable")
+    rising = points[order, 2]
+    first = np.searchsorted(rising, heights - thick_m / 2)
+    end = np.searchsorted(rising, heights + thick_m / 2)
     if (end > first).any():
-        plan = rising.plan
+        plan = np.ascontiguousarray(points[order, :2])
         members = np.empty(int((end - first).sum()), np.int64)
         starts = np.empty(heights.size + 1, np.int64)
         spans = np.column_stack([first, end])
@@ -317,112 +388,29 @@ def _chains(circles: Floats, heights: Floats) -> list[Floats]:
     return told
 
 
-def _fitted(points: Floats, chain: Floats, most_diameter_m: float) -> FittedStem | None:
-    """The cone through the points of a chain of circles; None where there is none."""
-    low, high = chain[0, 0] - THICK_M / 2, chain[-1, 0] + THICK_M / 2
-    start = _body_of(chain)
-    about = _points_near(points, start, low, high)
-    local = points[about] - (0.0, 0.0, BREAST_M)
-    cone = _likeliest(local, start)
-    if cone is None:
+def _fitted(points: Floats, chain: Floats, most_diameter_m: float) -> _CladStem | None:
+    """The body through the points of a chain of circles; None where there is none."""
+    body = body_through(points, chain, THICK_M / 2)
+    if body is None:
         return None
-    piece = _unbent_piece(points, chain) if cone.noise_m > EVENLY_M else None
-    if piece is not None and piece.cone.noise_m < _STRAIGHTER * cone.noise_m:
-        about, local, cone = piece
-    radius = float(cone.body[4])
-    lean = cone.body[2:4]
+    radius, bend = float(body.numbers[4]), body.numbers[8:10]
+    lean = body.numbers[2:4] - bend * BREAST_M
     if not _THINNEST_M <= radius <= most_diameter_m / 2 or np.hypot(*lean) > _STEEPEST:
         return None
-    return FittedStem(
-        base=cone.body[:2] - lean * BREAST_M,
+    if radius > _SLENDER_M and body.evenness < _LEAST_EVEN:
+        return None
+    stem = FittedStem(
+        base=body.numbers[:2] - lean * BREAST_M,
         lean=lean,
+        bend=bend,
         radius_m=radius,
-        taper=float(-cone.body[5]),
-        deviation_m=cone.deviation_m,
-        noise_m=cone.noise_m,
-        low_m=float(low),
-        high_m=float(high),
-        arc=float(arc_kernel(local, cone.body, cone.near)),
+        taper=float(-body.numbers[5]),
+        deviation_m=body.deviation_m,
+        noise_m=body.noise_m,
+        low_m=float(chain[0, 0]) - THICK_M / 2,
+        high_m=float(chain[-1, 0]) + THICK_M / 2,
+        arc=body.arc,
         free_slabs=0,
-        lines=about[cone.near],
+        lines=body.lines,
     )
-
-
-class _Cone(NamedTuple):
-    """A body, its radius' standard deviation, how far its points lie off it, and which they are."""
-
-    body: Floats
-    deviation_m: float
-    noise_m: float
-    near: NDArray[np.bool_]
-
-
-class _Piece(NamedTuple):
-    """Which points are near a piece of a stem, where they are about it, and its cone."""
-
-    about: Integers
-    local: Floats
-    cone: _Cone
-
-
-def _unbent_piece(points: Floats, chain: Floats) -> _Piece | None:
-    """The piece of a stem about 1.2 m; None where it has too few circles or points there."""
-    rows = chain[np.abs(chain[:, 0] - BREAST_M) < _PIECE_M]
-    if not _FEWEST_SLABS <= len(rows) < len(chain):
-        return None
-    start = _body_of(rows)
-    about = _points_near(points, start, rows[0, 0] - THICK_M / 2, rows[-1, 0] + THICK_M / 2)
-    local = points[about] - (0.0, 0.0, BREAST_M)
-    cone = _likeliest(local, start)
-    return _Piece(about, local, cone) if cone is not None else None
-
-
-def _points_near(points: Floats, body: Floats, low: float, high: float) -> Integers:
-    """Points of some heights within a hand's breadth of a body."""
-    up = points[:, 2]
-    about = np.flatnonzero((up >= low) & (up <= high))
-    beside = points[about, :2] - body[:2] - (up[about, None] - BREAST_M) * body[2:4]
-    near: Integers = about[np.hypot(beside[:, 0], beside[:, 1]) < body[4] + _ABOUT_M]
-    return near
-
-
-def _body_of(chain: Floats) -> Floats:
-    """The round body that circles tell."""
-    height = chain[:, 0] - BREAST_M
-    body = np.zeros(NUMBERS)
-    weight = (0.1 + chain[:, 4]) ** 2
-    weight /= weight.sum()
-    about = height - weight @ height
-    slope = (weight * about) @ chain[:, 1:3] / max(float(weight @ about**2), 1e-9)
-    body[2:4] = slope
-    body[:2] = weight @ (chain[:, 1:3] - height[:, None] * slope)
-    body[4] = float(np.median(chain[:, 3]))
-    return body
-
-
-def _likeliest(local: Floats, start: Floats) -> _Cone | None:
-    """The body that the points near it give, as flat as they show it; None where too few are."""
-    cones: list[_Cone] = []
-    for shape_m in _SHAPES_M:
-        cone = _settled(local, cones[-1].body if cones else start, shape_m)
-        if cone is None:
-            break
-        cones.append(cone)
-    if not cones:
-        return None
-    near = np.any([cone.near for cone in cones], axis=0)
-    number = np.count_nonzero(near) / _ALIKE
-    worse = [
-        2 * number * math.log(scatter_kernel(local, cone.body, near)) + more
-        for cone, more in zip(cones, _FLATTER, strict=False)
-    ]
-    chosen = cones[int(np.argmin(worse))]
-    open_m = _OPEN * float(np.ptp([cone.body[4] for cone in cones]))
-    return chosen._replace(deviation_m=math.hypot(chosen.deviation_m, open_m))
-
-
-def _settled(local: Floats, start: Floats, shape_m: float) -> _Cone | None:
-    """The body that the points near it give; None where too few are."""
-    body, near = start.copy(), np.zeros(len(local), np.bool_)
-    deviation, noise = settle_kernel(local, shape_m, body, np.empty(len(local)), near)
-    return _Cone(body, deviation, noise, near) if noise > 0 else None
+    return _CladStem(stem, body.outer)

@@ -100,7 +100,7 @@ class StreetTree:
 
 
 class _MeasuredTrunk(NamedTuple):
-    """A trunk where it stands, whether it has flat sides, and its points."""
+    """A trunk where it stands, whether all its stems have flat sides, and its points."""
 
     standing: UprightTrunk
     has_flat_sides: bool
@@ -213,7 +213,7 @@ def _stems_of(trunks: Sequence[UprightTrunk]) -> StandingStems:
             axis = one.foot[:2] + stem.base - one.trunk.base
             high = one.rise.high_m if stem is thickest else stem.high_m
             wide = stem.radius_m + _BESIDE_M
-            rows.append((*axis, *stem.lean, wide, high + _ABOVE_M, number))
+            rows.append((*axis, *stem.slope, wide, high + _ABOVE_M, number))
         starts.append(len(rows))
     heights = np.array([one.foot[2] for one in trunks])
     return StandingStems(np.array(starts, np.int64), np.array(rows, np.float64), heights)
@@ -281,7 +281,9 @@ def _standing(gathered: ColumnPoints, one: ColumnTrunk) -> _MeasuredTrunk:
     foot = np.array([*(one.middle + trunk.base), one.height_m + higher])
     return _MeasuredTrunk(
         UprightTrunk(trunk, foot, rise),
-        has_flat_sides(one.trunk.stems[0], one.about, gathered.drives[one.lines]),
+        all(
+            has_flat_sides(stem, one.about, gathered.drives[one.lines]) for stem in one.trunk.stems
+        ),
         gathered.points[one.lines[lines]],
         gathered.drives[one.lines[lines]],
     )

@@ -13,8 +13,8 @@ from processing.methods.road.diagnostics import Diagnostic, DiagnosticTest
 from processing.methods.road.objects.foot import foot_height
 from processing.methods.road.requested_position import RequestedPosition
 from processing.methods.road.trees.circle_kernels import ARC, EAST, INLIERS, NORTH, RADIUS
+from processing.methods.road.trees.stem_bodies import BREAST_M
 from processing.methods.road.trees.stems import (
-    BREAST_M,
     STEP_M,
     FittedStem,
     slab_circles,

@@ -17,7 +17,8 @@ from processing.methods.road.objects.round_sections import round_share
 from processing.methods.road.objects.square_sections import square_share
 from processing.methods.road.trees.cone_kernels import FREE_SLAB_M
 from processing.methods.road.trees.diameter_errors import causes_of, wider
-from processing.methods.road.trees.stems import BREAST_M, EVENLY_M, HIGHEST_M, FittedStem
+from processing.methods.road.trees.stem_bodies import BREAST_M
+from processing.methods.road.trees.stems import EVENLY_M, HIGHEST_M, FittedStem
 
 _SAME_M = 0.06
 """Axes nearer than this at one height are of one stem that was found in two pieces."""
@@ -28,6 +29,10 @@ _ENDS_M = 0.4
 _HIDDEN_M, _SHORT_M = 0.5, 0.2
 """How far above 1.2 m a trunk may come in sight, over stakes and straps, and how far below it may
 end: farther off its taper leaves the diameter open by more than a centimetre."""
+
+_LONG_HIDDEN_M = 1.0
+"""How far above 1.2 m a stem may come in sight that parts at its root from one that is seen better:
+over a clipped hedge. It counts, whatever is off its diameter."""
 
 _FORK_M = 0.3
 """Above 1.2 m: circles of a stem that is whole there begin lower, whatever hides a slab or two."""
@@ -86,6 +91,10 @@ _SPARSE, _DENSER = 0.2, 1.5
 it by slabs and sides, which count; circles among stray points have fewer. And how many times as
 many a stem holds that goes on below what begins in its crown."""
 
+_BETTER = 1.5
+"""Times as much of its circumference a stem shows, and as many points, as a wider circle beside it
+among leaves or at a corner."""
+
 _ROOT_M = 0.25
 """Between the surfaces of upright stems that leave the ground as one; stakes are driven in beyond
 the root ball, 0.3 m and more from the bark."""
@@ -128,9 +137,9 @@ class Trunk:
     def diameter_within_m(self) -> float:
         """The diameter is off by no more in 95 of 100 cases, m.
 
-        By what else may be wrong with the thickest stem wider than by its points and bark.
+        By what else may be wrong with the stems wider than by their points and bark.
         """
-        return self.fitted_within_m * wider(causes_of(self.stems[0], self.diameter_m))
+        return self.fitted_within_m * wider(causes_of(self.stems, self.diameter_m))
 
     @property
     def fitted_within_m(self) -> float:
@@ -176,7 +185,7 @@ class Trunk:
     @property
     def lean_deg(self) -> float:
         """Of the thickest stem from the vertical."""
-        return math.degrees(math.atan(float(np.hypot(*self.stems[0].lean))))
+        return math.degrees(math.atan(float(np.hypot(*self.stems[0].slope))))
 
     @property
     def lines(self) -> Integers:
@@ -207,10 +216,18 @@ def trunks_of(stems: Sequence[FittedStem]) -> tuple[Trunk, ...]:
         for stem in whole
         if stem.low_m <= BREAST_M + _HIDDEN_M and stem.high_m >= BREAST_M - _SHORT_M
     ]
+    high += [
+        stem
+        for stem in whole
+        if BREAST_M + _HIDDEN_M < stem.low_m <= BREAST_M + _LONG_HIDDEN_M
+        and any(leave_together(stem, one, np.zeros(2)) for one in high)
+    ]
     high = [
         stem
         for stem in high
-        if not (_is_loose(stem, high) or _is_sparse(stem, high) or _is_of_crown(stem, high))
+        if not any(
+            is_none(stem, high) for is_none in (_is_loose, _is_sparse, _is_of_crown, _is_worse)
+        )
     ]
     trees = [one for clump in _clumps(high) if (one := _stems_of_tree(clump, high))]
     trees = _without_stakes(trees)
@@ -235,7 +252,7 @@ def leave_together(one: FittedStem, other: FittedStem, beside: Floats) -> bool:
         From the foot that the one is about to that of the other, m.
     """
     low = one.base - other.base - beside
-    high = low + HIGHEST_M * (one.lean - other.lean)
+    high = low + HIGHEST_M * (one.slope - other.slope)
     away = float(np.hypot(*low))
     return away < CLUMP_M and float(np.hypot(*high)) - away > _PARTS * HIGHEST_M
 
@@ -258,7 +275,7 @@ def has_flat_sides(stem: FittedStem, points: Floats, drives: Integers) -> bool:
     """
     is_seen = (points[:, 2] >= stem.low_m) & (points[:, 2] <= stem.high_m)
     up = points[is_seen, 2] - BREAST_M
-    beside = points[is_seen, :2] - stem.middle_at(BREAST_M) - up[:, None] * stem.lean
+    beside = points[is_seen, :2] - stem.axis_at(points[is_seen, 2])
     radii = stem.radius_m - stem.taper * up
     near = np.abs(np.hypot(beside[:, 0], beside[:, 1]) - radii) < _FACES * radii
     bends = round_share(beside[near], radii[near], drives[is_seen][near])
@@ -296,9 +313,24 @@ def _is_sparse(stem: FittedStem, others: Sequence[FittedStem]) -> bool:
     return any(stem.density < _SPARSE * one.density for one in others if one.arc >= _ROUND)
 
 
+def _is_worse(stem: FittedStem, others: Sequence[FittedStem]) -> bool:
+    """Whether a thinner one beside it is seen much better, all round and by more points."""
+    return any(
+        one.radius_m < stem.radius_m
+        and one.arc > _BETTER * stem.arc
+        and one.lines.size > _BETTER * stem.lines.size
+        for one in others
+    )
+
+
 def _is_of_crown(stem: FittedStem, others: Sequence[FittedStem]) -> bool:
-    """Whether it begins in the leaves about a stem that is seen better and further down."""
+    """Whether it begins in the leaves about a stem that is seen better and further down.
+
+    What parts from it at the root doesn't.
+    """
     if stem.low_m <= BREAST_M + _FORK_M:
+        return False
+    if any(leave_together(stem, one, np.zeros(2)) for one in others if one is not stem):
         return False
     return any(
         one.low_m <= BREAST_M
@@ -351,13 +383,17 @@ def _without_stakes(trees: Sequence[list[FittedStem]]) -> list[list[FittedStem]]
     What ends below the tape is one too where another goes on, however thick it seems.
     """
     trees = [tree for tree in trees if not _is_through_stakes(tree, trees)]
-    tops = [max(stem.high_m for stem in tree) for tree in trees]
+    tops = [_top_of(tree) for tree in trees]
     lowest = BREAST_M if max(tops, default=0.0) > BREAST_M + _ENDS_M else 0.0
     trees = [tree for tree, top in zip(trees, tops, strict=True) if top >= lowest]
     thick = [tree for tree in trees if _is_thicker_than_stakes(tree)]
     if thick or not trees:
         return thick
-    return [max(trees, key=lambda tree: max(stem.high_m for stem in tree))]
+    return [max(trees, key=lambda tree: (_top_of(tree), sum(one.lines.size for one in tree)))]
+
+
+def _top_of(tree: Sequence[FittedStem]) -> float:
+    return max(stem.high_m for stem in tree)
 
 
 def _is_through_stakes(tree: Sequence[FittedStem], others: Sequence[list[FittedStem]]) -> bool:
@@ -379,12 +415,16 @@ def _is_thicker_than_stakes(tree: Sequence[FittedStem]) -> bool:
 
 
 def _is_stay(stem: FittedStem, others: Sequence[FittedStem], clump: Sequence[FittedStem]) -> bool:
-    """Whether it leans on a thicker one that shows more; one that parts from its root's doesn't."""
+    """Whether it leans on a thicker, higher one that shows more.
+
+    One that parts from its root's doesn't.
+    """
     if any(leave_together(stem, one, np.zeros(2)) for one in clump if one is not stem):
         return False
     low, high = stem.low_m, stem.high_m
     return any(
         one.radius_m > stem.radius_m
+        and one.high_m >= stem.high_m
         and one.lines.size > stem.lines.size
         and np.hypot(*(one.middle_at(low) - stem.middle_at(low)))
         - np.hypot(*(one.middle_at(high) - stem.middle_at(high)))

@@ -23,7 +23,8 @@ from processing.methods.road.trees.circle_kernels import (
     CircleLimits,
     circles_kernel,
 )
-from processing.methods.road.trees.stems import BREAST_M, slab_circles, stems_of
+from processing.methods.road.trees.stem_bodies import BREAST_M
+from processing.methods.road.trees.stems import slab_circles, stems_of
 from processing.methods.road.trees.trunks import trunk_of
 
 MOST_DIAMETER_M = 1.2

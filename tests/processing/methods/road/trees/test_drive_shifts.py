@@ -82,6 +82,24 @@ def test_bark_that_is_not_round_is_no_shift_between_heads() -> None:
     assert not agreed_shifts(near[0], near[:2])
 
 
+def test_stems_that_agree_on_no_shift_overrule_what_one_tells() -> None:
+    near = told((0.03, 0.02), (0.001, 0.0), (0.0, 0.001), (0.001, 0.001), (0.0, 0.0))
+    assert agreed_shifts(near[0], near)[1] == pytest.approx([0.0, 0.0])
+
+
+def test_passes_that_lie_a_hand_s_breadth_apart_are_laid_onto_each_other() -> None:
+    shift = (0.075, -0.03)
+    points = np.vstack([seen(0.12, (0.0, 0.0), -30.0, 5), seen(0.12, shift, 30.0, 6)])
+    drives = np.repeat([0, 1], len(points) // 2)
+    trunk = trunk_of(stems_of(points, MOST_M))
+    assert trunk is not None
+    joined = without_shifts(points, drives, trunk.stems[0])
+    assert joined.points is not None
+    apart = joined.shifts[1] - joined.shifts[0]
+    assert apart == pytest.approx(shift, abs=0.006)
+    assert diameter_of(joined.points) == pytest.approx(0.12, abs=0.005)
+
+
 def test_how_drives_lie_apart_is_told_from_whichever_has_the_most_points() -> None:
     other = JoinedPoints({1: np.zeros(2), 0: np.array([-0.012, -0.006])}, None)
     near = [other, *told((0.012, 0.006), (0.013, 0.006), (0.012, 0.007))]
@@ -119,3 +137,10 @@ def test_what_a_wet_road_mirrors_far_below_it_is_no_ground_though_it_is_a_tenth_
 def test_a_trunk_whose_foot_a_wall_hides_does_not_end_where_it_is_seen_first() -> None:
     trunk = about(np.random.default_rng(3).uniform(1.1, 3.8, 400), 0.2)
     assert ground_seen(trunk, 0.0) == 0.0
+
+
+def test_what_hides_the_ground_from_most_sides_is_not_the_ground() -> None:
+    random = np.random.default_rng(8)
+    ground, trunk = random.normal(0.0, 0.01, 60), random.uniform(0.3, 3.5, 400)
+    both = np.vstack([about(ground, 0.9), about(trunk, 0.15)])
+    assert ground_seen(both, 0.55) == pytest.approx(0.0, abs=0.08)

@@ -245,13 +245,23 @@ def test_a_circle_through_stakes_is_no_trunk_beside_one_that_goes_on() -> None:
 
 def test_a_crowded_short_or_thinly_measured_stem_has_a_wider_error() -> None:
     stem = trunk_in(bark(0.2, 0.2, 4.0)).stems[0]
-    sure = wider(causes_of(stem, 0.2))
+    sure = wider(causes_of((stem,), 0.2))
     crowded = replace(stem, free_slabs=2)
     short = replace(stem, low_m=1.0, high_m=1.6)
     thin = replace(stem, lines=stem.lines[::20])
     assert sure < 1.5
     for one in (crowded, short, thin):
-        assert wider(causes_of(one, 0.2)) > 1.15 * sure
+        assert wider(causes_of((one,), 0.2)) > 1.15 * sure
     trunk = Trunk((crowded,), ())
     assert trunk.diameter_within_m > 1.15 * Trunk((stem,), ()).diameter_within_m
     assert trunk.fitted_within_m == pytest.approx(Trunk((stem,), ()).fitted_within_m)
+
+
+def test_a_wide_circle_that_shows_less_is_none_beside_a_stem_that_shows_more() -> None:
+    stem = replace(trunk_in(bark(0.2, 0.2, 4.0)).stems[0], arc=0.8)
+    aside = np.array([stem.base[0] + 0.2, stem.base[1] + 0.15])
+    fewer = stem.lines[::3]
+    wide = replace(stem, radius_m=0.18, arc=0.34, low_m=1.3, base=aside, lines=fewer)
+    trunk = trunk_of([wide, stem])
+    assert trunk is not None
+    assert trunk.diameter_m == pytest.approx(0.2, abs=0.01)
