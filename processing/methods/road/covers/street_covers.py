@@ -10,7 +10,8 @@ from typing import Literal
 import numpy as np
 
 from processing.core.arrays import Floats
-from processing.core.monitor import Monitor, PartMonitor
+from processing.core.monitor import Monitor, PartMonitor, parts_of
+from processing.core.worked_ahead import in_order
 from processing.methods.road.covers.cover_confidence import (
     RoadCoverFacts,
     chance_of,
@@ -147,11 +148,12 @@ def seen_covers(drives: Sequence[Drive], monitor: Monitor) -> SeenCovers:
         return SeenCovers(None, (), ())
     plan, ground = survey_ground(drives, PartMonitor(monitor, 0.0, 0.3))
     road = road_extent(plan, ground, driven_places(drives, plan))
-    heads = []
-    for number, drive in enumerate(drives):
-        share = 0.3 + 0.2 * np.array([number, number + 1]) / len(drives)
-        part = PartMonitor(monitor, float(share[0]), float(share[1]))
-        heads.append(head_tones(drive, road, part))
+    parts = parts_of(PartMonitor(monitor, 0.3, 0.5), [1.0] * len(drives))
+
+    def of_head(number: int) -> HeadTones:
+        return head_tones(drives[number], road, parts[number])
+
+    heads = list(in_order(of_head, range(len(drives))))
     raster = cover_raster(drives, heads, road, ground, PartMonitor(monitor, 0.5, 0.7))
     fitted = fitted_covers(raster, PartMonitor(monitor, 0.7, 0.95))
     monitor.check()

@@ -87,38 +87,60 @@ class PlateGroup:
     ----------
     pieces : (k,) int64
         Their numbers.
-    middle : (3,) float64
-        m about the origin of the plan.
-    right, up, normal : (3,) float64
-        Axes of the plane as the scanner saw it: to the right, up, towards the scanner.
-    noise_m : float
-        How far its pieces lie off the plane.
-    low, high : (2,) float64
-        Its box, right and up of the middle, m.
+    plane : (PLANE_WIDTH,) float64
+        As the kernels take it, m about the origin of the plan; the properties are views of it.
     """
 
     pieces: Integers
-    middle: Floats
-    right: Floats
-    up: Floats
-    normal: Floats
-    noise_m: float
-    low: Floats
-    high: Floats
+    plane: Floats
 
     @property
-    def plane(self) -> Floats:
-        """(PLANE_WIDTH,) float64: the same as the kernels take it."""
-        axes = (self.middle, self.right, self.up, self.normal)
-        return np.concatenate([*axes, [self.noise_m], self.low, self.high])
+    def middle(self) -> Floats:
+        """(3,) m about the origin of the plan."""
+        return self.plane[PLANE_MIDDLE:PLANE_RIGHT]
+
+    @property
+    def right(self) -> Floats:
+        """(3,) unit vector to the right, as the scanner saw it."""
+        return self.plane[PLANE_RIGHT:PLANE_UP]
+
+    @property
+    def up(self) -> Floats:
+        """(3,) unit vector upwards in the plane."""
+        return self.plane[PLANE_UP:PLANE_NORMAL]
+
+    @property
+    def normal(self) -> Floats:
+        """(3,) unit vector towards the scanner."""
+        return self.plane[PLANE_NORMAL:PLANE_NOISE]
+
+    @property
+    def noise_m(self) -> float:
+        """How far its pieces lie off the plane."""
+        return float(self.plane[PLANE_NOISE])
+
+    @property
+    def low(self) -> Floats:
+        """(2,) the lower corner of its box, right and up of the middle as the scanner saw it, m."""
+        return self.plane[PLANE_LOW:PLANE_HIGH]
+
+    @property
+    def high(self) -> Floats:
+        """(2,) the upper corner."""
+        return self.plane[PLANE_HIGH:]
 
     def flat(self, xyz: Floats) -> Floats:
         """(n, 2) right and up of the middle."""
-        return np.asarray((xyz - self.middle) @ np.column_stack([self.right, self.up]))
+        return np.asarray((xyz - self.middle) @ self._axes.T)
 
     def xyz(self, flat: Floats) -> Floats:
         """(…, 3) places of the plane, m about the origin of the plan."""
-        return np.asarray(self.middle + flat @ np.array([self.right, self.up]))
+        return np.asarray(self.middle + flat @ self._axes)
+
+    @property
+    def _axes(self) -> Floats:
+        """(2, 3) to the right and up."""
+        return self.plane[PLANE_RIGHT:PLANE_NORMAL].reshape(2, 3)
 
 
 def plate_groups(pieces: ScanPieces, ways: Floats, monitor: Monitor) -> list[PlateGroup]:
@@ -192,10 +214,8 @@ def _may_be_dull(pieces: ScanPieces, group: PlateGroup) -> bool:
 
 
 def _is_plate_sized(group: PlateGroup) -> bool:
-    size = group.high - group.low
-    return bool(
-        (size <= _LARGEST_M).all() and (size >= _LEAST_WIDE_M).all() and size.max() >= _LEAST_LONG_M
-    )
+    short, long = sorted((group.high - group.low).tolist())
+    return bool(long <= _LARGEST_M and short >= _LEAST_WIDE_M and long >= _LEAST_LONG_M)
 
 
 def group_of(values: Floats, members: Integers) -> PlateGroup | None:
@@ -203,16 +223,7 @@ def group_of(values: Floats, members: Integers) -> PlateGroup | None:
     told = np.empty(PLANE_WIDTH)
     if not flat_kernel(values, members, told):
         return None
-    return PlateGroup(
-        members,
-        middle=told[PLANE_MIDDLE:PLANE_RIGHT],
-        right=told[PLANE_RIGHT:PLANE_UP],
-        up=told[PLANE_UP:PLANE_NORMAL],
-        normal=told[PLANE_NORMAL:PLANE_NOISE],
-        noise_m=float(told[PLANE_NOISE]),
-        low=told[PLANE_LOW:PLANE_HIGH],
-        high=told[PLANE_HIGH:],
-    )
+    return PlateGroup(members, told)
 
 
 def _joined(
