@@ -102,8 +102,6 @@ class FittedCover:
         Of its length, anticlockwise from east.
     gain : float
         How clear its edge is: as :func:`gain_of` tells it.
-    other_gain : float
-        The same of the best of the other shape.
     edge : CoverEdge
     plane : (3,) float64
         Height of its middle about the plan's origin, m, and how it rises to the east and north.
@@ -115,7 +113,6 @@ class FittedCover:
     half_m: tuple[float, float]
     angle_rad: float
     gain: float
-    other_gain: float
     edge: CoverEdge
     plane: Floats
     filled: float
@@ -274,17 +271,17 @@ def _fitted(
         return None
     cells, place = room[:count], (frame, np.array(at) * frame.cell_m, plane)
     if other > _CORNER_COST * gain:
-        return _told(cells, noise, (shapes[1], (other, gain)), place)
-    return _told(cells, noise, (shapes[0], (gain, other)), place)
+        return _told(cells, noise, (shapes[1], other), place)
+    return _told(cells, noise, (shapes[0], gain), place)
 
 
 def _told(
     cells: Floats,
     noise: Floats,
-    fit: tuple[Floats, tuple[float, float]],
+    fit: tuple[Floats, float],
     place: tuple[_Frame, Floats, Floats],
 ) -> FittedCover:
-    shape, (gain, other) = fit
+    shape, gain = fit
     frame, start, plane = place
     bands, core = np.zeros((SECTORS, 2, 5)), np.zeros((4, 5))
     edge_kernel(cells, shape, bands, core)
@@ -298,7 +295,6 @@ def _told(
         half_m=(long, wide),
         angle_rad=(angle + frame.angle_rad) % math.pi,
         gain=gain,
-        other_gain=other,
         edge=CoverEdge(bands, core, noise),
         plane=np.append(plane[0] + shape[:2] @ plane[1:] + core[0, 2], slope),
         filled=min(float(core[1, 0]) * frame.cell_m**2 / area, 1.0),
