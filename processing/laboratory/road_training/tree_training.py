@@ -45,7 +45,7 @@ from processing.scoring.features.object_matches import is_in_span, positions_of,
 from processing.scoring.features.trees import LEAST_ARC_DEG, LEAST_TRUNK_POINTS
 from processing.tools.trees import TreeParameters
 
-_SIZE = TreesSize(trees=200, leaves=4, rate=0.1, least_in_a_leaf=20, signs=SIGNS)
+_SIZE = TreesSize(trees=200, leaves=6, rate=0.1, least_in_a_leaf=20, signs=SIGNS)
 
 _IN_95, _HELD = 0.95, 2e-3
 """Which errors lie within, and how much small weights are held to nothing (L1 penalty of
