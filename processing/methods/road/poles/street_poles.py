@@ -174,7 +174,7 @@ def _judged(
     chances = _chances(shafts, known, usual_m)
     if_trees = {number: about._replace(tree=1.0) for number, about in known.items()}
     is_doubtful = (chances >= _LIKELY) & (_chances(shafts, if_trees, usual_m) < _EVEN)
-    is_doubtful &= [about.beside.crown is not None for about in known.values()]
+    is_doubtful &= np.array([about.beside.crown is not None for about in known.values()], np.bool_)
     doubtful = [number for number, asked in zip(known, is_doubtful, strict=True) if asked]
     feet = _feet([shafts[number] for number in doubtful])
     for number, tree in zip(doubtful, tree_chances(drives, plan, feet, monitor), strict=True):

@@ -13,6 +13,7 @@ from processing.laboratory.simulate.scene.mesh import TriangleShape, box, tube
 from processing.methods.road.objects.column_points import points_about
 from processing.methods.road.objects.sparse_plan import SparsePlan
 from processing.methods.road.objects.survey import survey_columns
+from processing.methods.road.poles import street_poles
 from processing.methods.road.poles.mirror_images import mirror_images
 from processing.methods.road.poles.reflectors import ReflectorSearch
 from processing.methods.road.poles.shaft_sides import seen_sides, towards_vehicle
@@ -134,3 +135,10 @@ def test_where_all_is_as_bright_nobody_knows_what_shines(shafts: Shafts) -> None
     number = shafts.at(POLE)
     told = ReflectorSearch(shafts.drives, shafts.found, around, shafts.plan.origin)
     assert told.shines(number, shafts.found[number]) == 0.5
+
+
+def test_shafts_of_which_none_may_be_a_pole_are_no_poles(
+    shafts: Shafts, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(street_poles, "shafts_about_all", lambda *_: {})
+    assert street_poles.street_poles(shafts.drives, SilentMonitor()) == ()
