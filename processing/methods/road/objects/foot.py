@@ -49,7 +49,7 @@ _PLAN_CELL_M, _STANDING, _WIDER = 0.15, 8, 1.5
 many times as many cells ground fills: a trunk fills as many in each layer, a ring of rails too."""
 
 
-def ground_seen(points: Floats, coarse_m: float, least_rise_m: float = _LEAST_RISE_M) -> float:
+def ground_seen(points: Floats, coarse_m: float) -> float:
     """The ground of the coarse map, or what lies above or below it where that is off.
 
     Parameters
@@ -58,8 +58,6 @@ def ground_seen(points: Floats, coarse_m: float, least_rise_m: float = _LEAST_RI
         About a column, m about any origin.
     coarse_m : float
         The ground of the coarse map, about the same.
-    least_rise_m : float
-        What lies less above it isn't looked for.
 
     Notes
     -----
@@ -77,7 +75,7 @@ def ground_seen(points: Floats, coarse_m: float, least_rise_m: float = _LEAST_RI
         return coarse_m
     first = _above_images(counts, filled)
     seen = lowest + (float(first) + 0.5) * _LAYER_M
-    is_near = coarse_m - _LEAST_FALL_M <= seen <= coarse_m + least_rise_m
+    is_near = coarse_m - _LEAST_FALL_M <= seen <= coarse_m + _LEAST_RISE_M
     if first == filled[0] and is_near:
         return coarse_m
     cells = np.floor(points[is_asked, :2] / _PLAN_CELL_M).astype(np.int64)

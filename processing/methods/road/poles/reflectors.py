@@ -35,6 +35,11 @@ and are 7 to 10 cm wide (視線誘導標設置基準)."""
 _FACE_M, _FEWEST_OF_FACE = 1.0, 10
 """The same from a post to points of a sign's face, and bright points that are one."""
 
+_PIECE_M, _FACE_SHARE = 0.4, 0.2
+"""Height of a piece of a post, as of the smallest plates, and share of the points about it that
+shine where a face is. Of 60 posts of signs on six streets all had 0.35 and more in some piece;
+lamps and trunks, about which thousands of leaves shine now and then, 0.18 at most."""
+
 _FEWEST = 2
 """Bright points that are a reflector: one may be a mixed return."""
 
@@ -79,12 +84,15 @@ class ReflectorSearch:
         near, above = (_NEAR_M, _ABOVE_M) if is_short(shaft) else (_FACE_M, _FACE_M)
         is_on = (away < near) & (up > shaft.top_m / 2) & (up < shaft.top_m + above)
         lines = part.start + np.flatnonzero(is_on)
-        bright = 0
+        is_bright = np.zeros(lines.size, np.bool_)
         for drive, bounds in enumerate(self._bounds):
-            mine = lines[self._around.drives[lines] == drive]
-            intensity = self._intensity(drive, mine)
-            bright += int(np.count_nonzero(intensity >= bounds[self._classes(drive, mine)]))
-        return float(bright >= (_FEWEST if is_short(shaft) else _FEWEST_OF_FACE))
+            own = np.flatnonzero(self._around.drives[lines] == drive)
+            mine = lines[own]
+            is_bright[own] = self._intensity(drive, mine) >= bounds[self._classes(drive, mine)]
+        bright = int(np.count_nonzero(is_bright))
+        if is_short(shaft):
+            return float(bright >= _FEWEST)
+        return float(bright >= _FEWEST_OF_FACE and _has_face(up[is_on], is_bright))
 
     def _bounds_of(self, drive: int, above: Floats) -> Floats:
         """The least intensity of a bright point of a drive, for each class of ranges."""
@@ -111,3 +119,11 @@ class ReflectorSearch:
         off = self._around.local[lines] + self._origin - trajectory.positions_at(times)
         ranges = np.where(is_known, np.linalg.norm(off, axis=1), 0.0)
         return range_classes(ranges, CLASSES)
+
+
+def _has_face(heights: Floats, is_bright: NDArray[np.bool_]) -> bool:
+    """Whether a good share of the points of some piece of a post shine."""
+    piece = np.floor(heights / _PIECE_M).astype(np.int64)
+    piece -= piece.min()
+    number, shining = np.bincount(piece), np.bincount(piece, is_bright)
+    return bool((shining > _FACE_SHARE * np.maximum(number, _FEWEST_OF_FACE)).any())

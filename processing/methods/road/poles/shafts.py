@@ -15,7 +15,7 @@ from processing.core.worked_ahead import in_order
 from processing.methods.road.objects.column_points import ColumnPoints, points_about
 from processing.methods.road.objects.columns import ONE_M, FoundColumns, distinct_columns
 from processing.methods.road.objects.drive_passes import passes_of
-from processing.methods.road.objects.foot import foot_height, ground_seen
+from processing.methods.road.objects.foot import foot_height
 from processing.methods.road.objects.sparse_plan import SparsePlan
 from processing.methods.road.poles.shaft_kernels import (
     ARC,
@@ -80,10 +80,6 @@ of itself: hedges and walls beside a post draw its column to them."""
 _HIDDEN_M = 1.5
 """Up to which height at least the lower part of a raised column's shaft is hidden: what shows lower
 and stands nowhere free there has a trunk's stakes or leaves about it."""
-
-_GUTTER_M = 0.2
-"""By how much the coarse map may be too low beside a post: more than a curb. Its cells are 0.8 m
-wide and hold the bottom of an open gutter."""
 
 _FEWEST_OF_TAPER = 10
 """Points of fewer a line of radii says nothing."""
@@ -162,20 +158,10 @@ def find_shafts(
     """
     columns = distinct_columns(columns)
     gathered = points_about(drives, plan, columns.middles, ABOUT_M, PartMonitor(monitor, 0.0, 0.8))
-    columns = _on_seen_ground(columns, gathered)
     found: list[Shaft] = []
     for members in passes_of(drives):
         found += _of_pass(columns, _only(gathered, members), _LIMITS, monitor)
     return _one_of_each(found)
-
-
-def _on_seen_ground(columns: FoundColumns, gathered: ColumnPoints) -> FoundColumns:
-    """The same on the ground that was seen about each: beside gutters the coarse map is too low."""
-    ground = [
-        ground_seen(gathered.local[gathered.of(number)], coarse, _GUTTER_M)
-        for number, coarse in enumerate(columns.ground.tolist())
-    ]
-    return FoundColumns(columns.middles, np.array(ground, np.float64), columns.slabs)
 
 
 def find_hidden_shafts(

@@ -142,3 +142,21 @@ def test_shafts_of_which_none_may_be_a_pole_are_no_poles(
 ) -> None:
     monkeypatch.setattr(street_poles, "shafts_about_all", lambda *_: {})
     assert street_poles.street_poles(shafts.drives, SilentMonitor()) == ()
+
+
+@pytest.mark.parametrize(("is_face", "expected"), [(True, 1.0), (False, 0.0)])
+def test_a_face_shines_in_one_piece_and_leaves_now_and_then(
+    shafts: Shafts, monkeypatch: pytest.MonkeyPatch, *, is_face: bool, expected: float
+) -> None:
+    feet = np.array([one.foot[:2] for one in shafts.found])
+    around = points_about(shafts.drives, shafts.plan, feet, REACH_M, SilentMonitor())
+    number = shafts.at(POLE)
+    shaft = shafts.found[number]
+    heights = around.local[:, 2] - shaft.foot[2]
+    faces = (heights > 3.2) & (heights < 3.8)
+    shining = faces if is_face else np.arange(len(heights)) % 12 == 0
+    told = ReflectorSearch(shafts.drives, shafts.found, around, shafts.plan.origin)
+    bounds = [np.full_like(one, 100.0) for one in told._bounds]
+    monkeypatch.setattr(told, "_bounds", bounds)
+    monkeypatch.setattr(told, "_intensity", lambda _, lines: np.where(shining[lines], 200, 10))
+    assert told.shines(number, shaft) == expected
