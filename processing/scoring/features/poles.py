@@ -52,8 +52,9 @@ LEAST_POINTS = 20
 _NAME = Text("poles", "柱状物")
 
 
-def _known(pole: MappedFeature) -> object:
-    kind = pole.facts["type"]
+def known_type(pole: MappedFeature) -> object:
+    """The type of a true pole as results tell it."""
+    kind = pole.facts.get("type")
     return kind if kind in TYPES else "other"
 
 
@@ -69,7 +70,7 @@ def pole_score(result: MappedFile, truth: MappedFile) -> FileScore:
     asked = [is_in_span(one) and shows_enough(truth, one, "points", LEAST_POINTS) for one in true]
     found = match_objects(result.of_kinds(POLES, "point", _NAME), true, asked, WITHIN_M)
     typed = [one for one in found.partners if one.truth.facts.get("type") is not None]
-    right = [one for one in typed if one.result.facts.get("type") == _known(one.truth)]
+    right = [one for one in typed if one.result.facts.get("type") == known_type(one.truth)]
     differences = Differences(result, truth, found.partners)
     off = differences.positions()
     return FileScore(

@@ -43,6 +43,7 @@ from processing.laboratory.accuracy.road.road_scenes import (
     simulated_scenes,
 )
 from processing.laboratory.accuracy.road.road_surroundings import Failure
+from processing.laboratory.accuracy.road.tree_tables import MOST_CM
 from processing.scoring.features.mapped_features import MappedFeature, MappedFile
 from processing.scoring.features.object_matches import (
     ObjectMatch,
@@ -51,9 +52,9 @@ from processing.scoring.features.object_matches import (
     positions_of,
     shows_enough,
 )
-from processing.scoring.features.poles import LEAST_POINTS, TYPES
+from processing.scoring.features.poles import LEAST_POINTS, known_type
 from processing.scoring.features.poles import WITHIN_M as POLES_WITHIN_M
-from processing.scoring.features.signs import LEAST_FRONT_POINTS
+from processing.scoring.features.signs import LEAST_FRONT_POINTS, SIZE_SHARE
 from processing.scoring.features.signs import WITHIN_M as SIGNS_WITHIN_M
 from processing.scoring.features.trees import LEAST_TRUNK_POINTS
 from processing.scoring.features.trees import WITHIN_M as TREES_WITHIN_M
@@ -101,19 +102,22 @@ class TrueAndFound(NamedTuple):
 
 def _wrong_girth(pair: ObjectMatch) -> str:
     true, found = (float(str(one.facts["dbh_m"])) for one in (pair.truth, pair.result))
-    return f"{100 * (found - true):+.1f} of {100 * true:.0f} cm" if abs(found - true) > 0.04 else ""
+    return (
+        f"{100 * (found - true):+.1f} of {100 * true:.0f} cm"
+        if abs(found - true) > MOST_CM / 100
+        else ""
+    )
 
 
 def _wrong_type(pair: ObjectMatch) -> str:
-    true, found = pair.truth.facts.get("type"), pair.result.facts.get("type")
-    known = true if true in TYPES else "other"
+    known, found = known_type(pair.truth), pair.result.facts.get("type")
     return f"{found} for {known}" if found != known else ""
 
 
 def _wrong_shape(pair: ObjectMatch) -> str:
     true, found = pair.truth.facts, pair.result.facts
     off = abs(float(str(found["size_m"])) / float(str(true["size_m"])) - 1)
-    if found["shape"] == true["shape"] and off < 0.1:
+    if found["shape"] == true["shape"] and off <= SIZE_SHARE:
         return ""
     return f"{found['shape']} {found['size_m']} for {true['shape']} {true['size_m']}"
 

@@ -17,7 +17,7 @@ from processing.scoring.features.object_matches import ObjectMatch, shows_enough
 from processing.scoring.features.trees import LEAST_ARC_DEG
 from processing.scoring.points.confusion_matrix import BinaryConfusionMatrix
 
-_MOST_CM = 4.0
+MOST_CM = 4.0
 """Asked for: no diameter is farther off."""
 
 
@@ -171,7 +171,7 @@ def ways_table(trunks: Sequence[MeasuredTrunk]) -> str:
     for way in trunks[0].by_way if trunks else ():
         off = 100 * np.array([one.by_way[way] - one.true_m for one in trunks])
         off = off[~np.isnan(off)]
-        far = int(np.count_nonzero(np.abs(off) > _MOST_CM))
+        far = int(np.count_nonzero(np.abs(off) > MOST_CM))
         median = f"{np.median(off):+.1f}" if off.size else "–"
         rows.append([way, f"{off.size} of {len(trunks)}", _errors(off), f"{far}", median])
     return markdown_table(rows)
@@ -223,7 +223,7 @@ def failures_of(streets: Sequence[ScoredTrees]) -> str:
             lines.append(f"- {one.scene.name}: no tree: {told}.")
         for match in one.matches.partners:
             off = _off(one, match, "dbh_m")
-            if abs(off) > _MOST_CM / 100:
+            if abs(off) > MOST_CM / 100:
                 lines.append(
                     f"- {one.scene.name}: diameter off by {100 * off:+.1f} cm: "
                     f"{100 * one.true(match, 'dbh_m'):.0f} cm thick, "

@@ -107,7 +107,7 @@ _PLATE_FEWEST, _LEAST_PLATE_M = 12, 0.25
 _CURVED = 0.3
 """Share of its patches, those across its rim or its back included."""
 
-_PIECE_M, _PATCHES = 0.4, 6
+PIECE_M, _PATCHES = 0.4, 6
 """Height of a piece of a shaft, and patches that are looked at in each by each head: the smallest
 plates are as high, and a crown above a sign has more points than the sign."""
 
@@ -408,7 +408,7 @@ def _plate(
         float(np.quantile(high, 0.95) - np.quantile(high, 0.05)),
         float(np.ptp(np.quantile(points[:, :2] @ _main_axis(points[:, :2]), [0.05, 0.95]))),
     )
-    pieces = (high / _PIECE_M).astype(np.int64) * (heads.max() + 1) + heads
+    pieces = (high / PIECE_M).astype(np.int64) * (heads.max() + 1) + heads
     order = np.argsort(pieces, kind="stable")
     groups = [
         members

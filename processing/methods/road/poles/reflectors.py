@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from processing.core.arrays import Floats, Integers
 from processing.methods.road.objects.column_points import ColumnPoints
-from processing.methods.road.poles.carried import is_short
+from processing.methods.road.poles.carried import PIECE_M, is_short
 from processing.methods.road.poles.shafts import Shaft
 from processing.methods.road.signs.brightness import CLASSES, brightness_of
 from processing.methods.road.signs.piece_kernels import range_classes
@@ -35,10 +35,10 @@ and are 7 to 10 cm wide (視線誘導標設置基準)."""
 _FACE_M, _FEWEST_OF_FACE = 1.0, 10
 """The same from a post to points of a sign's face, and bright points that are one."""
 
-_PIECE_M, _FACE_SHARE = 0.4, 0.2
-"""Height of a piece of a post, as of the smallest plates, and share of the points about it that
-shine where a face is. Of 60 posts of signs on six streets all had 0.35 and more in some piece;
-lamps and trunks, about which thousands of leaves shine now and then, 0.18 at most."""
+_FACE_SHARE = 0.2
+"""Of the points about a piece of a post, those that shine where a face is. Of 60 posts of signs on
+six streets all had 0.35 and more in some piece; lamps and trunks, about which thousands of leaves
+shine now and then, 0.18 at most."""
 
 _FEWEST = 2
 """Bright points that are a reflector: one may be a mixed return."""
@@ -123,7 +123,7 @@ class ReflectorSearch:
 
 def _has_face(heights: Floats, is_bright: NDArray[np.bool_]) -> bool:
     """Whether a good share of the points of some piece of a post shine."""
-    piece = np.floor(heights / _PIECE_M).astype(np.int64)
+    piece = np.floor(heights / PIECE_M).astype(np.int64)
     piece -= piece.min()
     number, shining = np.bincount(piece), np.bincount(piece, is_bright)
     return bool((shining > _FACE_SHARE * np.maximum(number, _FEWEST_OF_FACE)).any())

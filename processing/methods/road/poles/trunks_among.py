@@ -14,8 +14,8 @@ from processing.methods.road.trees.street_trees import TreeSettings, upright_thi
 from processing.recording.drive import Drive
 
 _THICKEST_M = 1.5
-"""Diameter of trunks that share the crowns about a shaft with it; what the tool for trees asks
-for where nobody says otherwise."""
+"""Diameter of trunks that share the crowns about a shaft with it: old trees too, whatever the tool
+for trees is asked for."""
 
 _ON_M = 0.2
 """An axis nearer to a shaft's is its own: half of the thickest shafts."""

@@ -41,9 +41,12 @@ _NEAR_M, _FAR_M = 0.35, 1.05
 _STEP_M, _HIGH_M = 0.1, 2.6
 """From slab to slab, and the highest one."""
 
-_CLUMP_M, _PARTS = 0.7, 0.1
-"""How far from the known axis it leaves the ground, and the run over rise by which it parts from
-it; as of stems that circles show."""
+CLUMP_M = 0.7
+"""Axes of stems of one tree are so near to each other at the foot: they rise from one root, and the
+tree takes no more of a planting strip of 1.5 m (道路構造令 第11条の4: 植樹帯)."""
+
+PARTS = 0.1
+"""Run over rise by which they move apart: 6 degrees, which two posts beside each other don't."""
 
 
 def pieces_of(points: Floats, heights: Floats, thick_m: float, radius_m: float) -> Floats:
@@ -143,7 +146,7 @@ def line_kernel(
             apart = np.hypot(
                 foot_east + _HIGH_M * (east - axis[2]), foot_north + _HIGH_M * (north - axis[3])
             )
-            if away > _CLUMP_M or apart - away < _HIGH_M * _PARTS:
+            if away > CLUMP_M or apart - away < _HIGH_M * PARTS:
                 continue
             count = _on_kernel(pieces, left, (one, other), off_m, on)
             if count > best:

@@ -22,6 +22,7 @@ from processing.core.worked_ahead import in_order
 from processing.methods.road.objects.column_points import ColumnPoints
 from processing.methods.road.objects.columns import FoundColumns
 from processing.methods.road.objects.foot import foot_height, ground_seen
+from processing.methods.road.trees.alike_stems import CLUMP_M
 from processing.methods.road.trees.drive_shifts import (
     JoinedPoints,
     agreed_shifts,
@@ -32,7 +33,6 @@ from processing.methods.road.trees.rises import followed
 from processing.methods.road.trees.stem_bodies import BREAST_M
 from processing.methods.road.trees.stems import FittedStem, stems_of
 from processing.methods.road.trees.trunks import (
-    CLUMP_M,
     Trunk,
     has_flat_sides,
     leave_together,

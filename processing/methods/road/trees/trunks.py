@@ -15,6 +15,7 @@ import numpy as np
 from processing.core.arrays import Floats, Integers
 from processing.methods.road.objects.round_sections import round_share
 from processing.methods.road.objects.square_sections import square_share
+from processing.methods.road.trees.alike_stems import CLUMP_M, PARTS
 from processing.methods.road.trees.cone_kernels import FREE_SLAB_M
 from processing.methods.road.trees.diameter_errors import causes_of, wider
 from processing.methods.road.trees.stem_bodies import BREAST_M
@@ -98,13 +99,6 @@ among leaves or at a corner."""
 _ROOT_M = 0.25
 """Between the surfaces of upright stems that leave the ground as one; stakes are driven in beyond
 the root ball, 0.3 m and more from the bark."""
-
-CLUMP_M = 0.7
-"""Axes of stems of one tree are so near to each other at the foot: they rise from one root, and the
-tree takes no more of a planting strip of 1.5 m (道路構造令 第11条の4: 植樹帯)."""
-
-_PARTS = 0.1
-"""Run over rise by which they move apart: 6 degrees, which two posts beside each other don't."""
 
 
 @dataclass(frozen=True)
@@ -254,7 +248,7 @@ def leave_together(one: FittedStem, other: FittedStem, beside: Floats) -> bool:
     low = one.base - other.base - beside
     high = low + HIGHEST_M * (one.slope - other.slope)
     away = float(np.hypot(*low))
-    return away < CLUMP_M and float(np.hypot(*high)) - away > _PARTS * HIGHEST_M
+    return away < CLUMP_M and float(np.hypot(*high)) - away > PARTS * HIGHEST_M
 
 
 def is_round(trunk: Trunk) -> bool:
