@@ -92,7 +92,7 @@ class Drive:
         self.revolutions: Revolutions | None = read_revolutions(folder)
         self._trajectory: Trajectory | None = None
         self._kept: dict[Hashable, Any] = {}  # Any: parts of any type, each known by its key
-        self._making = threading.Lock()
+        self._making = threading.RLock()
 
     @property
     def id(self) -> str:
@@ -247,7 +247,9 @@ class Drive:
         key : Hashable
             Names the part; the same key always stands for a part of the same type.
         make : callable
-            Makes the part when it is asked for the first time, by one thread only.
+            Makes the part when it is asked for the first time, by one thread only. It may ask
+            for other parts. Whatever else is asked of the drive for the first time waits for it,
+            so what takes seconds is kept in a part with a lock of its own.
         """
         if key not in self._kept:
             with self._making:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import threading
+
 import numpy as np
 
 from processing.core.monitor import SilentMonitor
@@ -9,7 +11,9 @@ from processing.core.text import Text
 from processing.methods.road.covers.shape_kernels import PATCHY
 from processing.methods.road.covers.street_covers import FoundCovers, StreetCover, street_covers
 from processing.methods.road.diagnostics import Diagnostic, DiagnosticTest
+from processing.methods.road.objects.survey import SurveyGround, survey_ground
 from processing.methods.road.requested_position import RequestedPosition
+from processing.recording.drive import Drive
 
 _NEAR_M = 8.0
 """Covers so near to the place are shown: across a carriageway from its middle."""
@@ -28,17 +32,29 @@ _LEAST_TONED, _MOST_UNEVEN, _LEAST_OPEN = 1.0, 0.5, 0.08
 
 def cover_diagnostics(asked: RequestedPosition, least: float) -> tuple[Diagnostic, ...]:
     """Shapes about a place that are covers or might be: each with its outline."""
-    drive = asked.drive
-
-    def made() -> FoundCovers:
-        return street_covers((drive,), _LEAST_SHOWN, SilentMonitor())
-
-    found = drive.kept(("covers", _LEAST_SHOWN), made)
+    found = asked.drive.kept("covers", _KeptCovers).of(asked.drive)
     return tuple(
         _diagnostic(one, least)
         for one in found.covers
         if np.hypot(*(one.middle - asked.xyz)[:2]) <= _NEAR_M
     )
+
+
+class _KeptCovers:
+    """Covers of a drive, and the ground that they were looked for on."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        self._below: SurveyGround | None = None
+        self._found = FoundCovers(0, (), ())
+
+    def of(self, drive: Drive) -> FoundCovers:
+        with self._lock:
+            below = survey_ground((drive,), SilentMonitor())  # another when noise is known anew
+            if below is not self._below:
+                self._found = street_covers((drive,), _LEAST_SHOWN, SilentMonitor())
+                self._below = below
+            return self._found
 
 
 def _diagnostic(cover: StreetCover, least: float) -> Diagnostic:
