@@ -52,6 +52,7 @@ def connect_drawing(parts: WindowParts) -> None:
     for view in parts.views:
         view.menu_requested.connect(wiring.on_view_menu_requested)
     parts.document.opened.connect(wiring.on_document_opened)
+    parts.document.opened.connect(wiring.give_keys_to_the_image)
     parts.document.closed.connect(parts.status_line.clearMessage)
     parts.document.catalogue_changed.connect(wiring.on_document_opened)
     parts.document.catalogue_changed.connect(parts.layers_panel.read_catalogue)
@@ -116,6 +117,10 @@ class _DrawingWiring(QObject):
         for key in NUMBER_KEYS:
             title = kind_title(self._parts, key)
             actions[f"kind-key-{key}"].setText(literal(title.in_language(self._parts.language)))
+
+    def give_keys_to_the_image(self) -> None:
+        """Keys that draw and judge work in what was just opened, without a click into a view."""
+        self._parts.image_view.setFocus()
 
     def on_bar_kind_wanted(self) -> None:
         show_kind_palette(self._parts)

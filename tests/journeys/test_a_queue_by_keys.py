@@ -80,6 +80,19 @@ def test_who_starts_a_review_from_a_form_judges_by_the_next_key(desk, qtbot):
     assert (review.progress.accepted, review.progress.rejected) == (1, 1)
 
 
+def test_a_review_that_was_left_goes_on_by_the_next_key_when_its_project_is_opened(desk, qtbot):
+    parts, review = desk.parts, desk.parts.of(Review)
+    assert parts.document.store_run(found(street_candidates(desk.drive, 6), drive=desk.drive.id))
+    parts.window.actions_by_id["review-start"].trigger()
+    folder = parts.document.project.folder
+    parts.layers_panel.setFocus()
+    parts.document.close()
+    assert parts.document.open(folder)
+    first = review.current
+    qtbot.keyClick(QApplication.focusWidget(), Qt.Key.Key_Return)
+    assert parts.document.feature(first.id).status is Status.ACCEPTED
+
+
 def test_a_review_that_was_left_takes_up_what_came_in_place_of_its_candidates(desk):
     parts, review = desk.parts, desk.parts.of(Review)
     start = parts.window.actions_by_id["review-start"].trigger
