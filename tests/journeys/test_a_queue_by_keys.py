@@ -88,6 +88,7 @@ def test_a_review_that_was_left_goes_on_by_the_next_key_when_its_project_is_open
     parts.layers_panel.setFocus()
     parts.document.close()
     assert parts.document.open(folder)
+    assert parts.image_view.hasFocus()
     first = review.current
     qtbot.keyClick(QApplication.focusWidget(), Qt.Key.Key_Return)
     assert parts.document.feature(first.id).status is Status.ACCEPTED
