@@ -24,6 +24,7 @@ from processing.methods.road.signs.asked_signs import (
     is_about,
     sought_about,
     with_given_shapes,
+    with_other_heights,
 )
 from processing.methods.road.signs.image_positions import sighted_positions
 from processing.methods.road.signs.initial_positions import (
@@ -139,7 +140,13 @@ def _by_positions(
         found = with_given_shapes(found, again, here, doubtful)
     signs = [found[number] for number in sorted(found)]
     nothing = tuple(one.line for number, one in enumerate(here) if number not in found)
-    whole = replace(missed, nothing=nothing, unknown=sighted.unknown, unmet=sighted.unmet)
+    whole = replace(
+        missed,
+        nothing=nothing,
+        unknown=sighted.unknown,
+        unmet=sighted.unmet,
+        heights=with_other_heights(found, here),
+    )
     note = _joined(whole.note(), _unsure_facing(signs))
     return _with_pictures(signs, drives, note, PartMonitor(monitor, _FOUND, 1.0))
 

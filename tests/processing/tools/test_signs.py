@@ -331,6 +331,17 @@ def test_given_positions_give_their_signs_and_name_the_others(
         assert sum(f"{line}" in one.split(":")[1] for one in sentences) == 1
 
 
+def test_heights_of_another_reference_are_named_and_tell_nothing(
+    drives: tuple[Drive, ...], tmp_path: Path
+) -> None:
+    x, y, z = CIRCLE.centroid + ORIGIN
+    text = f"easting_m,northing_m,height_m\n{x + 0.4:.2f},{y:.2f},{z + 37.1:.2f}\n"
+    result = asked(drives, tmp_path / "positions.csv", text)
+    (found,) = result.candidates
+    assert np.hypot(found.xyz[0][0] - x, found.xyz[0][1] - y) < 0.1
+    assert "not used: 2" in result.note.en
+
+
 def test_a_given_shape_that_the_points_speak_against_is_not_taken(
     drives: tuple[Drive, ...], tmp_path: Path
 ) -> None:

@@ -26,6 +26,10 @@ _OFF_M = 1.0
 _OFF_HEIGHT_M = 0.5
 """The same of heights: a camera sees them better than the distance."""
 
+_OTHER_SYSTEM_M = 3.0
+"""Heights that are farther off are of another reference (ellipsoid and geoid lie decametres apart),
+or wrong: they tell plates on one post apart no longer."""
+
 _OTHER_SHAPE = 12.0
 """What a plate of another shape than the given one, or another size, costs: as a position that is
 three and a half standard deviations off."""
@@ -73,6 +77,17 @@ def asked_signs(
         for row, column in zip(rows, columns, strict=True)
         if np.isfinite(costs[row, column])
     }
+
+
+def with_other_heights(
+    found: Mapping[int, RoadSign], positions: Sequence[InitialPosition]
+) -> tuple[int, ...]:
+    """Lines of the positions whose given height can't be that of the plate found."""
+    return tuple(
+        positions[number].line
+        for number, one in sorted(found.items())
+        if abs(_higher_m(one, positions[number])) > _OTHER_SYSTEM_M
+    )
 
 
 def doubtful_numbers(
@@ -177,7 +192,8 @@ def _cost(sign: RoadSign, position: InitialPosition) -> float:
         return math.inf
     cost = (off / _OFF_M) ** 2 - 2 * math.log(max(sign.confidence, 1e-9))
     if not math.isnan(position.height_m):
-        cost += ((sign.centre[2] - position.height_m) / _OFF_HEIGHT_M) ** 2
+        higher = min(abs(_higher_m(sign, position)), _OTHER_SYSTEM_M)
+        cost += (higher / _OFF_HEIGHT_M) ** 2
     shape = sign.plate.shape
     if sign.is_supplement and not position.shape:
         cost += _SUPPLEMENT
@@ -186,6 +202,11 @@ def _cost(sign: RoadSign, position: InitialPosition) -> float:
     if not math.isnan(position.size_m) and not _is_size(shape, position):
         cost += _OTHER_SHAPE
     return cost
+
+
+def _higher_m(sign: RoadSign, position: InitialPosition) -> float:
+    """How much higher a plate's middle is than was given; NaN where no height was."""
+    return float(sign.centre[2]) - position.height_m
 
 
 def is_about(place: Floats, positions: Sequence[InitialPosition]) -> bool:

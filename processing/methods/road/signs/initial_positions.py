@@ -195,7 +195,7 @@ def _bad(path: Path, what: Text, line: int) -> BadFile:
 
 @dataclass(frozen=True)
 class MissedPositions:
-    """Rows for which no sign was found, and why.
+    """Rows for which no sign was found, and why; and those whose heights tell nothing.
 
     Attributes
     ----------
@@ -204,6 +204,8 @@ class MissedPositions:
         longitude and latitude; where nothing like a plate was measured.
     unknown, unmet : tuple of int
         Of pixels: of an image that isn't there; whose line of sight meets nothing.
+    heights : tuple of int
+        Lines whose sign was found, far above or below the given height.
     """
 
     outside: tuple[int, ...] = ()
@@ -212,6 +214,7 @@ class MissedPositions:
     nothing: tuple[int, ...] = ()
     unknown: tuple[int, ...] = ()
     unmet: tuple[int, ...] = ()
+    heights: tuple[int, ...] = ()
 
     def note(self) -> Text:
         """Sentences that name them; empty where all were found."""
@@ -224,6 +227,7 @@ class MissedPositions:
                 (self.nothing, _NOTHING),
                 (self.unknown, _UNKNOWN),
                 (self.unmet, _UNMET),
+                (self.heights, _HEIGHTS),
             )
             if lines
         ]
@@ -248,6 +252,10 @@ _NOTHING = Text(
 )
 
 
+_HEIGHTS = Text(
+    "The heights of these lines are metres off the signs found there, and were not used: {lines}.",
+    "次の行の高さは、見つかった標識の高さと数メートル以上異なるため使用していません: {lines}。",
+)
 _UNKNOWN = Text(
     "These lines name images that the drives don't have: {lines}.",
     "次の行の画像は走行データにありません: {lines}。",
