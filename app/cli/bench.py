@@ -12,6 +12,7 @@ from processing.core.errors import OutOfRange, use_one_of
 from processing.core.text import Text
 from processing.laboratory.bench.case import BenchmarkCase, BenchmarkOptions, Measurement
 from processing.laboratory.bench.cases.extraction_case import measure_extraction
+from processing.laboratory.bench.cases.extraction_growth import measure_extraction_growth
 from processing.laboratory.bench.cases.ground_cases import measure_ground
 from processing.laboratory.bench.cases.image_cases import measure_image, measure_switch
 from processing.laboratory.bench.cases.import_cases import measure_import, measure_import_memory
@@ -56,6 +57,7 @@ CASES: Mapping[str, BenchmarkCase] = {
     "volume-view": measure_volume_view,
     "memory": measure_import_memory,
     "growth": measure_growth,
+    "extraction-growth": measure_extraction_growth,
     "large": partial(measure_large, window="app.large_steps.large_bench"),
 }
 """Benchmarks by name, quick ones first.

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import os
+import tempfile
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
@@ -26,12 +27,37 @@ def scratch_array(file: Path, dtype: DTypeLike, count: int) -> NDArray[Any]:
     """
     if count == 0:
         return np.zeros(0, dtype)
-    size = count * np.dtype(dtype).itemsize
+    with report_as_user_error(file), file.open("wb") as made:
+        _take_room(made, count * np.dtype(dtype).itemsize)
     with report_as_user_error(file):
-        with file.open("wb") as made:
-            if hasattr(os, "posix_fallocate"):
-                os.posix_fallocate(made.fileno(), 0, size)
-            else:
-                for start in range(0, size, _BLOCK):
-                    made.write(bytes(min(_BLOCK, size - start)))
         return np.memmap(file, dtype, "r+", shape=(count,))
+
+
+def nameless_array(folder: Path, dtype: DTypeLike, shape: tuple[int, ...]) -> NDArray[Any]:
+    """The same in a file without a name, which is gone with the array, or with a killed process.
+
+    Parameters
+    ----------
+    folder : Path
+        On whose disk there is room for it.
+
+    Raises
+    ------
+    NoSpace
+        The disk can't hold it.
+    """
+    size = int(np.prod(shape, dtype=np.int64)) * np.dtype(dtype).itemsize
+    if size == 0:
+        return np.zeros(shape, dtype)
+    with report_as_user_error(folder), tempfile.TemporaryFile(dir=folder) as made:
+        _take_room(made, size)
+        return np.memmap(made, dtype, "r+", shape=shape)
+
+
+def _take_room(made: BinaryIO, size: int) -> None:
+    if hasattr(os, "posix_fallocate"):
+        os.posix_fallocate(made.fileno(), 0, size)
+    else:
+        for start in range(0, size, _BLOCK):
+            made.write(bytes(min(_BLOCK, size - start)))
+        made.flush()

@@ -54,7 +54,7 @@ _WORKS: Mapping[str, Text] = {
 
 def measure_growth(options: BenchmarkOptions) -> tuple[Measurement, ...]:
     """The exponent with which the time of each work grows with the points, and its times."""
-    sizes = _sizes_within(options)
+    sizes = sizes_within(options)
     times: dict[str, list[float]] = {name: [] for name in _WORKS}
     for size in _rehearse_first(sizes):
         with tempfile.TemporaryDirectory(prefix="zuka-bench-") as name:
@@ -70,7 +70,7 @@ def exponent_of(sizes: Sequence[int], seconds: Sequence[float]) -> float:
     return float(slope)
 
 
-def _sizes_within(options: BenchmarkOptions) -> list[int]:
+def sizes_within(options: BenchmarkOptions) -> list[int]:
     """At least two of the sizes, or smaller ones where fewer points are wanted."""
     sizes = [size for size in SIZES if size == options.limited(size)]
     most = options.limited(SIZES[-1])
@@ -150,7 +150,7 @@ def _label_times(project: Project, drive: Drive, folder: Path) -> Iterator[tuple
 
 def _row(name: str, sizes: list[int], seconds: list[float]) -> Measurement:
     reported = ", ".join(
-        f"{size / 1e6:g} M {_short(one)}" for size, one in zip(sizes, seconds, strict=True)
+        f"{size / 1e6:g} M {in_short(one)}" for size, one in zip(sizes, seconds, strict=True)
     )
     return Measurement(
         f"growth-{name}",
@@ -164,5 +164,6 @@ def _row(name: str, sizes: list[int], seconds: list[float]) -> Measurement:
     )
 
 
-def _short(seconds: float) -> str:
+def in_short(seconds: float) -> str:
+    """A time with the digits that tell something."""
     return f"{1000 * seconds:.1f} ms" if seconds < 0.1 else f"{seconds:.2f} s"

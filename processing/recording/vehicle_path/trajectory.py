@@ -127,7 +127,7 @@ class Trajectory:
             For a time that is not covered.
         """
         times = self._check_times(time)
-        return np.column_stack([np.interp(times, self.time, axis) for axis in self.xyz.T])
+        return np.column_stack([np.interp(times, self.time, axis) for axis in self._axes])
 
     def rotations_at(self, time: ArrayLike) -> NDArray[np.float64]:
         """How the vehicle was turned.
@@ -190,6 +190,11 @@ class Trajectory:
         return np.column_stack(
             [x + 2 * (k * b - j * c), y + 2 * (i * c - k * a), z + 2 * (j * a - i * b)]
         )
+
+    @cached_property
+    def _axes(self) -> tuple[NDArray[np.float64], ...]:
+        """Easting, northing and height, each in one piece: interpolation copies what isn't."""
+        return tuple(np.ascontiguousarray(axis) for axis in self.xyz.T)
 
     @cached_property
     def _gaps(self) -> list[tuple[float, float]]:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -11,7 +12,8 @@ from numpy.typing import NDArray
 
 from processing.core.arrays import Floats, Integers
 from processing.core.kernels import kernel
-from processing.core.monitor import Monitor
+from processing.core.monitor import Monitor, PartMonitor
+from processing.core.scratch_arrays import nameless_array
 from processing.core.worked_ahead import in_order
 from processing.methods.road.objects.drive_chunks import DriveChunk, chunks_of
 from processing.methods.road.objects.sparse_plan import (
@@ -21,6 +23,10 @@ from processing.methods.road.objects.sparse_plan import (
     cell_of,
 )
 from processing.recording.drive import Drive
+
+_MOST_IN_MEMORY = 10_000_000
+"""Points of a survey of which those about columns are held in memory: half a gigabyte at most. Of
+larger ones they lie in a file for the time of the run."""
 
 
 @dataclass(frozen=True)
@@ -79,44 +85,62 @@ def points_about_each(
     A point lies about a column of each group that is near: none takes it from another's.
     """
     groups = [middles for middles in groups if len(middles)]
-    sizes = np.array([0, *(len(middles) for middles in groups)], np.int64)
-    offsets = np.cumsum(sizes)
-    nearest = [nearest_columns(plan, middles, radius_m).reshape(-1) for middles in groups]
-
-    def gathered(chunk: DriveChunk) -> list[_GatheredPoints]:
-        found = []
-        owners = np.empty(len(chunk.local), np.int32)
-        for middles, near, offset in zip(groups, nearest, offsets[:-1].tolist(), strict=True):
-            owners_kernel(chunk.local, plan.table, near, middles, radius_m, owners)
-            owners[chunk.is_noise] = -1
-            kept = np.flatnonzero(owners >= 0)
-            local = chunk.local.take(kept, axis=0)
-            numbers = owners.take(kept) + np.int32(offset)
-            found.append(_GatheredPoints(numbers, local, chunk.drive, chunk.start + kept))
-        return found
-
-    chunks = chunks_of(drives, plan.origin, monitor) if groups else ()
-    parts = [part for some in in_order(gathered, chunks) for part in some]
-    return _in_columns(parts, int(offsets[-1]), monitor)
+    if not groups:
+        return _room_for(np.zeros(1, np.int64), None)
+    gathered = _Gathering(plan, groups, radius_m)
+    if sum(drive.count for drive in drives) > _MOST_IN_MEMORY:
+        return _in_a_file(drives, plan.origin, gathered, monitor)
+    chunks = chunks_of(drives, plan.origin, monitor)
+    parts = [part for some in in_order(gathered.of, chunks) for part in some]
+    monitor.check()
+    about = _room_for(_starts(gathered.columns, (one.owners for one in parts)), None)
+    _place((parts,), about, monitor)
+    return about
 
 
-def _in_columns(parts: Sequence[_GatheredPoints], columns: int, monitor: Monitor) -> ColumnPoints:
-    """Points of stretches that follow each other, column by column."""
+def _in_a_file(
+    drives: Sequence[Drive], origin: Floats, gathered: _Gathering, monitor: Monitor
+) -> ColumnPoints:
+    """Read twice, so that nothing but one chunk is ever held: memory doesn't grow with a drive."""
+    first, second = PartMonitor(monitor, 0.0, 0.5), PartMonitor(monitor, 0.5, 1.0)
+    counted = in_order(gathered.of, chunks_of(drives, origin, first))
+    starts = _starts(gathered.columns, (part.owners for parts in counted for part in parts))
+    about = _room_for(starts, drives[0].folder)
+    _place(in_order(gathered.of, chunks_of(drives, origin, second)), about, monitor)
+    return about
+
+
+def _starts(columns: int, owners: Iterable[NDArray[np.int32]]) -> Integers:
+    """(k + 1,) where the points of each column begin."""
     counts = np.zeros(columns, np.int64)
-    for part in parts:
-        monitor.check()
-        counts += np.bincount(part.owners, minlength=columns)
-    starts = np.concatenate([[0], np.cumsum(counts)])
-    about = ColumnPoints(
-        starts,
-        np.empty((starts[-1], 3)),
-        np.empty(starts[-1], np.int64),
-        np.empty(starts[-1], np.int64),
-    )
+    for some in owners:
+        counts += np.bincount(some, minlength=columns)
+    return np.concatenate([[0], np.cumsum(counts)])
+
+
+def _room_for(starts: Integers, folder: Path | None) -> ColumnPoints:
+    """Columns whose points are not there yet, in memory or on the disk of a folder."""
+    count = int(starts[-1])
+    if folder is None:
+        whole = np.empty((count, 3)), np.empty(count, np.int64), np.empty(count, np.int64)
+    else:
+        whole = (
+            nameless_array(folder, np.float64, (count, 3)),
+            nameless_array(folder, np.int64, (count,)),
+            nameless_array(folder, np.int64, (count,)),
+        )
+    return ColumnPoints(starts, *whole)
+
+
+def _place(
+    parts: Iterable[Sequence[_GatheredPoints]], about: ColumnPoints, monitor: Monitor
+) -> None:
+    """Put points of stretches that follow each other into their columns."""
+    columns = len(about.starts) - 1
 
     def with_room() -> Iterator[tuple[_GatheredPoints, Integers]]:
-        free = starts[:-1].copy()
-        for part in parts:
+        free = about.starts[:-1].copy()
+        for part in (one for some in parts for one in some):
             monitor.check()
             yield part, free.copy()
             free += np.bincount(part.owners, minlength=columns)
@@ -126,7 +150,6 @@ def _in_columns(parts: Sequence[_GatheredPoints], columns: int, monitor: Monitor
 
     for _ in in_order(place, with_room()):
         monitor.check()
-    return about
 
 
 class _GatheredPoints(NamedTuple):
@@ -140,6 +163,37 @@ class _GatheredPoints(NamedTuple):
     local: Floats
     drive: int
     points: Integers
+
+
+class _Gathering:
+    """Tells which points of a chunk lie about columns.
+
+    Attributes
+    ----------
+    columns : int
+        Of all groups.
+    """
+
+    def __init__(self, plan: SparsePlan, groups: Sequence[Floats], radius_m: float) -> None:
+        self._table, self._groups, self._radius_m = plan.table, groups, radius_m
+        self._nearest = [nearest_columns(plan, one, radius_m).reshape(-1) for one in groups]
+        self._offsets = np.cumsum([0, *(len(one) for one in groups)]).tolist()
+        self.columns: int = self._offsets[-1]
+
+    def of(self, chunk: DriveChunk) -> list[_GatheredPoints]:
+        """Those of each group."""
+        found = []
+        owners = np.empty(len(chunk.local), np.int32)
+        for middles, near, offset in zip(
+            self._groups, self._nearest, self._offsets[:-1], strict=True
+        ):
+            owners_kernel(chunk.local, self._table, near, middles, self._radius_m, owners)
+            owners[chunk.is_noise] = -1
+            kept = np.flatnonzero(owners >= 0)
+            local = chunk.local.take(kept, axis=0)
+            numbers = owners.take(kept) + np.int32(offset)
+            found.append(_GatheredPoints(numbers, local, chunk.drive, chunk.start + kept))
+        return found
 
 
 @kernel

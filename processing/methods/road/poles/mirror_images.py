@@ -81,36 +81,46 @@ def mirror_images(
     asked : sequence of int
         Numbers of the shafts that are asked about.
     """
+    if not shafts:
+        return frozenset()
+    feet = cKDTree(np.array([one.foot[:2] for one in shafts]))
     pairs: list[_Pair] = []
     for number in asked:
         monitor.check()
-        pairs += _pairs(drives, plan, shafts, number)
+        near = feet.query_ball_point(shafts[number].foot[:2], _FAR_M, return_sorted=True)
+        towards = towards_vehicle(drives, shafts[number], plan.origin)
+        pairs += _pairs(number, shafts[number], [shafts[other] for other in near], towards)
     if not pairs:
         return frozenset()
-    passed = np.array([one.passed for one in pairs])
-    wall = points_about(drives, plan, _thinned(passed), _GATHERED_M, monitor).local
-    # Built once for a few questions: a tree that is not balanced is there sooner.
-    tree = cKDTree(wall[:, :2], balanced_tree=False, compact_nodes=False)
+    places = _thinned(np.array([one.passed for one in pairs]))
+    walls = points_about(drives, plan, places, _GATHERED_M, monitor)
+    tree = cKDTree(places)
     images = set()
     for pair in pairs:
         monitor.check()
-        near = tree.query_ball_point(pair.passed, _ABOUT_M)
-        if _is_wall(wall[near], pair, float(shafts[pair.image].foot[2])):
+        about = tree.query_ball_point(pair.passed, _GATHERED_M + _ABOUT_M, return_sorted=True)
+        local = np.concatenate([walls.local[walls.of(place)] for place in about])
+        away = np.hypot(*(local[:, :2] - pair.passed).T)
+        if _is_wall(local[away <= _ABOUT_M], pair, float(shafts[pair.image].foot[2])):
             images.add(pair.image)
     return frozenset(images)
 
 
-def _pairs(
-    drives: Sequence[Drive], plan: SparsePlan, shafts: Sequence[Shaft], number: int
-) -> Iterator[_Pair]:
-    """What a shaft could be an image of, seen from where the vehicle was."""
-    shaft = shafts[number]
-    towards = towards_vehicle(drives, shaft, plan.origin)
+def _pairs(number: int, shaft: Shaft, others: Sequence[Shaft], towards: Floats) -> Iterator[_Pair]:
+    """What a shaft could be an image of, seen from where the vehicle was.
+
+    Parameters
+    ----------
+    others : sequence of Shaft
+        Those near enough.
+    towards : (n, 2) float64
+        As :func:`towards_vehicle` tells it of the shaft.
+    """
     towards = towards[np.isfinite(towards[:, 0])]
     if len(towards) == 0:
         return
     view = towards.mean(axis=0)
-    for other in shafts:
+    for other in others:
         away = other.foot - shaft.foot
         apart = float(np.hypot(*away[:2]))
         alike = _ALIKE_M + _ALIKE * min(shaft.radius_m, other.radius_m)
@@ -132,11 +142,14 @@ def _pairs(
 
 def _thinned(places: Floats) -> Floats:
     """Some of the places, none of the others farther from one than is looked about each."""
-    kept: list[Floats] = []
-    for place in places:
-        if all(np.hypot(*(place - one)) > _GATHERED_M - _ABOUT_M for one in kept):
-            kept.append(place)
-    return np.array(kept)
+    tree = cKDTree(places)
+    is_free = np.ones(len(places), np.bool_)
+    kept: list[int] = []
+    for number, place in enumerate(places):
+        if is_free[number]:
+            kept.append(number)
+            is_free[tree.query_ball_point(place, _GATHERED_M - _ABOUT_M)] = False
+    return np.asarray(places[kept])
 
 
 def _is_wall(points: Floats, pair: _Pair, foot_m: float) -> bool:

@@ -40,6 +40,9 @@ _FACE_SHARE = 0.2
 six streets all had 0.35 and more in some piece; lamps and trunks, about which thousands of leaves
 shine now and then, 0.18 at most."""
 
+_LOOKED_AT = 4_000_000
+"""Points at most, of all about shafts, that tell what is bright: more say the same."""
+
 _FEWEST = 2
 """Bright points that are a reflector: one may be a mixed return."""
 
@@ -66,8 +69,10 @@ class ReflectorSearch:
     ) -> None:
         self._drives, self._around, self._origin = drives, around, origin
         feet = np.array([one.foot[2] for one in shafts])
-        above = around.local[:, 2] - np.repeat(feet, np.diff(around.starts))
-        self._bounds = [self._bounds_of(number, above) for number in range(len(drives))]
+        some = np.arange(0, len(around.local), len(around.local) // _LOOKED_AT + 1)
+        owners = np.searchsorted(around.starts, some, side="right") - 1
+        high = some[around.local[some, 2] - feet[owners] > _UPRIGHT_M]
+        self._bounds = [self._bounds_of(number, some, high) for number in range(len(drives))]
 
     def shines(self, number: int, shaft: Shaft) -> float:
         """Whether a reflector is on the upper half of a shaft, by its number, or a face on it.
@@ -94,10 +99,16 @@ class ReflectorSearch:
             return float(bright >= _FEWEST)
         return float(bright >= _FEWEST_OF_FACE and _has_face(up[is_on], is_bright))
 
-    def _bounds_of(self, drive: int, above: Floats) -> Floats:
-        """The least intensity of a bright point of a drive, for each class of ranges."""
-        mine = np.flatnonzero(self._around.drives == drive)
-        high = mine[above[mine] > _UPRIGHT_M]
+    def _bounds_of(self, drive: int, some: Integers, high: Integers) -> Floats:
+        """The least intensity of a bright point of a drive, for each class of ranges.
+
+        Parameters
+        ----------
+        some, high : (n,) int64
+            Lines of points that are looked at, and those of them that are above the ground.
+        """
+        mine = some[self._around.drives[some] == drive]
+        high = high[self._around.drives[high] == drive]
         chosen = high if high.size >= _LEAST_HIGH * mine.size else mine
         chosen = chosen[:: chosen.size // _SAMPLE + 1]
         brightness = brightness_of(self._intensity(drive, chosen), self._classes(drive, chosen))

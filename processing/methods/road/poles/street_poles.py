@@ -147,20 +147,31 @@ def street_poles(drives: Sequence[Drive], monitor: Monitor) -> tuple[StreetPole,
     usual_m = usual_noise_m(shafts or hidden)
     part = PartMonitor(monitor, 0.75, 0.9)
     # What stands out of a crown or behind a wall takes no points from what stands on the ground.
-    feet = _feet(shafts), _feet(hidden)
+    feet = feet_of(shafts), feet_of(hidden)
     shafts, around = shafts + hidden, points_about_each(drives, plan, feet, REACH_M, part)
     shafts = with_whole_sides(shafts, around, monitor)
     judged = _judged(drives, plan, (shafts, around, usual_m), PartMonitor(monitor, 0.9, 0.95))
     asked = [one.number for one in judged if one.chance >= _LIKELY]
     images = mirror_images(drives, plan, shafts, asked, PartMonitor(monitor, 0.95, 1.0))
-    poles: list[StreetPole] = []
-    for one in sorted(judged, key=lambda one: (-one.chance, one.number)):
-        shaft = shafts[one.number]
-        is_free = all(np.hypot(*(shaft.foot - pole.shaft.foot)[:2]) >= _APART_M for pole in poles)
-        if is_free and one.number not in images:
-            poles.append(_pole(shaft, one, plan.origin))
+    surest = sorted(judged, key=lambda one: (-one.chance, one.number))
+    kept = _apart([one for one in surest if one.number not in images], shafts)
     monitor.report(1.0)
-    return tuple(poles)
+    return tuple(_pole(shafts[one.number], one, plan.origin) for one in kept)
+
+
+def _apart(judged: Sequence[_Judged], shafts: Sequence[Shaft]) -> list[_Judged]:
+    """Those of which no surer one, named before them, stands in their place."""
+    from scipy.spatial import cKDTree
+
+    if not judged:
+        return []
+    feet = feet_of([shafts[one.number] for one in judged])
+    near = cKDTree(feet).query_pairs(_APART_M, output_type="ndarray")
+    near = near[np.hypot(*(feet[near[:, 0]] - feet[near[:, 1]]).T) < _APART_M]
+    is_kept = np.ones(len(judged), np.bool_)
+    for first, second in near[np.lexsort(near.T)].tolist():
+        is_kept[second] &= not is_kept[first]
+    return [one for one, kept in zip(judged, is_kept.tolist(), strict=True) if kept]
 
 
 def _judged(
@@ -178,7 +189,7 @@ def _judged(
     is_doubtful &= _chances(shafts, if_trees, usual_m) < _EVEN
     is_doubtful &= np.array([about.beside.crown is not None for about in known.values()], np.bool_)
     doubtful = [number for number, asked in zip(known, is_doubtful, strict=True) if asked]
-    feet = _feet([shafts[number] for number in doubtful])
+    feet = feet_of([shafts[number] for number in doubtful])
     for number, tree in zip(doubtful, tree_chances(drives, plan, feet, monitor), strict=True):
         known[number] = known[number]._replace(tree=float(tree))
     chances = _chances(shafts, known, usual_m)
@@ -213,7 +224,7 @@ def shafts_about_all(
         The least chance of what may be one.
     """
     shafts, around, usual_m = found
-    fellows = fellows_of(shafts)
+    feet, fellows = feet_of(shafts), fellows_of(shafts)
     reflectors = ReflectorSearch(drives, shafts, around, plan.origin)
     beside = dict.fromkeys(range(len(shafts)), _NOTHING)
     beside = _likely(shafts, beside, usual_m, least)
@@ -224,7 +235,9 @@ def shafts_about_all(
     told: dict[int, ShaftAbout] = {}
     for number, one in _likely(shafts, beside, usual_m, least).items():
         monitor.check()
-        carried = carried_if_likely(around, number, shafts, usual_m)
+        carried = Carried()
+        if _may_carry(shafts[number], usual_m):
+            carried = carried_of(own_points(around, number, shafts, feet), shafts[number])
         sides = seen_sides(drives, shafts[number], plan.origin)
         shines = reflectors.shines(number, shafts[number])
         told[number] = ShaftAbout(one, carried, sides, shines, tree=0.0)
@@ -244,29 +257,36 @@ def _likely(
     }
 
 
-def _feet(shafts: Sequence[Shaft]) -> Floats:
+def feet_of(shafts: Sequence[Shaft]) -> Floats:
+    """(n, 2) where shafts stand, m about the plan's origin."""
     return np.array([one.foot[:2] for one in shafts]).reshape(-1, 2)
 
 
-def own_points(around: ColumnPoints, number: int, shafts: Sequence[Shaft]) -> ShaftNeighbourhood:
+def own_points(
+    around: ColumnPoints, number: int, shafts: Sequence[Shaft], feet: Floats
+) -> ShaftNeighbourhood:
     """Points about a shaft, by its number, of the heads that measured it.
 
     Passes lie centimetres apart, which would make two plates of one and no smooth surface.
+
+    Parameters
+    ----------
+    feet : (n, 2) float64
+        Of all shafts, m about the plan's origin (:func:`feet_of`).
     """
     shaft = shafts[number]
     part = around.of(number)
-    is_head = np.zeros(int(around.drives.max(initial=0)) + 1, np.bool_)
-    is_head[shaft.drives] = True
-    is_own = is_head[around.drives[part]]
+    heads = np.unique(shaft.drives)
+    is_own = np.isin(around.drives[part], heads)
     beyond = [np.empty((0, 3))]
     if shaft.top_m > ARMS_FROM_M:
-        away = np.hypot(*(_feet(shafts) - shaft.foot[:2]).T)
+        away = np.hypot(*(feet - shaft.foot[:2]).T)
         for other in np.flatnonzero((away > 0) & (away < 2 * REACH_M)).tolist():
             theirs = around.of(other)
             high = np.flatnonzero(around.local[theirs, 2] - shaft.foot[2] > ARMS_FROM_M)
             local = around.local[theirs].take(high, axis=0) - shaft.foot
             is_near = np.hypot(local[:, 0], local[:, 1]) < REACH_M
-            is_near &= is_head[around.drives[theirs].take(high)]
+            is_near &= np.isin(around.drives[theirs].take(high), heads)
             beyond.append(local[is_near])
     return ShaftNeighbourhood(
         around.local[part][is_own] - shaft.foot,
@@ -275,22 +295,15 @@ def own_points(around: ColumnPoints, number: int, shafts: Sequence[Shaft]) -> Sh
     )
 
 
-def carried_if_likely(
-    around: ColumnPoints, number: int, shafts: Sequence[Shaft], usual_m: float
-) -> Carried:
-    """What a shaft carries; nothing, of low ones and of those too rough for a pole.
+def _may_carry(shaft: Shaft, usual_m: float) -> bool:
+    """Whether anybody asks what a shaft carries: low ones and those too rough for poles: nothing.
 
     Parameters
     ----------
-    around : ColumnPoints
-        Points about all shafts, of which the one with the number is asked.
     usual_m : float
         Noise of the recording's smooth shafts.
     """
-    shaft = shafts[number]
-    if is_low(shaft) or shaft.noise_m > _ROUGH * usual_m:
-        return Carried()
-    return carried_of(own_points(around, number, shafts), shaft)
+    return not is_low(shaft) and shaft.noise_m <= _ROUGH * usual_m
 
 
 def usual_noise_m(shafts: Sequence[Shaft]) -> float:

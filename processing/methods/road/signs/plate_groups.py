@@ -199,7 +199,8 @@ def _may_be_dull(pieces: ScanPieces, group: PlateGroup) -> bool:
     values = pieces.values[group.pieces]
     if values[:, COUNT].sum() < _DULL_POINTS:
         return False
-    key = pieces.drive[group.pieces] * (pieces.row.max() + 1) + pieces.row[group.pieces]
+    rows = pieces.row[group.pieces]
+    key = pieces.drive[group.pieces] * (rows.max() + 1) + rows
     order = np.lexsort([values[:, FIRST], key])
     starts = np.flatnonzero(np.diff(key[order], prepend=-1))
     if starts.size < _DULL_TURNS:

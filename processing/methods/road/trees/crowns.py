@@ -63,9 +63,6 @@ Journal 110, eq. 2)."""
 _DIRECTIONS, _OFF_AXIS_M = 12, 0.5
 """About the axis in which a crown is looked for, beyond what may be the trunk's own."""
 
-_FIRST_CELLS = 10.0
-"""Per cent of a crown's cells that are lower than where it begins as a whole."""
-
 _SLENDEREST, _SLENDER_ROOM_M = 80.0, 1.5
 """Height over diameter of slender trees that stand by themselves (Wang, Titus, LeMay 1998, Canadian
 Journal of Forest Research 28: those beyond 100 are blown over), and m that stakes add to a young
@@ -80,14 +77,11 @@ class CrownShape(NamedTuple):
     sides : float
         Share of twelve directions in which some of it is.
     off_m : float
-        How far the middle of its points lies from the axis in plan.
-    begins_m : float
-        Above the foot; a tenth of its cells are lower. 0 of nothing, as the others are.
+        How far the middle of its points lies from the axis in plan. 0 of nothing, as the other.
     """
 
     sides: float
     off_m: float
-    begins_m: float
 
 
 @dataclass(frozen=True)
@@ -382,14 +376,13 @@ class _PlanMoments:
 def _shape_of(about: Floats, counts: Integers) -> CrownShape:
     """The shape of cells about a trunk's axis and foot, (n, 3) float64 m, with so many points."""
     if not len(about):
-        return CrownShape(0.0, 0.0, 0.0)
+        return CrownShape(0.0, 0.0)
     off = about[np.hypot(about[:, 0], about[:, 1]) > _OFF_AXIS_M]
     turns = (np.arctan2(off[:, 1], off[:, 0]) + np.pi) / (2 * np.pi) * _DIRECTIONS
     middle = np.average(about[:, :2], axis=0, weights=counts)
     return CrownShape(
         sides=np.unique(turns.astype(np.int64) % _DIRECTIONS).size / _DIRECTIONS,
         off_m=float(np.hypot(*middle)),
-        begins_m=float(np.percentile(about[:, 2], _FIRST_CELLS)),
     )
 
 

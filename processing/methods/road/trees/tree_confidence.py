@@ -60,6 +60,9 @@ MODEL = "models/uprights/trunk_tree.onnx"
 class TreeFacts(NamedTuple):
     """What speaks for a tree and against one; bounded, so that none outweighs all others.
 
+    Sizes are none of them, height, diameter and where the crown begins: those of simulated streets
+    made pines of a real stand, slender ones with high crowns, unlikely.
+
     Attributes
     ----------
     filled : float
@@ -98,12 +101,6 @@ class TreeFacts(NamedTuple):
         Share of twelve directions in which something of the crown is.
     off_m : float
         How far the middle of the crown's points lies from the axis, m.
-    begins_m : float
-        Where the crown begins, but for a tenth of it, m.
-    height_m : float
-        Of the highest point above the foot.
-    diameter_m : float
-        Of the trunk.
     goes_on : float
         Share of the next 2 m above its stem in which its axis shows something: above people and
         posts there is nothing but noise.
@@ -126,13 +123,10 @@ class TreeFacts(NamedTuple):
     free: float
     sides: float
     off_m: float
-    begins_m: float
-    height_m: float
-    diameter_m: float
     goes_on: float
 
 
-SIGNS = (1, -1, -1, -1, -1, 1, 1, -1, 1, -1, -1, 0, 1, 1, 1, 1, -1, 0, 0, 0, 1)
+SIGNS = (1, -1, -1, -1, -1, 1, 1, -1, 1, -1, -1, 0, 1, 1, 1, 1, -1, 1)
 """Which facts can only speak for a tree (1) or against one (−1)."""
 
 
@@ -159,9 +153,6 @@ def facts_of(upright: UprightTrunk, crown: Crown) -> TreeFacts:
         free=stem.free_slabs,
         sides=crown.shape.sides,
         off_m=crown.shape.off_m,
-        begins_m=crown.shape.begins_m,
-        height_m=crown.height_m,
-        diameter_m=upright.trunk.diameter_m,
         goes_on=upright.rise.goes_on,
     )
 

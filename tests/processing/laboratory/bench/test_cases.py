@@ -10,6 +10,7 @@ import pytest
 from processing.core.text import Text
 from processing.laboratory.bench.case import BenchmarkOptions, Measurement
 from processing.laboratory.bench.cases.extraction_case import measure_extraction
+from processing.laboratory.bench.cases.extraction_growth import measure_extraction_growth
 from processing.laboratory.bench.cases.ground_cases import measure_ground
 from processing.laboratory.bench.cases.image_cases import measure_image, measure_switch
 from processing.laboratory.bench.cases.import_cases import measure_import, measure_import_memory
@@ -92,6 +93,18 @@ def test_each_extractor_and_all_of_them_are_timed_on_an_avenue() -> None:
     assert sum(parts) == pytest.approx(everything.value)
     assert "curbs" in everything.detail
     assert min(classes.figures["alone_mpps"], classes.figures["looking_mpps"]) > 0
+
+
+def test_each_extractor_of_things_has_an_exponent_and_all_of_them_their_memory() -> None:
+    *tools, memory = measure_extraction_growth(BenchmarkOptions(most_points=300_000, share=0.2))
+    assert [row.name for row in tools] == [
+        f"growth-{name}" for name in ("trees", "signs", "poles", "wires")
+    ]
+    for row in tools:
+        assert row.value is not None
+        assert row.target == 1.05
+        assert min(row.figures.values()) > 0
+    assert memory.target == 1.5
 
 
 def test_curbs_and_gutters_have_times_by_stage_and_length() -> None:

@@ -10,6 +10,7 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from processing.core.monitor import SilentMonitor
+from processing.methods.road.objects import column_points
 from processing.methods.road.objects.column_points import points_about, points_about_each
 from processing.methods.road.objects.sparse_plan import CELL_M, TILE, cell_of, touch_kernel
 from processing.methods.road.objects.survey import survey_ground
@@ -78,3 +79,19 @@ def test_about_no_place_are_no_points(drives: tuple[Drive, ...]) -> None:
     none = points_about(drives, plan, np.empty((0, 2)), REACH_M, SilentMonitor())
     assert none.starts.tolist() == [0]
     assert len(none.local) == len(none.points) == 0
+
+
+def test_points_of_a_large_survey_lie_in_a_file_without_a_name(
+    drives: tuple[Drive, ...], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    plan, monitor = survey_ground(drives, SilentMonitor()).plan, SilentMonitor()
+    xyz = drives[0].xyz(slice(0, drives[0].count)) - plan.origin
+    groups = xyz[[0, len(xyz) // 2], :2].copy(), xyz[[-1], :2].copy()
+    held = points_about_each(drives, plan, groups, REACH_M, monitor)
+    monkeypatch.setattr(column_points, "_MOST_IN_MEMORY", 0)
+    before = sorted(drives[0].folder.iterdir())
+    filed = points_about_each(drives, plan, groups, REACH_M, monitor)
+    assert isinstance(filed.local, np.memmap)
+    assert sorted(drives[0].folder.iterdir()) == before
+    for name in ("starts", "local", "drives", "points"):
+        np.testing.assert_array_equal(getattr(filed, name), getattr(held, name))

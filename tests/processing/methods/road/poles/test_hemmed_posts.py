@@ -16,7 +16,7 @@ from processing.methods.road.objects.sparse_plan import SparsePlan
 from processing.methods.road.objects.survey import survey_columns
 from processing.methods.road.poles.carried import carried_of
 from processing.methods.road.poles.shafts import find_shafts, with_whole_sides
-from processing.methods.road.poles.street_poles import REACH_M, own_points
+from processing.methods.road.poles.street_poles import REACH_M, feet_of, own_points
 from processing.recording.drive import Drive
 from tests.processing.methods.road.bad_recordings import (
     HEAD_45,
@@ -108,4 +108,5 @@ def test_a_post_far_from_its_column_keeps_its_diameter(street: Street) -> None:
 def test_a_plate_is_told_below_a_crown(street: Street) -> None:
     number = street.at(SIGN)
     shaft = street.shafts[number]
-    assert carried_of(own_points(street.around, number, street.shafts), shaft).smooth > 0.6
+    own = own_points(street.around, number, street.shafts, feet_of(street.shafts))
+    assert carried_of(own, shaft).smooth > 0.6
