@@ -29,6 +29,7 @@ _COMMANDS: Mapping[str, Sequence[str]] = {
     "noise": ("run", "noise", "{project}"),
     "normals": ("run", "normals", "{project}"),
     "ground": ("run", "ground", "{project}"),
+    **{tool: ("run", tool, "{project}") for tool in ("trees", "signs", "poles", "wires")},
     "number": ("number", "{project}"),
     "drawings": ("export", "{project}", "--format", "dxf", "csv", "gpkg", "xlsx", "qa", "--out",
                  "{out}"),
