@@ -53,6 +53,11 @@ _HOPELESS = 0.05
 than any limit that people set."""
 
 
+_DROP_M, _EDGE_M = 1.8, 1.0
+"""Below the road beside it, from where on the ground below a plate may be none that it stands on:
+lower edges of signs hang higher over the road (道路標識設置基準 2-2); and how far from a plate the
+edge is looked for that it stands on: signs hang over it by half a width."""
+
 _RIM_M = 0.02
 """Beyond the rim of a plate, where points on it may seem to lie: noise, and the beam is wide."""
 
@@ -222,7 +227,8 @@ class DriveWays:
                 places.append(drive.trajectory.xyz[::_EVERY, :2])
                 heading = np.radians(drive.trajectory.roll_pitch_heading_deg[::_EVERY, 2])
                 steps.append(np.column_stack([np.sin(heading), np.cos(heading)]))
-        self._tree = cKDTree(np.concatenate(places)) if places else None
+        self._places = np.concatenate(places) if places else np.empty((0, 2))
+        self._tree = cKDTree(self._places) if places else None
         self._steps = np.concatenate(steps) if steps else np.empty((0, 2))
 
     def at(self, place: Floats) -> Floats:
@@ -230,6 +236,13 @@ class DriveWays:
         if self._tree is None:
             return np.full(2, np.nan)
         return np.asarray(self._steps[int(self._tree.query(place[:2])[1])])
+
+    def place_at(self, place: Floats, origin: Floats) -> tuple[float, float]:
+        """Where the vehicle was beside a place, m about an origin; NaN without a way."""
+        if self._tree is None:
+            return np.nan, np.nan
+        x, y = (self._places[int(self._tree.query(place[:2])[1])] - origin[:2]).tolist()
+        return x, y
 
 
 def turn_ways(drives: Sequence[Drive], pieces: ScanPieces) -> Floats:
@@ -266,7 +279,7 @@ def _signs(
     plan = below[0]
     found: list[RoadSign] = []
     for plate in plates:
-        level = _level_below(plate, pieces, below)
+        level = _level_below(plate, pieces, below, ways)
         facts = facts_of(plate, level, ways.at(plate.centre + plan.origin))
         point, drive = _point_near(plate, pieces)
         own_points, own_drives = _points_on(plate, pieces)
@@ -316,18 +329,33 @@ def _may_be_sign(
     ways: DriveWays,
 ) -> bool:
     """Whether a plate may be a sign if it is a supplement or hangs on what holds signs."""
-    level = _level_below(plate, pieces, below)
+    level = _level_below(plate, pieces, below, ways)
     facts = facts_of(plate, level, ways.at(plate.centre + below[0].origin))
     return best_chance_of(facts._replace(narrow=0.0)) > _HOPELESS
 
 
 def _level_below(
-    plate: Plate, pieces: ScanPieces, below: tuple[SparsePlan, NDArray[np.float32]]
+    plate: Plate, pieces: ScanPieces, below: tuple[SparsePlan, NDArray[np.float32]], ways: DriveWays
 ) -> float:
-    """Height of the ground below a plate, m about the origin of the plan."""
+    """Height of the ground below a plate, m about the origin of the plan.
+
+    A plate over the edge of a viaduct or of a wall that holds the road stands on that edge.
+    """
     plan, ground = below
-    level = height_of(ground, plan, float(plate.centre[0]), float(plate.centre[1]))
-    return level if np.isfinite(level) else float(np.median(pieces.ground[plate.pieces]))
+    x, y = plate.centre[:2].tolist()
+    level = height_of(ground, plan, x, y)
+    if not np.isfinite(level):
+        level = float(np.median(pieces.ground[plate.pieces]))
+    road = height_of(ground, plan, *ways.place_at(plate.centre + plan.origin, plan.origin))
+    if not level < road - _DROP_M:
+        return level
+    about = [
+        height_of(ground, plan, x + right * _EDGE_M, y + up * _EDGE_M)
+        for right in (-1, 0, 1)
+        for up in (-1, 0, 1)
+    ]
+    edges = [one for one in about if one > level + _DROP_M and abs(one - road) < _DROP_M]
+    return max(edges, default=level)
 
 
 def _point_near(plate: Plate, pieces: ScanPieces) -> tuple[int, int]:

@@ -45,7 +45,7 @@ def lines_on(shape: SignShape, middle: tuple[float, float], hidden_m: float = np
     for offset in np.arange(-1.5, 1.5, TURN_M):
         line = np.zeros(LINE)
         line[:2], line[2:4] = offset * across - 3 * ALONG, ALONG
-        enters, leaves = chord_of(outline_of(shape), line, np.array([*middle, 0.0]))
+        enters, leaves, _, _ = chord_of(outline_of(shape), line, np.array([*middle, 0.0]))
         pulses = np.arange(enters + random.uniform(0, SPACING_M), leaves, SPACING_M)
         seen = pulses[line[1] + pulses * ALONG[1] < hidden_m] if leaves > enters else pulses[:0]
         if seen.size < 2:
