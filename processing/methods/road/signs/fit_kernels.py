@@ -85,7 +85,7 @@ def chord_of(corners: Floats, line: Floats, pose: Floats) -> tuple[float, float,
     corners : (n, 2)
         Of a convex outline, anticlockwise; of a circle one: its radius.
     """
-    return _chord(_laid(corners, pose), line)
+    return _chord(_laid(corners, pose), line.reshape(1, LINE), 0)
 
 
 @kernel
@@ -112,9 +112,9 @@ def _laid(corners: Floats, pose: Floats) -> Floats:
 
 
 @kernel
-def _chord(laid: Floats, line: Floats) -> tuple[float, float, float, float]:
+def _chord(laid: Floats, lines: Floats, k: int) -> tuple[float, float, float, float]:
     """As of `chord_of`, of an outline in its place."""
-    u, v, a, b = line[U], line[V], line[ALONG_U], line[ALONG_V]
+    u, v, a, b = lines[k, U], lines[k, V], lines[k, ALONG_U], lines[k, ALONG_V]
     if laid.shape[0] == 1:
         u, v, radius = u - laid[0, 0], v - laid[0, 1], laid[0, 2]
         along = -(u * a + v * b)
@@ -124,9 +124,9 @@ def _chord(laid: Floats, line: Floats) -> tuple[float, float, float, float]:
         half = math.sqrt(inside)
         return along - half, along + half, half / radius, half / radius
     enters, leaves, sine_in, sine_out = -1e9, 1e9, 1.0, 1.0
-    for k in range(laid.shape[0]):
-        inside = laid[k, 0] * u + laid[k, 1] * v + laid[k, 2]
-        slope = laid[k, 0] * a + laid[k, 1] * b
+    for side in range(laid.shape[0]):
+        inside = laid[side, 0] * u + laid[side, 1] * v + laid[side, 2]
+        slope = laid[side, 0] * a + laid[side, 1] * b
         if slope > 1e-12:
             if -inside > enters * slope:
                 enters, sine_in = -inside / slope, slope
@@ -162,13 +162,15 @@ def _end_cost(beyond: float, spacing: float, is_open: float, sigma_m: float) -> 
 
 
 @kernel
-def line_cost(line: Floats, chord: tuple[float, float, float, float], sigma_m: float) -> float:
+def line_cost(
+    lines: Floats, k: int, chord: tuple[float, float, float, float], sigma_m: float
+) -> float:
     """What a line says against an outline that it enters and leaves there."""
     enters, leaves, sine_in, sine_out = chord
-    if line[OPEN_START] < 0.0:
-        if line[LONG] > 0.0:
-            leaves = min(leaves, line[LONG])
-        missed = leaves - max(enters, 0.0) - line[SPACING]
+    if lines[k, OPEN_START] < 0.0:
+        if lines[k, LONG] > 0.0:
+            leaves = min(leaves, lines[k, LONG])
+        missed = leaves - max(enters, 0.0) - lines[k, SPACING]
         if missed <= 0.0:
             return 0.0
         # Across the line: by so much it would have to lie farther off a corner.
@@ -176,10 +178,10 @@ def line_cost(line: Floats, chord: tuple[float, float, float, float], sigma_m: f
         return float(min((missed / max(_MISSED_M, sigma_m)) ** 2, _MISSED_CAP))
     if leaves <= enters:
         return 2 * CAP
-    spacing = line[SPACING]
-    cost = _end_cost(-enters, spacing, line[OPEN_START], sigma_m / max(sine_in, _LEAST_SINE))
-    beyond = leaves - line[LONG]
-    cost += _end_cost(beyond, spacing, line[OPEN_END], sigma_m / max(sine_out, _LEAST_SINE))
+    spacing = lines[k, SPACING]
+    cost = _end_cost(-enters, spacing, lines[k, OPEN_START], sigma_m / max(sine_in, _LEAST_SINE))
+    beyond = leaves - lines[k, LONG]
+    cost += _end_cost(beyond, spacing, lines[k, OPEN_END], sigma_m / max(sine_out, _LEAST_SINE))
     return float(cost)
 
 
@@ -191,7 +193,7 @@ def cost_of(corners: Floats, lines: Floats, pose: Floats, sigma_m: float, enough
     for k in range(lines.shape[0]):
         if total > enough:
             break
-        total += line_cost(lines[k], _chord(laid, lines[k]), sigma_m)
+        total += line_cost(lines, k, _chord(laid, lines, k), sigma_m)
     return total
 
 
@@ -341,7 +343,7 @@ def explain_kernel(
     laid = _laid(corners, pose)
     for k in range(lines.shape[0]):
         line = lines[k]
-        enters, leaves, sine_in, sine_out = _chord(laid, line)
+        enters, leaves, sine_in, sine_out = _chord(laid, lines, k)
         low, high = max(enters, 0.0), min(leaves, line[LONG])
         if leaves <= enters or high - low < 0.25 * min(line[LONG], 0.1):
             rest[left] = line

@@ -44,11 +44,11 @@ from processing.methods.road.signs.stretch_kernels import (
 )
 
 _COARSE = np.array([0.06, 0.03])
-_FINE = np.array([0.02, 0.01, 0.005, 0.002, 0.001])
+_SHARP, _FINE = np.array([0.02, 0.01]), np.array([0.005, 0.002, 0.001])
 _STRETCH_COARSE = np.array([0.1, 0.04])
 _STRETCH = np.array([0.02, 0.008, 0.003])
-"""Steps of the search, m: a plate's rim lies between pulses centimetres apart, and its place
-follows from all of them to millimetres."""
+"""Steps of the search, m, of sharp outlines before those with round corners: a plate's rim lies
+between pulses centimetres apart, and its place follows from all of them to millimetres."""
 
 _OUTLYING, _OUTLYING_M = 0.05, 0.2
 """Share of what is drawn on a plane that may lie far out on either side, and how far: outlines are
@@ -110,6 +110,9 @@ _BELOW_WIDEST_M = 1.2
 """What hangs below plates of twice the usual size; wider boards are as free as others."""
 
 _BELOW_STEPS = np.array([0.04, 0.015, 0.005])
+
+_SAME_M = 0.012
+"""Coarse rectangles that are as near to each other are one."""
 
 _SNAP_COST = 3.0
 """What a side may cost to be a usual one: a deviation of √3 standard deviations."""
@@ -259,7 +262,9 @@ def _solve(
     monitor.check()
     unexplained = _unexplained(lines)
     best = Fit((), unexplained, unexplained)
-    if len(above) == len(_BESIDE) or len(lines) < 2 or unexplained <= _PLATE_COST:
+    # Less than this no plate can explain without more doubt than any may have.
+    is_little = unexplained * _MOST_DOUBT < _PLATE_COST
+    if len(above) == len(_BESIDE) or len(lines) < 2 or is_little:
         return best
     tried: list[_Tried] = []
     fits = _best_fits(lines, empty, outlines)
@@ -380,6 +385,7 @@ def _best_fits(lines: Floats, empty: Floats, outlines: _Outlines) -> list[tuple[
         if not np.isfinite(costs[which, start]):
             continue
         shape, pose = outlines.shapes[which], poses[which, start].copy()
+        fit_kernel(sharp_outline_of(shape), every, _SHARP, SIGMA_M, pose)
         cost = fit_kernel(outline_of(shape), every, _FINE, SIGMA_M, pose)
         fine.append((cost, shape, pose))
     if outlines.with_rectangles:
@@ -450,9 +456,11 @@ def _rectangles(
         coarse.append((cost, pose, sides, _own_cost(lines, pose, sides)))
     coarse.sort(key=lambda one: one[0])
     clean = sorted(coarse, key=lambda one: one[3])[:_RECTANGLES]
-    chosen = coarse[:_RECTANGLES]
-    chosen += [one for one in clean if all(one is not other for other in chosen)]
-    found = [_finely(every, pose, sides) for _, pose, sides, _ in chosen]
+    chosen: list[tuple[Floats, Floats]] = []
+    for _, pose, sides, _ in coarse[:_RECTANGLES] + clean:
+        if all(_differ(pose, sides, *other) for other in chosen):
+            chosen.append((pose, sides))
+    found = [_finely(every, *one) for one in chosen]
     empty = every[len(lines) :]
     for part in _parts_beside_gaps(lines):
         low, high = _box_of(part)
@@ -461,6 +469,11 @@ def _rectangles(
         stretch_kernel(own, _STRETCH_COARSE, pose, sides, np.zeros(2))
         found.append(_finely(own, pose, sides))
     return found
+
+
+def _differ(pose: Floats, sides: Floats, place: Floats, other: Floats) -> bool:
+    """Whether two rectangles are farther apart than moving them finely takes them."""
+    return bool(max(np.abs(pose - place).max(), np.abs(sides - other).max()) > _SAME_M)
 
 
 def _as_squares(

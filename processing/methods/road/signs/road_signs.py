@@ -13,12 +13,12 @@ from scipy.spatial import cKDTree
 from processing.core.arrays import Floats, Integers
 from processing.core.monitor import Monitor, PartMonitor
 from processing.core.worked_ahead import in_order
-from processing.methods.road.objects.ground_heights import height_of
 from processing.methods.road.objects.sparse_plan import SparsePlan
 from processing.methods.road.objects.survey import survey_ground
 from processing.methods.road.signs.distinct_plates import distinct_plates
 from processing.methods.road.signs.piece_kernels import COUNT, FIRST, FROM, LAST, TO
 from processing.methods.road.signs.plate_fit import FittedPlate, fit_plates
+from processing.methods.road.signs.plate_ground import ground_below
 from processing.methods.road.signs.plate_groups import PlateGroup, plate_groups
 from processing.methods.road.signs.plate_lines import empty_lines, lines_of
 from processing.methods.road.signs.plates import Plate, plate_alone, plates_of
@@ -52,11 +52,6 @@ _HOPELESS = 0.05
 """Chance of a plate, if all that isn't known yet speaks for it, up to which it is none: less
 than any limit that people set."""
 
-
-_DROP_M, _EDGE_M = 1.8, 1.0
-"""Below the road beside it, from where on the ground below a plate may be none that it stands on:
-lower edges of signs hang higher over the road (道路標識設置基準 2-2); and how far from a plate the
-edge is looked for that it stands on: signs hang over it by half a width."""
 
 _RIM_M = 0.02
 """Beyond the rim of a plate, where points on it may seem to lie: noise, and the beam is wide."""
@@ -337,25 +332,10 @@ def _may_be_sign(
 def _level_below(
     plate: Plate, pieces: ScanPieces, below: tuple[SparsePlan, NDArray[np.float32]], ways: DriveWays
 ) -> float:
-    """Height of the ground below a plate, m about the origin of the plan.
-
-    A plate over the edge of a viaduct or of a wall that holds the road stands on that edge.
-    """
-    plan, ground = below
-    x, y = plate.centre[:2].tolist()
-    level = height_of(ground, plan, x, y)
-    if not np.isfinite(level):
-        level = float(np.median(pieces.ground[plate.pieces]))
-    road = height_of(ground, plan, *ways.place_at(plate.centre + plan.origin, plan.origin))
-    if not level < road - _DROP_M:
-        return level
-    about = [
-        height_of(ground, plan, x + right * _EDGE_M, y + up * _EDGE_M)
-        for right in (-1, 0, 1)
-        for up in (-1, 0, 1)
-    ]
-    edges = [one for one in about if one > level + _DROP_M and abs(one - road) < _DROP_M]
-    return max(edges, default=level)
+    """Height of the ground below a plate, m about the origin of the plan."""
+    road = ways.place_at(plate.centre + below[0].origin, below[0].origin)
+    level = ground_below(plate.centre, road, below)
+    return level if np.isfinite(level) else float(np.median(pieces.ground[plate.pieces]))
 
 
 def _point_near(plate: Plate, pieces: ScanPieces) -> tuple[int, int]:

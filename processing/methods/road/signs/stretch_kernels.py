@@ -12,8 +12,6 @@ import numpy as np
 from processing.core.arrays import Floats
 from processing.core.kernels import kernel
 from processing.methods.road.signs.fit_kernels import (
-    ALONG_U,
-    ALONG_V,
     FINE_STEP_M,
     LONG,
     MOST_ROLL_RAD,
@@ -29,8 +27,11 @@ from processing.methods.road.signs.fit_kernels import (
 _LEAST_SIDE_M = 0.08
 """Of a rectangle: the smallest plate is 10 cm high (標識令, 補助標識), its rims are uncertain."""
 
-_FAR_OFF = 30.0
+_FAR_OFF = 12.0
 """What a rectangle may cost more before it is moved finely: that takes it to some millimetres."""
+
+_LEVEL = 1e-12
+"""Sine of an angle between a line and a side that never meet."""
 
 _BACK = (3, 2, 1, 0, 7, 6, 5, 4, 9, 8, 11, 10, 13, 12)
 """Of each way in which a rectangle is changed, the one that undoes it."""
@@ -51,11 +52,13 @@ def stretch_kernel(
     """
     best, sigma_m = math.inf, 0.0
     tested, other = np.empty(3), np.empty(2)
+    seen, rolled = np.empty((lines.shape[0], 4)), np.empty((lines.shape[0], 4))
+    _turned(lines, pose[2], seen)
     for number in range(steps.shape[0]):
         step = steps[number]
         if number == 0 or max(SIGMA_M, step / 2) != sigma_m:
             sigma_m = max(SIGMA_M, step / 2)
-            best = _box_cost(sides, lines, pose, sigma_m, math.inf)
+            best = _box_cost(sides, lines, seen, pose, (sigma_m, math.inf))
         ways, failed, back = 14 if step <= FINE_STEP_M else 12, 0, -1
         for count in range(ROUNDS * ways):
             if failed == ways:
@@ -66,9 +69,14 @@ def stretch_kernel(
             other[:] = sides
             if way == back or not _changed(way, step, fixed, tested, other):
                 continue
-            cost = _box_cost(other, lines, tested, sigma_m, best)
+            is_rolled = tested[2] != pose[2]
+            if is_rolled:
+                _turned(lines, tested[2], rolled)
+            cost = _box_cost(other, lines, rolled if is_rolled else seen, tested, (sigma_m, best))
             if cost < best - 1e-9:
                 best = cost
+                if is_rolled:
+                    seen, rolled = rolled, seen
                 pose[:] = tested
                 sides[:] = other
                 failed, back = 0, _BACK[way]
@@ -146,10 +154,11 @@ def _may_fit(
 ) -> bool:
     """Whether a rectangle costs little anywhere between either of two sides kept in its place."""
     axis, free = spare
-    tested = pose.copy()
+    tested, seen = pose.copy(), np.empty((lines.shape[0], 4))
+    _turned(lines, pose[2], seen)
     for share in (-0.5, -0.25, 0.0, 0.25, 0.5):
         tested[axis] = pose[axis] + share * free
-        if _box_cost(sides, lines, tested, SIGMA_M, enough) <= enough:
+        if _box_cost(sides, lines, seen, tested, (SIGMA_M, enough)) <= enough:
             return True
     return False
 
@@ -197,41 +206,71 @@ def parts_kernel(low: Floats, high: Floats, least_m: float, level_m: float, shar
 
 
 @kernel
-def _box_cost(sides: Floats, lines: Floats, pose: Floats, sigma_m: float, enough: float) -> float:
-    """The same of a rectangle so wide and high."""
+def _turned(lines: Floats, roll: float, seen: Floats) -> None:
+    """Write starts and directions of lines, (m, 4), as a rectangle that is rolled has right and up.
+
+    About the origin of the plane.
+    """
+    c, s = math.cos(roll), math.sin(roll)
+    for k in range(lines.shape[0]):
+        for column in range(0, 4, 2):
+            right, up = lines[k, U + column], lines[k, V + column]
+            seen[k, column] = c * right + s * up
+            seen[k, column + 1] = c * up - s * right
+
+
+@kernel
+def _box_cost(
+    sides: Floats,
+    lines: Floats,
+    seen: Floats,
+    pose: Floats,
+    limits: tuple[float, float],
+) -> float:
+    """What all lines say against a rectangle so wide and high, by what they are to its roll.
+
+    Parameters
+    ----------
+    limits : (float, float)
+        How far ends lie off, m, and the cost from which no more is added up.
+    """
+    sigma_m, enough = limits
     total = float((pose[2] / ROLL_RAD) ** 2)
     c, s = math.cos(pose[2]), math.sin(pose[2])
+    right, up = c * pose[0] + s * pose[1], c * pose[1] - s * pose[0]
+    low_u, high_u = right - sides[0] / 2, right + sides[0] / 2
+    low_v, high_v = up - sides[1] / 2, up + sides[1] / 2
     for k in range(lines.shape[0]):
         if total > enough:
             break
-        line = lines[k]
-        u, v = line[U] - pose[0], line[V] - pose[1]
-        a = c * line[ALONG_U] + s * line[ALONG_V]
-        b = c * line[ALONG_V] - s * line[ALONG_U]
-        chord = _chord_of_box(sides[0], sides[1], c * u + s * v, c * v - s * u, a, b)
-        total += line_cost(line, chord, sigma_m)
+        chord = _chord_of_box((low_u, high_u, low_v, high_v), seen, k)
+        total += line_cost(lines, k, chord, sigma_m)
     return total
 
 
 @kernel
 def _chord_of_box(
-    wide: float, high: float, u: float, v: float, a: float, b: float
+    box: tuple[float, float, float, float], seen: Floats, k: int
 ) -> tuple[float, float, float, float]:
-    """The same of a rectangle about the origin, for a line from (u, v) on along (a, b)."""
+    """Where a line enters and leaves a box, and the sines of its angles with its rim."""
+    low_u, high_u, low_v, high_v = box
     enters, leaves, sine_in, sine_out = -1e9, 1e9, 1.0, 1.0
-    for half, at, along in ((wide / 2, u, a), (high / 2, v, b)):
-        steep = abs(along)
-        if steep < 1e-12:
-            if abs(at) > half:
-                return 1.0, 0.0, 1.0, 1.0
-            continue
-        first, last = (-half - at) / along, (half - at) / along
-        if along < 0.0:
-            first, last = last, first
-        if first > enters:
-            enters, sine_in = first, steep
-        if last < leaves:
-            leaves, sine_out = last, steep
+    along, steep = seen[k, 2], abs(seen[k, 2])
+    if steep >= _LEVEL:
+        first, last = (low_u - seen[k, 0]) / along, (high_u - seen[k, 0]) / along
+        enters, leaves = min(first, last), max(first, last)
+        sine_in = sine_out = steep
+    elif not low_u <= seen[k, 0] <= high_u:
+        return 1.0, 0.0, 1.0, 1.0
+    along, steep = seen[k, 3], abs(seen[k, 3])
+    if steep >= _LEVEL:
+        first, last = (low_v - seen[k, 1]) / along, (high_v - seen[k, 1]) / along
+        if min(first, last) > enters:
+            enters, sine_in = min(first, last), steep
+        if max(first, last) < leaves:
+            leaves, sine_out = max(first, last), steep
+    elif not low_v <= seen[k, 1] <= high_v:
+        return 1.0, 0.0, 1.0, 1.0
     return enters, leaves, sine_in, sine_out
 
 
