@@ -396,13 +396,12 @@ def _best_fits(lines: Floats, empty: Floats, outlines: _Outlines) -> list[tuple[
                 fine.append(one)
     fine.sort(key=lambda one: one[0])
     found: list[tuple[SignShape, Floats]] = []
-    places: list[tuple[float, float]] = []
+    places: dict[SignShape, list[tuple[float, float]]] = {}
     for _, shape, pose in fine:
-        place = float(pose[0]), float(pose[1])
-        near = [n for n, at in enumerate(places) if math.dist(place, at) <= SIGMA_M]
-        if all(shape != found[n][0] for n in near):
+        place, others = (float(pose[0]), float(pose[1])), places.setdefault(shape, [])
+        if all(math.dist(place, at) > SIGMA_M for at in others):
             found.append((shape, pose))
-            places.append(place)
+            others.append(place)
     return found
 
 
