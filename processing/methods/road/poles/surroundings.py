@@ -70,6 +70,8 @@ class Surroundings:
         Share of the way to another post's top that something level fills.
     crown : LeavesAbout or None
         What could be a crown; None of low shafts, and of those too rough or hemmed in for a pole.
+    alike : float
+        As of :func:`processing.methods.road.poles.alike_shafts.alike_of`; 0 of high ones.
     """
 
     rails: float
@@ -77,6 +79,7 @@ class Surroundings:
     over: float
     roof: float
     crown: LeavesAbout | None
+    alike: float = 0.0
 
 
 def surroundings_of(
