@@ -1,4 +1,4 @@
-"""Low posts beside gutters, below leaves and in rows."""
+"""Low posts beside gutters, below leaves and in guard rails."""
 
 from __future__ import annotations
 
@@ -10,10 +10,14 @@ import pytest
 
 from processing.core.monitor import SilentMonitor
 from processing.laboratory.simulate.scene.mesh import TriangleShape, box, tube
+from processing.methods.road.objects.column_points import points_about
 from processing.methods.road.objects.sparse_plan import SparsePlan
 from processing.methods.road.objects.survey import survey_columns
 from processing.methods.road.poles.alike_shafts import alike_of
 from processing.methods.road.poles.shafts import Shaft, find_shafts
+from processing.methods.road.poles.street_poles import REACH_M
+from processing.methods.road.poles.surroundings import surroundings_of
+from processing.recording.drive import Drive
 from tests.processing.methods.road.bad_recordings import (
     ORIGIN,
     DrivenRecording,
@@ -40,10 +44,12 @@ HIGH_M, RADIUS_M = 0.65, 0.04
 
 
 class Street:
-    """Its shafts."""
+    """Its shafts and what stands about them."""
 
-    def __init__(self, plan: SparsePlan, found: list[Shaft]) -> None:
+    def __init__(self, drives: tuple[Drive, ...], plan: SparsePlan, found: list[Shaft]) -> None:
+        feet = np.array([one.foot[:2] for one in found])
         self.found, self.origin = found, plan.origin
+        self.around = points_about(drives, plan, feet, REACH_M, SilentMonitor())
 
     def at(self, place: Floats) -> int:
         """The number of the one at a place, m east and north along the street."""
@@ -51,6 +57,13 @@ class Street:
         away = np.hypot(*(feet[:, :2] - place).T)
         assert away.min() < 0.05
         return int(away.argmin())
+
+    def beam_at(self, place: Floats) -> float:
+        """How far something leads on to both sides of the post at a place."""
+        number = self.at(place)
+        shaft = self.found[number]
+        local = self.around.local[self.around.of(number)] - shaft.foot
+        return surroundings_of(local, shaft, 0.003, np.empty((0, 2))).beam
 
 
 def _post(place: Floats) -> TriangleShape:
@@ -76,7 +89,7 @@ def street(tmp_path_factory: pytest.TempPathFactory) -> Street:
     drives = recorded(folder, driven)
     below, columns = survey_columns(drives, SilentMonitor())
     found = find_shafts(drives, below.plan, columns, SilentMonitor())
-    return Street(below.plan, found)
+    return Street(drives, below.plan, found)
 
 
 @pytest.mark.parametrize("place", [BESIDE_GUTTER, BELOW_LEAVES])
@@ -95,3 +108,9 @@ def test_posts_of_a_rail_are_alike_and_a_lone_post_of_another_height_is_not(stre
     assert alike_of(shorter) == [0.0]
     assert alike_of([*shorter, *street.found])[0] == 0.0
     assert len(alike_of([])) == 0
+
+
+def test_the_beam_of_a_guard_rail_leads_on_from_its_posts_alone(street: Street) -> None:
+    assert street.beam_at(RAIL[1]) > 0.8
+    assert street.beam_at(BESIDE_GUTTER) < 0.3
+    assert street.beam_at(BELOW_LEAVES) < 0.3
