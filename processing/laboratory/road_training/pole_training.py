@@ -43,7 +43,12 @@ from processing.methods.road.poles.trunks_among import tree_chances
 from processing.scoring.features.object_matches import positions_of
 from processing.scoring.features.poles import POLES
 
-_SIZE = TreesSize(trees=200, leaves=4, rate=0.1, least_in_a_leaf=60, signs=SIGNS)
+_SIZES = {
+    True: TreesSize(trees=200, leaves=6, rate=0.1, least_in_a_leaf=30, signs=SIGNS),
+    False: TreesSize(trees=200, leaves=4, rate=0.1, least_in_a_leaf=60, signs=SIGNS),
+}
+"""Of low shafts and of high ones: of the low ones two in a hundred are poles, as many as one small
+leaf holds."""
 
 _NOISE_CODES = (7, 18)
 
@@ -134,7 +139,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     asked = varied_streets(parser, arguments)
     known, check = known_shafts(asked.learnt), known_shafts(asked.check)
     for low, model in MODELS.items():
-        sys.stdout.write(f"{learn_model(model, known[low], check[low], _SIZE)}\n\n")
+        sys.stdout.write(f"{learn_model(model, known[low], check[low], _SIZES[low])}\n\n")
     return 0
 
 

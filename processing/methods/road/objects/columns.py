@@ -39,6 +39,9 @@ _RING = 3
 
 _HALO = _RING + 2
 
+_HALO_OF_GROUND = 2
+"""Cells of the coarse map about a tile: eight of the plan, as wide as its own halo and more."""
+
 _FEWEST_SLABS = 3
 """In a row, of a column: 0.6 m, the height of a bollard above `LOWEST_M`."""
 
@@ -108,8 +111,9 @@ def find_columns(
         monitor.check()
         margin = _HALO + _APART_CELLS
         few, some, most = (plan.window(one, tile, margin, 0) for one in (slabs, several, many))
+        below = _of_cells(plan.window(ground, tile, _HALO_OF_GROUND, np.nan), len(few))
         # Single points of noise don't stand beside what shows by many, as sparse walls do.
-        return _columns_of(free_slabs(few, few) | free_slabs(most, some))
+        return _columns_of(free_slabs(few, few, below) | free_slabs(most, some, below))
 
     for tile, both in enumerate(in_order(of_tile, range(len(plan)))):
         for found, here in zip((standing, raised), both, strict=True):
@@ -171,43 +175,83 @@ def slabs_kernel(
             slabs[cell] |= bit
 
 
-def free_slabs(slabs: NDArray[np.uint32], beside: NDArray[np.uint32]) -> NDArray[np.uint32]:
+def _of_cells(ground: NDArray[np.float32], side: int) -> NDArray[np.float32]:
+    """(side, side) the ground of the coarse map of the cells in its middle."""
+    per_cell = TILE // GROUND_CELLS
+    wide = np.repeat(np.repeat(ground, per_cell, axis=0), per_cell, axis=1)
+    margin = (len(wide) - side) // 2
+    return np.ascontiguousarray(wide[margin : margin + side, margin : margin + side])
+
+
+def free_slabs(
+    slabs: NDArray[np.uint32], beside: NDArray[np.uint32], ground: NDArray[np.float32]
+) -> NDArray[np.uint32]:
     """At which heights cells are filled without filled ones 0.6 m away on two opposite sides.
 
     Parameters
     ----------
     slabs, beside : (n, m) uint32
         At which heights cells are filled, and at which they count as filled beside others.
+    ground : (n, m) float32
+        From which the heights of each cell count, m: beside a gutter or a step they differ.
 
     Returns
     -------
     (n, m) uint32
         0 along the margin of `_HALO` cells.
     """
-    tall, walls = (one | (one << np.uint32(1)) | (one >> np.uint32(1)) for one in (slabs, beside))
-    size = slabs.shape[0]
-    inner = slice(_HALO, size - _HALO)
-
-    def moved(step: tuple[int, int]) -> NDArray[np.uint32]:
-        part: NDArray[np.uint32] = walls[
-            _HALO + step[0] : size - _HALO + step[0], _HALO + step[1] : size - _HALO + step[1]
-        ]
-        return part
-
-    hidden = np.zeros((size - 2 * _HALO,) * 2, np.uint32)
-    ring = _ring_steps()
-    half = len(ring) // 2
-    for number in range(half):
-        one = moved(ring[number])
-        # A line of points need not pass exactly through the middle.
-        other = moved(ring[number + half])
-        other = (
-            other | moved(ring[number + half - 1]) | moved(ring[(number + half + 1) % len(ring)])
-        )
-        hidden |= one & other
     free = np.zeros_like(slabs)
-    free[inner, inner] = tall[inner, inner] & ~hidden
+    free_kernel(slabs, beside, ground, _RING_STEPS, free)
     return free
+
+
+@kernel
+def free_kernel(
+    slabs: NDArray[np.uint32],
+    beside: NDArray[np.uint32],
+    ground: NDArray[np.float32],
+    ring: Integers,
+    free: NDArray[np.uint32],
+) -> None:
+    """Write at which heights cells stand free.
+
+    Parameters
+    ----------
+    ring : (r, 2) int64
+        Steps to the cells of the ring, in order round it.
+    """
+    half = len(ring) // 2
+    around = np.zeros(len(ring), np.uint32)
+    for i in range(_HALO, slabs.shape[0] - _HALO):
+        for j in range(_HALO, slabs.shape[1] - _HALO):
+            if slabs[i, j] == 0:
+                continue
+            for step in range(len(ring)):
+                a, b = i + ring[step, 0], j + ring[step, 1]
+                around[step] = _raised(_tall(beside[a, b]), ground[a, b] - ground[i, j])
+            hidden = np.uint32(0)
+            for step in range(half):
+                # A line of points need not pass exactly through the middle.
+                other = around[step + half] | around[step + half - 1]
+                hidden |= around[step] & (other | around[(step + half + 1) % len(ring)])
+            free[i, j] = _tall(slabs[i, j]) & ~hidden
+
+
+@kernel
+def _tall(bits: np.uint32) -> np.uint32:
+    """The slabs and those above and below each."""
+    return np.uint32(bits | (bits << np.uint32(1)) | (bits >> np.uint32(1)))
+
+
+@kernel
+def _raised(bits: np.uint32, rise_m: np.float32) -> np.uint32:
+    """Slabs above a ground that lies so much higher than the one from which they shall count."""
+    if not abs(rise_m) < SLABS * SLAB_M:
+        return np.uint32(0)
+    slabs = round(rise_m / SLAB_M)
+    if slabs >= 0:
+        return np.uint32(bits << np.uint32(slabs))
+    return np.uint32(bits >> np.uint32(-slabs))
 
 
 def _ring_steps() -> list[tuple[int, int]]:
@@ -215,6 +259,9 @@ def _ring_steps() -> list[tuple[int, int]]:
     side = range(-_RING, _RING + 1)
     steps = [(i, j) for i in side for j in side if max(abs(i), abs(j)) == _RING]
     return sorted(steps, key=lambda step: float(np.arctan2(step[1], step[0])))
+
+
+_RING_STEPS = np.array(_ring_steps(), np.int64)
 
 
 def _columns_of(

@@ -49,6 +49,87 @@ _PLAN_CELL_M, _STANDING, _WIDER = 0.15, 8, 1.5
 many times as many cells ground fills: a trunk fills as many in each layer, a ring of rails too."""
 
 
+_BIN_M, _DOWN_M, _UP_M = 0.05, 0.5, 1.0
+"""In layers of two bins the ground about a column is looked for, so far below and above the coarse
+map: beside an open gutter or a step that holds what lies deepest within 0.8 m."""
+
+_FROM_M, _TO_M = 0.1, 0.6
+"""Ring about a column's middle that shows its ground: beyond itself, nearer than gutters are
+wide."""
+
+_DEEPER = 0.3
+"""Of a layer's points, so many below it that the ground is deeper: the bottom of a gutter has few
+points at most, what grass, hedges and steps stand on has more."""
+
+
+@kernel
+def ground_beside_kernel(
+    points: Floats, starts: Integers, middles: Floats, coarse: Floats, ground: Floats
+) -> None:
+    """The ground that was seen about each column; the coarse one where it tells nothing clear.
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        m about any origin, column after column.
+    starts : (k + 1,) int64
+    middles : (k, 2) float64
+        Of the columns, about the same.
+    coarse : (k,) float64
+        The ground of the coarse map, about the same.
+    ground : (k,) float64
+        Written.
+
+    Notes
+    -----
+    In each sector it is the layer of a decimetre with the most points that has few below it; of the
+    sectors the middle one tells it, the upper of two: a post stands beside a gutter, not in it.
+    Where all of them together show much below, as in hedges and at steps, the coarse map is asked.
+    """
+    bins = int((_DOWN_M + _UP_M) / _BIN_M)
+    counts = np.zeros((_SECTORS, bins), np.int64)
+    levels = np.empty(_SECTORS)
+    for column in range(len(middles)):
+        counts[:] = 0
+        lowest = coarse[column] - _DOWN_M
+        for point in range(starts[column], starts[column + 1]):
+            level = math.floor((points[point, 2] - lowest) / _BIN_M)
+            east = points[point, 0] - middles[column, 0]
+            north = points[point, 1] - middles[column, 1]
+            away = math.hypot(east, north)
+            if 0 <= level < bins and _FROM_M <= away < _TO_M:
+                sector = int((math.atan2(north, east) / math.pi + 1) / 2 * _SECTORS) % _SECTORS
+                counts[sector, level] += 1
+        known = 0
+        for sector in range(_SECTORS):
+            levels[known] = _ground_level(counts[sector])
+            known += levels[known] >= 0.0
+        ground[column] = coarse[column]
+        if known >= _LEAST_SECTORS:
+            told = np.sort(levels[:known])[known // 2]
+            if _is_lowest(counts.sum(axis=0), int(told)):
+                ground[column] = lowest + _BIN_M * told
+
+
+@kernel
+def _is_lowest(counts: Integers, level: int) -> bool:
+    """Whether few points lie below a layer of two decimetres."""
+    low = max(level - 2, 0)
+    return bool(counts[:low].sum() <= _DEEPER * counts[low : level + 2].sum())
+
+
+@kernel
+def _ground_level(counts: Integers) -> float:
+    """The middle of the layer that is ground, in bins; −1: of none."""
+    layers = counts[:-1] + counts[1:]
+    best = int(layers.argmax())
+    if layers[best] < _FEWEST:
+        return -1.0
+    while best > 1 and counts[: best - 1].sum() > _DEEPER * layers[best]:
+        best = int(layers[: best - 1].argmax())
+    return best + 0.5 + float(counts[best + 1]) / float(layers[best])
+
+
 def ground_seen(points: Floats, coarse_m: float) -> float:
     """The ground of the coarse map, or what lies above or below it where that is off.
 

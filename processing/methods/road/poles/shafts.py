@@ -4,18 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.core.arrays import Floats, Integers
+from processing.core.arrays import Flags, Floats, Integers
+from processing.core.kernels import kernel
 from processing.core.monitor import Monitor, PartMonitor
 from processing.core.worked_ahead import in_order
 from processing.methods.road.objects.column_points import ColumnPoints, points_about
 from processing.methods.road.objects.columns import ONE_M, FoundColumns, distinct_columns
 from processing.methods.road.objects.drive_passes import passes_of
-from processing.methods.road.objects.foot import foot_height
+from processing.methods.road.objects.foot import foot_height, ground_beside_kernel
 from processing.methods.road.objects.sparse_plan import SparsePlan
 from processing.methods.road.poles.shaft_kernels import (
     ARC,
@@ -69,6 +70,18 @@ crowns; hidden by plates and twigs for 1.5 m."""
 
 _RAISED_LIMITS = _LIMITS._replace(low_m=1.8, high_m=6.6)
 """Of those whose lower part something before them hides: where their columns are looked for."""
+
+_POST_LIMITS = _LIMITS._replace(most_m=0.15, high_m=1.3, gap_m=0.3)
+"""Of posts in columns that show no other shaft: no bollard or delineator is thicker or higher
+(視線誘導標設置基準). Leaves and rails hide what goes on above, and grass before a post has more
+points than it has."""
+
+_NEAR_M = 0.35
+"""From the middle of a column to the points of such a post, a cell and its own half."""
+
+_CURB_M = 0.15
+"""What is seen about a column tells its ground where the coarse map is off by a curb and more: the
+bottom of a gutter within its 0.8 m."""
 
 LEAST_LONG_M = 0.4
 """The shortest delineators, 0.5 m, with a decimetre hidden."""
@@ -158,10 +171,58 @@ def find_shafts(
     """
     columns = distinct_columns(columns)
     gathered = points_about(drives, plan, columns.middles, ABOUT_M, PartMonitor(monitor, 0.0, 0.8))
-    found: list[Shaft] = []
-    for members in passes_of(drives):
-        found += _of_pass(columns, _only(gathered, members), _LIMITS, monitor)
+    seen = _on_seen_ground(columns, gathered)
+    is_off = np.abs(seen.ground - columns.ground) > _CURB_M
+    columns = replace(columns, ground=np.where(is_off, seen.ground, columns.ground))
+    passes = [_only(gathered, members) for members in passes_of(drives)]
+    found = [shaft for one in passes for shaft in _of_pass(columns, one, _LIMITS, monitor)]
+    is_bare = _are_bare(columns, found)
+    bare = seen.chosen(is_bare)
+    for one in passes:
+        found += _of_pass(bare, _near(one, columns, is_bare), _POST_LIMITS, monitor)
     return _one_of_each(found)
+
+
+def _are_bare(columns: FoundColumns, found: Sequence[Shaft]) -> Flags:
+    """Which columns show no shaft."""
+    from scipy.spatial import cKDTree
+
+    if not found:
+        return np.ones(len(columns), np.bool_)
+    known = cKDTree(np.array([one.foot[:2] for one in found]))
+    return np.asarray(known.query(columns.middles)[0] > ONE_M)
+
+
+def _near(gathered: ColumnPoints, columns: FoundColumns, which: Flags) -> ColumnPoints:
+    """The points near the middles of some columns."""
+    is_near = np.zeros(len(gathered.points), np.bool_)
+    near_kernel(gathered.local, gathered.starts, columns.middles, which, is_near)
+    counts = np.diff(np.concatenate([[0], np.cumsum(is_near)])[gathered.starts])
+    return ColumnPoints(
+        np.concatenate([[0], np.cumsum(counts[which])]),
+        gathered.local[is_near],
+        gathered.drives[is_near],
+        gathered.points[is_near],
+    )
+
+
+@kernel
+def near_kernel(
+    points: Floats, starts: Integers, middles: Floats, which: Flags, is_near: Flags
+) -> None:
+    """Mark the points near the middles of some columns."""
+    for column in np.flatnonzero(which):
+        for point in range(starts[column], starts[column + 1]):
+            east = points[point, 0] - middles[column, 0]
+            north = points[point, 1] - middles[column, 1]
+            is_near[point] = east * east + north * north < _NEAR_M * _NEAR_M
+
+
+def _on_seen_ground(columns: FoundColumns, gathered: ColumnPoints) -> FoundColumns:
+    """The same on the ground that was seen about each."""
+    ground = np.empty(len(columns))
+    ground_beside_kernel(gathered.local, gathered.starts, columns.middles, columns.ground, ground)
+    return replace(columns, ground=ground)
 
 
 def find_hidden_shafts(

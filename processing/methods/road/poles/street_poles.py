@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -17,6 +17,7 @@ from processing.core.monitor import Monitor, PartMonitor
 from processing.methods.road.objects.column_points import ColumnPoints, points_about_each
 from processing.methods.road.objects.sparse_plan import SparsePlan
 from processing.methods.road.objects.survey import raised_columns, survey_columns
+from processing.methods.road.poles.alike_shafts import alike_of
 from processing.methods.road.poles.carried import (
     ARMS_FROM_M,
     Carried,
@@ -226,12 +227,14 @@ def shafts_about_all(
     shafts, around, usual_m = found
     feet, fellows = feet_of(shafts), fellows_of(shafts)
     reflectors = ReflectorSearch(drives, shafts, around, plan.origin)
-    beside = dict.fromkeys(range(len(shafts)), _NOTHING)
+    alike = alike_of(shafts) * [is_low(one) for one in shafts]
+    beside = {number: replace(_NOTHING, alike=one) for number, one in enumerate(alike.tolist())}
     beside = _likely(shafts, beside, usual_m, least)
     for number in beside:
         monitor.check()
         local = around.local[around.of(number)] - shafts[number].foot
-        beside[number] = surroundings_of(local, shafts[number], usual_m, fellows[number])
+        told_beside = surroundings_of(local, shafts[number], usual_m, fellows[number])
+        beside[number] = replace(told_beside, alike=beside[number].alike)
     told: dict[int, ShaftAbout] = {}
     for number, one in _likely(shafts, beside, usual_m, least).items():
         monitor.check()

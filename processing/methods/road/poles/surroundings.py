@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from processing.core.arrays import Floats
+from processing.core.arrays import Flags, Floats
 from processing.core.kernels import kernel
 from processing.methods.road.poles.leaves import LeavesAbout, leaves_about
 from processing.methods.road.poles.roofs import roof_share
@@ -49,6 +49,17 @@ _ROUGH, _LEAST_FREE = 2.5, 0.25
 _OVER_FROM_M, _OVER_TO_M, _OVER_BESIDE_M = 0.15, 1.15, 0.3
 """Between which heights above its top a shaft may go on: a trunk that bends, a person, an edge."""
 
+_BEAM_FROM_M, _BEAM_TO_M, _BEAM_WIDE_M = 0.15, 1.75, 0.12
+"""How far from an axis beams of guard rails and pipes of fences lead on, whose posts stand 2 m and
+more apart, and how far beside a line through it: a post carries its beam on one face."""
+
+_BEAM_PIECE_M, _BEAM_PIECES, _BEAM_LINES = 0.2, 8, 24
+"""Pieces of the way on each side, and directions of such lines, 7.5 degrees apart."""
+
+_ABOVE_GROUND_SLABS, _BEAM_ABOVE_SLABS = 2, 5
+"""Below, grass and the ground itself lead on; and how far above what was seen of a post its beam
+may lie: the beam of a guard rail is 35 cm high and hides what of the post is behind it."""
+
 RAILS, COVER, OVER = range(3)
 """Share of the heights with something on two opposite sides, or a rail on one; share of the plan
 about the top that is filled; share of the metre above the top that is."""
@@ -70,6 +81,10 @@ class Surroundings:
         Share of the way to another post's top that something level fills.
     crown : LeavesAbout or None
         What could be a crown; None of low shafts, and of those too rough or hemmed in for a pole.
+    alike : float
+        As of :func:`processing.methods.road.poles.alike_shafts.alike_of`; 0 of high ones.
+    beam : float
+        How far something leads on from a low one at one height to both sides, over 1.6 m.
     """
 
     rails: float
@@ -77,6 +92,8 @@ class Surroundings:
     over: float
     roof: float
     crown: LeavesAbout | None
+    alike: float = 0.0
+    beam: float = 0.0
 
 
 def surroundings_of(
@@ -101,7 +118,9 @@ def surroundings_of(
     if shaft.top_m > _LEAST_CROWN_M and len(points) and not is_rough:
         crown = leaves_about(points, shaft)
     roof = roof_share(points, shaft, fellows)
-    return Surroundings(float(told[RAILS]), float(told[COVER]), float(told[OVER]), roof, crown)
+    beam = beam_kernel(points, axis) if shaft.top_m <= _LEAST_CROWN_M else 0.0
+    rails, cover, over = told.tolist()
+    return Surroundings(rails, cover, over, roof, crown, beam=beam)
 
 
 @kernel
@@ -157,3 +176,49 @@ def surroundings_kernel(points: Floats, axis: Floats, told: Floats) -> None:
     told[RAILS] = hemmed / max(last - first, 1)
     told[COVER] = plan.sum() / (side * side)
     told[OVER] = over.sum() / over.size
+
+
+@kernel
+def beam_kernel(points: Floats, axis: Floats) -> float:
+    """Fill pieces of lines through a low shaft, slab by slab; the longest way on of 1.6 m, 0 to 1.
+
+    Parameters
+    ----------
+    axis : (6,) float64
+        As of `surroundings_kernel`.
+    """
+    last = min(int(axis[5] / _SLAB_M) + _BEAM_ABOVE_SLABS, _SLABS - 1)
+    turns = np.arange(_BEAM_LINES) * (math.pi / _BEAM_LINES)
+    east_way, north_way = np.cos(turns), np.sin(turns)
+    filled = np.zeros((_BEAM_LINES, last + 2, 2, _BEAM_PIECES), np.bool_)
+    for point in range(len(points)):
+        up = points[point, 2]
+        slab = math.floor(up / _SLAB_M)
+        east, north = points[point, 0] - axis[0] * up, points[point, 1] - axis[1] * up
+        away = east * east + north * north
+        if not _ABOVE_GROUND_SLABS <= slab <= last or away > _BEAM_TO_M**2 + _BEAM_WIDE_M**2:
+            continue
+        for line in range(_BEAM_LINES):
+            across = north * east_way[line] - east * north_way[line]
+            along = east * east_way[line] + north * north_way[line]
+            piece = math.floor((abs(along) - _BEAM_FROM_M) / _BEAM_PIECE_M)
+            if abs(across) < _BEAM_WIDE_M and 0 <= piece < _BEAM_PIECES:
+                filled[line, slab, int(along > 0), piece] = True
+    best = 0
+    for line in range(_BEAM_LINES):
+        for slab in range(_ABOVE_GROUND_SLABS, last + 1):
+            # A pipe may lie in two slabs, and slope as the street does.
+            both = filled[line, slab] | filled[line, slab + 1]
+            best = max(best, min(_run(both[0]), _run(both[1])))
+    return best / _BEAM_PIECES
+
+
+@kernel
+def _run(filled: Flags) -> int:
+    """How many are filled before the first that isn't, but for one hidden by the post itself."""
+    count = 0
+    for piece in range(filled.size):
+        if not filled[piece] and piece > 0:
+            break
+        count += filled[piece]
+    return count
