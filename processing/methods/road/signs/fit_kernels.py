@@ -15,13 +15,11 @@ import numpy as np
 from processing.core.arrays import Floats, Integers
 from processing.core.kernels import kernel
 
-LINE = 10
-U, V, ALONG_U, ALONG_V, LONG, SPACING, OPEN_START, OPEN_END, CLEAR_START, CLEAR_END = range(LINE)
+LINE = 8
+U, V, ALONG_U, ALONG_V, LONG, SPACING, OPEN_START, OPEN_END = range(LINE)
 """Values of a line: its start (m), direction, length, spacing of its pulses; 1 where the rim lies
 within a spacing of an end, 0 where the plate may go on behind something, 2 where the line was cut
-at the rim of another plate, −1 of a line that met nothing from its start on, over its length (0:
-wherever it goes). Last how far beyond its start and its end the same turn met the plane again, m;
-0: it didn't."""
+at the rim of another plate, −1 of a line that met nothing from its start on."""
 
 _CUT = 2.0
 
@@ -29,24 +27,20 @@ _GAP_M = 0.12
 """Between plates on one post, at most: a pulse or two pass between them, so that scan lines go on
 from one to the other."""
 
-SIGMA_M = 0.008
-"""How far ends lie off, across the rim: noise, the width of the beam, an outline that was bent. A
-line that meets the rim askew may end farther off, by the sine of the angle between them."""
+SIGMA_M = 0.012
+"""How far ends lie off: noise, the width of the beam, an outline that was bent."""
 
 CAP = 9.0
 """Most that an end counts: what is farther off than three times that is another thing."""
 
 SPLIT_M = 3 * SIGMA_M
-"""What goes on so far beyond an outline belongs to another plate; across its rim."""
-
-_LEAST_SINE = 0.02
-"""Of the angle between a line and a rim: lines along a rim end anywhere."""
+"""What goes on so far beyond an outline belongs to another plate."""
 
 ROLL_RAD = math.radians(3.0)
 """How far plates hang askew: posts lean and clamps turn by some degrees."""
 
 _MISSED_M = 0.05
-"""How far turns that met nothing lie off where they are expected, across them."""
+"""How far turns that met nothing lie off where they are expected."""
 
 _MISSED_CAP = 5.0
 """Most that such a turn counts: something may have hidden the plate from it."""
@@ -55,16 +49,22 @@ _PULL = 0.25
 """Of the middle of the interval that an end leaves: where nothing else tells, the likeliest place
 is the middle; small against what lies outside of it."""
 
-MOST_ROLL_RAD = math.radians(12.0)
-ROLL_PER_M = 2.0
+_MOST_ROLL_RAD = math.radians(12.0)
+_ROLL_PER_M = 2.0
 """rad/m; so much a plate is turned where it is moved by a metre: the same at half a metre from its
 middle."""
 
-FINE_STEP_M = 0.05
+_FINE_STEP_M = 0.05
 """Plates are turned in steps finer than this."""
 
-ROUNDS = 16
+_LEAST_SIDE_M = 0.05
+"""Of a rectangle: half of the smallest there is."""
+
+_ROUNDS = 16
 """Steps of one length at most."""
+
+_BACK = (3, 2, 1, 0, 7, 6, 5, 4, 9, 8, 11, 10, 13, 12)
+"""Of each way in which a rectangle is changed, the one that undoes it."""
 
 STARTS = 9
 """Places from which an outline is moved, at most."""
@@ -74,79 +74,57 @@ _MOVED = 40
 
 
 @kernel
-def chord_of(corners: Floats, line: Floats, pose: Floats) -> tuple[float, float, float, float]:
-    """Where a line enters and leaves an outline, m from the line's start, and how steeply.
+def chord_of(corners: Floats, line: Floats, pose: Floats) -> tuple[float, float]:
+    """Where a line enters and leaves an outline, m from the line's start.
 
-    The second is less than the first where it passes beside it; the others are the sines of the
-    angles between the line and the rim.
+    The second is less than the first where it passes beside it.
 
     Parameters
     ----------
     corners : (n, 2)
         Of a convex outline, anticlockwise; of a circle one: its radius.
     """
-    return _chord(_laid(corners, pose), line.reshape(1, LINE), 0)
-
-
-@kernel
-def _laid(corners: Floats, pose: Floats) -> Floats:
-    """An outline in its place: (n, 3) of each side the normal inwards and the origin's distance.
-
-    Of a circle its middle and its radius.
-    """
-    count = corners.shape[0]
-    laid = np.empty((count, 3))
-    if count == 1:
-        laid[0, 0], laid[0, 1], laid[0, 2] = pose[0], pose[1], corners[0, 0]
-        return laid
     c, s = math.cos(pose[2]), math.sin(pose[2])
-    for k in range(count):
-        from_u, from_v = corners[k - 1, 0], corners[k - 1, 1]
-        u, v = corners[k, 0] - from_u, corners[k, 1] - from_v
-        size = math.sqrt(u * u + v * v)
-        # Left of each side is inside.
-        right, up = -(s * u + c * v) / size, (c * u - s * v) / size
-        laid[k, 0], laid[k, 1] = right, up
-        laid[k, 2] = (u * from_v - v * from_u) / -size - right * pose[0] - up * pose[1]
-    return laid
+    du, dv = line[U] - pose[0], line[V] - pose[1]
+    a, b = c * line[ALONG_U] + s * line[ALONG_V], c * line[ALONG_V] - s * line[ALONG_U]
+    return _chord(corners, c * du + s * dv, c * dv - s * du, a, b)
 
 
 @kernel
-def _chord(laid: Floats, lines: Floats, k: int) -> tuple[float, float, float, float]:
-    """As of `chord_of`, of an outline in its place."""
-    u, v, a, b = lines[k, U], lines[k, V], lines[k, ALONG_U], lines[k, ALONG_V]
-    if laid.shape[0] == 1:
-        u, v, radius = u - laid[0, 0], v - laid[0, 1], laid[0, 2]
+def _chord(corners: Floats, u: float, v: float, a: float, b: float) -> tuple[float, float]:
+    """The same for a line from (u, v) on along (a, b), as the outline has right and up."""
+    if corners.shape[0] == 1:
         along = -(u * a + v * b)
-        inside = radius * radius - (u * u + v * v - along * along)
+        inside = corners[0, 0] ** 2 - (u * u + v * v - along * along)
         if inside < 0.0:
-            return 1.0, 0.0, 1.0, 1.0
+            return 1.0, 0.0
         half = math.sqrt(inside)
-        return along - half, along + half, half / radius, half / radius
-    enters, leaves, sine_in, sine_out = -1e9, 1e9, 1.0, 1.0
-    for side in range(laid.shape[0]):
-        inside = laid[side, 0] * u + laid[side, 1] * v + laid[side, 2]
-        slope = laid[side, 0] * a + laid[side, 1] * b
-        if slope > 1e-12:
-            if -inside > enters * slope:
-                enters, sine_in = -inside / slope, slope
-        elif slope < -1e-12:
-            if inside < leaves * -slope:
-                leaves, sine_out = inside / -slope, -slope
-        elif inside < 0.0:
-            return 1.0, 0.0, 1.0, 1.0
-    return enters, leaves, sine_in, sine_out
+        return along - half, along + half
+    enters, leaves = -1e9, 1e9
+    last = corners.shape[0] - 1
+    from_u, from_v = corners[last, 0], corners[last, 1]
+    for k in range(corners.shape[0]):
+        to_u, to_v = corners[k, 0], corners[k, 1]
+        eu, ev = to_u - from_u, to_v - from_v
+        # Left of each side is inside: side × (place − corner) ≥ 0.
+        height = eu * (v - from_v) - ev * (u - from_u)
+        slope = eu * b - ev * a
+        from_u, from_v = to_u, to_v
+        if abs(slope) < 1e-12:
+            if height < 0.0:
+                return 1.0, 0.0
+            continue
+        at = -height / slope
+        if slope > 0.0:
+            enters = max(enters, at)
+        else:
+            leaves = min(leaves, at)
+    return enters, leaves
 
 
 @kernel
 def _end_cost(beyond: float, spacing: float, is_open: float, sigma_m: float) -> float:
-    """What an end says against a rim so far beyond it.
-
-    Parameters
-    ----------
-    sigma_m : float
-        Along the line.
-    """
+    """What an end says against a rim so far beyond it."""
     off = 0.0
     if is_open == _CUT and beyond < 0.0:
         off = max(0.0, -beyond - _GAP_M) / sigma_m
@@ -162,38 +140,27 @@ def _end_cost(beyond: float, spacing: float, is_open: float, sigma_m: float) -> 
 
 
 @kernel
-def line_cost(
-    lines: Floats, k: int, chord: tuple[float, float, float, float], sigma_m: float
-) -> float:
-    """What a line says against an outline that it enters and leaves there."""
-    enters, leaves, sine_in, sine_out = chord
-    if lines[k, OPEN_START] < 0.0:
-        if lines[k, LONG] > 0.0:
-            leaves = min(leaves, lines[k, LONG])
-        missed = leaves - max(enters, 0.0) - lines[k, SPACING]
-        if missed <= 0.0:
-            return 0.0
-        # Across the line: by so much it would have to lie farther off a corner.
-        missed *= sine_out * (sine_in if enters > 0.0 else 1.0)
-        return float(min((missed / max(_MISSED_M, sigma_m)) ** 2, _MISSED_CAP))
-    if leaves <= enters:
-        return 2 * CAP
-    spacing = lines[k, SPACING]
-    cost = _end_cost(-enters, spacing, lines[k, OPEN_START], sigma_m / max(sine_in, _LEAST_SINE))
-    beyond = leaves - lines[k, LONG]
-    cost += _end_cost(beyond, spacing, lines[k, OPEN_END], sigma_m / max(sine_out, _LEAST_SINE))
-    return float(cost)
-
-
-@kernel
 def cost_of(corners: Floats, lines: Floats, pose: Floats, sigma_m: float, enough: float) -> float:
     """What all lines say against an outline; no more than `enough` is added up."""
     total = float((pose[2] / ROLL_RAD) ** 2)
-    laid = _laid(corners, pose)
+    c, s = math.cos(pose[2]), math.sin(pose[2])
     for k in range(lines.shape[0]):
         if total > enough:
             break
-        total += line_cost(lines, k, _chord(laid, lines, k), sigma_m)
+        du, dv = lines[k, U] - pose[0], lines[k, V] - pose[1]
+        a = c * lines[k, ALONG_U] + s * lines[k, ALONG_V]
+        b = c * lines[k, ALONG_V] - s * lines[k, ALONG_U]
+        enters, leaves = _chord(corners, c * du + s * dv, c * dv - s * du, a, b)
+        spacing, start, end = lines[k, SPACING], lines[k, OPEN_START], lines[k, OPEN_END]
+        if start < 0.0:
+            missed = leaves - max(enters, 0.0) - spacing
+            if missed > 0.0:
+                total += min((missed / max(_MISSED_M, sigma_m)) ** 2, _MISSED_CAP)
+        elif leaves <= enters:
+            total += 2 * CAP
+        else:
+            total += _end_cost(-enters, spacing, start, sigma_m)
+            total += _end_cost(leaves - lines[k, LONG], spacing, end, sigma_m)
     return total
 
 
@@ -216,8 +183,8 @@ def fit_kernel(
     tested = np.empty(3)
     for number in range(steps.shape[0]):
         step = steps[number]
-        ways, failed, back = 10 if step <= FINE_STEP_M else 8, 0, -1
-        for count in range(ROUNDS * ways):
+        ways, failed, back = 10 if step <= _FINE_STEP_M else 8, 0, -1
+        for count in range(_ROUNDS * ways):
             # All ways fail from here, or lead back to where it cost more.
             if failed == ways:
                 break
@@ -231,8 +198,8 @@ def fit_kernel(
                 tested[0] += step * math.cos(turn)
                 tested[1] += step * math.sin(turn)
             else:
-                tested[2] += ROLL_PER_M * step * (1.0 if way == 8 else -1.0)
-                if abs(tested[2]) > MOST_ROLL_RAD:
+                tested[2] += _ROLL_PER_M * step * (1.0 if way == 8 else -1.0)
+                if abs(tested[2]) > _MOST_ROLL_RAD:
                     continue
             cost = cost_of(corners, lines, tested, sigma_m, best)
             if cost < best - 1e-9:
@@ -322,6 +289,76 @@ def _size_of(corners: Floats) -> tuple[float, float]:
 
 
 @kernel
+def stretch_kernel(
+    lines: Floats, steps: Floats, pose: Floats, sides: Floats, fixed: Floats
+) -> float:
+    """Move and stretch a rectangle to where it fits best; gives the cost there.
+
+    Parameters
+    ----------
+    sides : (2,)
+        Width and height, m; made better.
+    fixed : (2,)
+        1 for a side that is kept.
+    """
+    corners = np.empty((4, 2))
+    _set_corners(corners, sides[0], sides[1])
+    best, sigma_m = math.inf, 0.0
+    tested, other = np.empty(3), np.empty(2)
+    for number in range(steps.shape[0]):
+        step = steps[number]
+        if number == 0 or max(SIGMA_M, step / 2) != sigma_m:
+            sigma_m = max(SIGMA_M, step / 2)
+            _set_corners(corners, sides[0], sides[1])
+            best = cost_of(corners, lines, pose, sigma_m, math.inf)
+        ways, failed, back = 14 if step <= _FINE_STEP_M else 12, 0, -1
+        for count in range(_ROUNDS * ways):
+            if failed == ways:
+                break
+            way = count % ways
+            failed += 1
+            tested[:] = pose
+            other[:] = sides
+            if way == back or not _changed(way, step, fixed, tested, other):
+                continue
+            _set_corners(corners, other[0], other[1])
+            cost = cost_of(corners, lines, tested, sigma_m, best)
+            if cost < best - 1e-9:
+                best = cost
+                pose[:] = tested
+                sides[:] = other
+                failed, back = 0, _BACK[way]
+    return best
+
+
+@kernel
+def _changed(way: int, step: float, fixed: Floats, pose: Floats, sides: Floats) -> bool:
+    """Move or stretch a rectangle in one of 14 ways; False where that may not be.
+
+    Of the first eight one side moves and the opposite one stays.
+    """
+    sign = 1.0 if way % 2 == 0 else -1.0
+    if way < 8:
+        axis = way // 4
+        sides[axis] += sign * step
+        pose[axis] += (0.5 if way % 4 < 2 else -0.5) * step
+        return bool(fixed[axis] == 0.0 and sides[axis] >= _LEAST_SIDE_M)
+    if way < 12:
+        pose[(way - 8) // 2] += sign * step
+        return True
+    pose[2] += _ROLL_PER_M * step * sign
+    return bool(abs(pose[2]) <= _MOST_ROLL_RAD)
+
+
+@kernel
+def _set_corners(corners: Floats, wide: float, high: float) -> None:
+    corners[0, 0], corners[0, 1] = -wide / 2, -high / 2
+    corners[1, 0], corners[1, 1] = wide / 2, -high / 2
+    corners[2, 0], corners[2, 1] = wide / 2, high / 2
+    corners[3, 0], corners[3, 1] = -wide / 2, high / 2
+
+
+@kernel
 def explain_kernel(
     corners: Floats, lines: Floats, pose: Floats, rest: Floats, blocked: Floats
 ) -> tuple[float, int, float, int, int]:
@@ -340,43 +377,34 @@ def explain_kernel(
         Cost and number of the ends on it, and how many pulses met it.
     """
     cost, ends, pulses, left, free = 0.0, 0, 0.0, 0, 0
-    laid = _laid(corners, pose)
     for k in range(lines.shape[0]):
         line = lines[k]
-        enters, leaves, sine_in, sine_out = _chord(laid, lines, k)
+        enters, leaves = chord_of(corners, line, pose)
         low, high = max(enters, 0.0), min(leaves, line[LONG])
         if leaves <= enters or high - low < 0.25 * min(line[LONG], 0.1):
             rest[left] = line
             left += 1
             continue
         pulses += (high - low) / line[SPACING] + 1.0
-        if enters > _split_at(line[OPEN_START], sine_in):
+        if enters > (_GAP_M if line[OPEN_START] == _CUT else SPLIT_M):
             _cut(line, 0.0, enters, rest[left])
             left += 1
         else:
-            sigma_m = SIGMA_M / max(sine_in, _LEAST_SINE)
-            cost += _end_cost(-enters, line[SPACING], line[OPEN_START], sigma_m)
+            cost += _end_cost(-enters, line[SPACING], line[OPEN_START], SIGMA_M)
             ends += 1
             if line[OPEN_START] == 1.0:
                 _block(line, -line[SPACING], -1.0, blocked[free])
                 free += 1
-        if line[LONG] - leaves > _split_at(line[OPEN_END], sine_out):
+        if line[LONG] - leaves > (_GAP_M if line[OPEN_END] == _CUT else SPLIT_M):
             _cut(line, leaves, line[LONG], rest[left])
             left += 1
         else:
-            sigma_m = SIGMA_M / max(sine_out, _LEAST_SINE)
-            cost += _end_cost(leaves - line[LONG], line[SPACING], line[OPEN_END], sigma_m)
+            cost += _end_cost(leaves - line[LONG], line[SPACING], line[OPEN_END], SIGMA_M)
             ends += 1
             if line[OPEN_END] == 1.0:
                 _block(line, line[LONG] + line[SPACING], 1.0, blocked[free])
                 free += 1
     return cost, ends, pulses, left, free
-
-
-@kernel
-def _split_at(is_open: float, sine: float) -> float:
-    """From how far beyond an outline on what a line goes on over belongs to another plate, m."""
-    return _GAP_M if is_open == _CUT else SPLIT_M / max(sine, _LEAST_SINE)
 
 
 @kernel
@@ -418,13 +446,12 @@ def _cut(line: Floats, start: float, end: float, part: Floats) -> None:
 
 @kernel
 def _block(line: Floats, start: float, sign: float, beyond: Floats) -> None:
-    """Where a line goes on in the free: up to where the same turn met the plane again."""
+    """Where a line goes on in the free."""
     beyond[:] = line
     beyond[U] = line[U] + start * line[ALONG_U]
     beyond[V] = line[V] + start * line[ALONG_V]
     beyond[ALONG_U], beyond[ALONG_V] = sign * line[ALONG_U], sign * line[ALONG_V]
-    clear = line[CLEAR_END] if sign > 0.0 else line[CLEAR_START]
-    beyond[LONG] = max(clear - line[SPACING], 1e-9) if clear > 0.0 else 0.0
+    beyond[LONG] = 0.0
     beyond[OPEN_START] = -1.0
 
 
@@ -474,10 +501,11 @@ def _shadow(corners: Floats, pose: Floats, way: Floats) -> tuple[float, float]:
 
 def warm_up() -> None:
     """Compile the kernels."""
-    lines = np.array([[-0.1, 0.0, 1.0, 0.0, 0.2, 0.02, 1.0, 1.0, 0.0, 0.0]])
+    lines = np.array([[-0.1, 0.0, 1.0, 0.0, 0.2, 0.02, 1.0, 1.0]])
     corners = np.array([[-0.1, -0.1], [0.1, -0.1], [0.1, 0.1], [-0.1, 0.1]])
     steps, pose = np.array([0.01]), np.zeros(3)
     fit_kernel(corners, lines, steps, SIGMA_M, pose)
+    stretch_kernel(lines, steps, pose, np.full(2, 0.2), np.zeros(2))
     costs, poses = np.zeros((1, STARTS)), np.zeros((1, STARTS, 3))
     box = np.array([[-0.1, -0.1], [0.1, 0.1]])
     search_kernel(corners[None], np.array([4]), lines, box, steps, costs, poses)

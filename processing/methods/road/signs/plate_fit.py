@@ -19,7 +19,6 @@ from processing.methods.road.signs.fit_kernels import (
     LONG,
     SIGMA_M,
     SPACING,
-    SPLIT_M,
     STARTS,
     U,
     V,
@@ -29,26 +28,21 @@ from processing.methods.road.signs.fit_kernels import (
     fit_kernel,
     overlap_kernel,
     search_kernel,
+    stretch_kernel,
 )
 from processing.methods.road.signs.sign_shapes import (
     RECTANGLE,
-    SQUARE,
     SignShape,
     outline_of,
     sharp_outline_of,
 )
-from processing.methods.road.signs.stretch_kernels import (
-    parts_kernel,
-    snap_kernel,
-    stretch_kernel,
-)
 
 _COARSE = np.array([0.06, 0.03])
-_SHARP, _FINE = np.array([0.02, 0.01]), np.array([0.005, 0.002, 0.001])
+_FINE = np.array([0.02, 0.01, 0.005, 0.002, 0.001])
 _STRETCH_COARSE = np.array([0.1, 0.04])
 _STRETCH = np.array([0.02, 0.008, 0.003])
-"""Steps of the search, m, of sharp outlines before those with round corners: a plate's rim lies
-between pulses centimetres apart, and its place follows from all of them to millimetres."""
+"""Steps of the search, m: a plate's rim lies between pulses centimetres apart, and its place
+follows from all of them to millimetres."""
 
 _OUTLYING, _OUTLYING_M = 0.05, 0.2
 """Share of what is drawn on a plane that may lie far out on either side, and how far: outlines are
@@ -106,13 +100,7 @@ below signs are lower than the sign."""
 _BELOW_WIDE_M, _BELOW_HIGH_M = (0.4, 0.6), 0.2
 """Usual widths and a height to begin with of what hangs below (標識令, 補助標識)."""
 
-_BELOW_WIDEST_M = 1.2
-"""What hangs below plates of twice the usual size; wider boards are as free as others."""
-
 _BELOW_STEPS = np.array([0.04, 0.015, 0.005])
-
-_SAME_M = 0.012
-"""Coarse rectangles that are as near to each other are one."""
 
 _SNAP_COST = 3.0
 """What a side may cost to be a usual one: a deviation of √3 standard deviations."""
@@ -121,10 +109,9 @@ _USUAL_M = 0.1
 """Sides of rectangles are whole decimetres (標識令: 40 and 60 cm below signs, guide signs by
 letters of 10 cm)."""
 
-_LEAST_PART_M, _LEVEL_M, _FEW_CROSS, _MOST_PARTS = 0.1, 0.01, 0.1, 3
-"""Of a stack of plates: the smallest part, the levels that are looked at, how few lines cross those
-between parts, of those that cross the fullest one, and how many parts are looked at: four plates
-hang on a post at most, and the others are laid beside the first."""
+_LEAST_PART_M, _LEVEL_M, _FEW_CROSS = 0.1, 0.01, 0.1
+"""Of a stack of plates: the smallest part, and where it is cut: at the level that the fewest lines
+cross, a tenth of those that cross the fullest one at most."""
 
 _MOST_EMPTY = 60
 """Places without a plate that are looked at: all lines of a large plate have two each."""
@@ -262,9 +249,7 @@ def _solve(
     monitor.check()
     unexplained = _unexplained(lines)
     best = Fit((), unexplained, unexplained)
-    # Less than this no plate can explain without more doubt than any may have.
-    is_little = unexplained * _MOST_DOUBT < _PLATE_COST
-    if len(above) == len(_BESIDE) or len(lines) < 2 or is_little:
+    if len(above) == len(_BESIDE) or len(lines) < 2 or unexplained <= _PLATE_COST:
         return best
     tried: list[_Tried] = []
     fits = _best_fits(lines, empty, outlines)
@@ -323,15 +308,8 @@ def _promising(tried: list[_Tried], unexplained: float, found: int) -> list[_Tri
 def _prior(plate: FittedPlate, above: tuple[FittedPlate, ...]) -> float:
     """What speaks against a plate before its ends are looked at."""
     if plate.shape.shape == RECTANGLE:
-        is_below = _is_supplement_sized(plate.shape)
-        is_below &= any(hangs_below(plate, one) for one in above)
-        return _BELOW_COST if is_below else _RECTANGLE_COST
+        return _BELOW_COST if any(hangs_below(plate, one) for one in above) else _RECTANGLE_COST
     return 0.0 if plate.shape.is_usual else _SMALL_COST
-
-
-def _is_supplement_sized(shape: SignShape) -> bool:
-    """Whether a rectangle is wider than high, and not wider than what hangs below signs is."""
-    return shape.high_m + SPLIT_M < shape.wide_m <= _BELOW_WIDEST_M
 
 
 def _overlap(plate: FittedPlate, other: FittedPlate) -> bool:
@@ -385,23 +363,19 @@ def _best_fits(lines: Floats, empty: Floats, outlines: _Outlines) -> list[tuple[
         if not np.isfinite(costs[which, start]):
             continue
         shape, pose = outlines.shapes[which], poses[which, start].copy()
-        fit_kernel(sharp_outline_of(shape), every, _SHARP, SIGMA_M, pose)
         cost = fit_kernel(outline_of(shape), every, _FINE, SIGMA_M, pose)
         fine.append((cost, shape, pose))
     if outlines.with_rectangles:
-        for one in _rectangles(lines, every, boxes):
-            squares = _as_squares(one, every, outlines.shapes)
-            fine += squares
-            if all(square[0] > one[0] for square in squares):
-                fine.append(one)
+        fine += _rectangles(lines, every, boxes)
     fine.sort(key=lambda one: one[0])
     found: list[tuple[SignShape, Floats]] = []
-    places: dict[SignShape, list[tuple[float, float]]] = {}
+    places: list[tuple[float, float]] = []
     for _, shape, pose in fine:
-        place, others = (float(pose[0]), float(pose[1])), places.setdefault(shape, [])
-        if all(math.dist(place, at) > SIGMA_M for at in others):
+        place = float(pose[0]), float(pose[1])
+        near = [n for n, at in enumerate(places) if math.dist(place, at) <= SIGMA_M]
+        if all(shape != found[n][0] for n in near):
             found.append((shape, pose))
-            others.append(place)
+            places.append(place)
     return found
 
 
@@ -455,11 +429,9 @@ def _rectangles(
         coarse.append((cost, pose, sides, _own_cost(lines, pose, sides)))
     coarse.sort(key=lambda one: one[0])
     clean = sorted(coarse, key=lambda one: one[3])[:_RECTANGLES]
-    chosen: list[tuple[Floats, Floats]] = []
-    for _, pose, sides, _ in coarse[:_RECTANGLES] + clean:
-        if all(_differ(pose, sides, *other) for other in chosen):
-            chosen.append((pose, sides))
-    found = [_finely(every, *one) for one in chosen]
+    chosen = coarse[:_RECTANGLES]
+    chosen += [one for one in clean if all(one is not other for other in chosen)]
+    found = [_finely(every, pose, sides) for _, pose, sides, _ in chosen]
     empty = every[len(lines) :]
     for part in _parts_beside_gaps(lines):
         low, high = _box_of(part)
@@ -470,51 +442,34 @@ def _rectangles(
     return found
 
 
-def _differ(pose: Floats, sides: Floats, place: Floats, other: Floats) -> bool:
-    """Whether two rectangles are farther apart than moving them finely takes them."""
-    return bool(max(np.abs(pose - place).max(), np.abs(sides - other).max()) > _SAME_M)
-
-
-def _as_squares(
-    rectangle: tuple[float, SignShape, Floats], every: Floats, shapes: tuple[SignShape, ...]
-) -> list[tuple[float, SignShape, Floats]]:
-    """The standard squares that a rectangle may be as well, where it lies."""
-    _, shape, pose = rectangle
-    if abs(shape.size_m - shape.high_m) > 2 * SPLIT_M:
-        return []
-    found = []
-    for one in shapes:
-        off = max(abs(shape.size_m - one.size_m), abs(shape.high_m - one.size_m))
-        if one.shape == SQUARE and off <= SPLIT_M:
-            place = pose.copy()
-            cost = fit_kernel(outline_of(one), every, _FINE, SIGMA_M, place)
-            found.append((cost, one, place))
-    return found
-
-
 def _finely(every: Floats, pose: Floats, sides: Floats) -> tuple[float, SignShape, Floats]:
     """A rectangle where it fits to the millimetre, with what it costs."""
     cost = stretch_kernel(every, _STRETCH, pose, sides, np.zeros(2))
-    cost = snap_kernel(every, _STRETCH[1:], (cost, _SNAP_COST, _USUAL_M), pose, sides)
+    cost, pose, sides = _snapped(every, cost, pose, sides)
     return cost + _RECTANGLE_COST, SignShape(RECTANGLE, float(sides[0]), float(sides[1])), pose
 
 
 def _parts_beside_gaps(lines: Floats) -> list[Floats]:
-    """The lines between strips that hardly any line crosses, level or upright.
+    """The lines on either side of strips that hardly any line crosses, level or upright.
 
     Plates of a stack are each laid on their own lines: beside those of the others a rectangle that
-    holds the whole stack explains more. Of many parts, those with the longest lines.
+    holds the whole stack explains more.
     """
     starts = lines[:, [U, V]]
     ends = starts + lines[:, [LONG]] * lines[:, [ALONG_U, ALONG_V]]
     low, high = np.minimum(starts, ends), np.maximum(starts, ends)
     found: list[Floats] = []
     for axis in range(2):
-        within = parts_kernel(low[:, axis], high[:, axis], _LEAST_PART_M, _LEVEL_M, _FEW_CROSS)
-        middles = (low + high)[:, axis] / 2
-        parts = [lines[(middles >= least) & (middles <= most)] for least, most in within]
-        parts = [one for one in parts if 2 <= len(one) < len(lines)]
-        found += sorted(parts, key=lambda one: -float(one[:, LONG].sum()))[:_MOST_PARTS]
+        first, last = float(low[:, axis].min()), float(high[:, axis].max())
+        levels = np.arange(first + _LEAST_PART_M, last - _LEAST_PART_M, _LEVEL_M)
+        crossed = np.searchsorted(np.sort(low[:, axis]), levels, "right")
+        crossed -= np.searchsorted(np.sort(high[:, axis]), levels, "left")
+        if not levels.size or crossed.min() > _FEW_CROSS * crossed.max():
+            continue
+        gap = np.flatnonzero(crossed == crossed.min())
+        is_below = (low + high)[:, axis] / 2 < levels[gap[gap.size // 2]]
+        if 2 <= is_below.sum() <= len(lines) - 2:
+            found += [lines[is_below], lines[~is_below]]
     return found
 
 
@@ -560,3 +515,26 @@ def _below(lines: Floats, empty: Floats, upper: FittedPlate) -> list[tuple[SignS
         stretch_kernel(every, _BELOW_STEPS, pose, sides, np.array([1.0, 0.0]))
         found.append((SignShape(RECTANGLE, float(sides[0]), float(sides[1])), pose))
     return found
+
+
+def _snapped(
+    every: Floats, cost: float, pose: Floats, sides: Floats
+) -> tuple[float, Floats, Floats]:
+    """The same with usual sides, where that costs little."""
+    fixed = np.zeros(2)
+    for axis in range(2):
+        keep = fixed.copy()
+        keep[axis] = 1.0
+        best = cost + _SNAP_COST
+        usual = round(float(sides[axis]) / _USUAL_M) * _USUAL_M
+        start_pose, start_sides = pose, sides
+        for side in (usual, usual - _USUAL_M, usual + _USUAL_M):
+            if side < _USUAL_M / 2:
+                continue
+            place, other = start_pose.copy(), start_sides.copy()
+            other[axis] = side
+            changed = stretch_kernel(every, _STRETCH[1:], place, other, keep)
+            if changed < best:
+                best, pose, sides, fixed = changed, place, other, keep
+        cost = best if fixed[axis] else cost
+    return cost, pose, sides

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from processing.core.arrays import Floats, Integers
 from processing.methods.road.signs.fit_kernels import (
     ALONG_U,
     ALONG_V,
-    CLEAR_END,
-    CLEAR_START,
     LINE,
     LONG,
     OPEN_END,
@@ -19,16 +16,7 @@ from processing.methods.road.signs.fit_kernels import (
     U,
     V,
 )
-from processing.methods.road.signs.piece_kernels import (
-    BEFORE,
-    BEHIND,
-    FIRST,
-    FREE,
-    FROM,
-    HIDDEN,
-    STEP,
-    TO,
-)
+from processing.methods.road.signs.piece_kernels import BEFORE, BEHIND, FREE, FROM, STEP, TO
 from processing.methods.road.signs.piece_kernels import SPACING as PIECE_SPACING
 from processing.methods.road.signs.plate_groups import PlateGroup
 from processing.methods.road.signs.scan_pieces import ScanPieces
@@ -55,21 +43,11 @@ def lines_of(pieces: ScanPieces, group: PlateGroup) -> Floats:
     lines[:, SPACING] = np.maximum(values[:, PIECE_SPACING], _LEAST_SPACING_M)
     for column, code in ((OPEN_START, BEFORE), (OPEN_END, BEHIND)):
         lines[:, column] = np.isin(values[:, code], (FREE, STEP))
-    order = np.lexsort([values[:, FIRST], pieces.row[group.pieces], pieces.drive[group.pieces]])
-    before, behind = order[:-1], order[1:]
-    is_same = pieces.row[group.pieces[before]] == pieces.row[group.pieces[behind]]
-    is_same &= pieces.drive[group.pieces[before]] == pieces.drive[group.pieces[behind]]
-    before, behind = before[is_same], behind[is_same]
-    clear = np.linalg.norm(start[behind] - end[before], axis=1)
-    lines[before, CLEAR_END] = lines[behind, CLEAR_START] = clear
     return lines
 
 
 def empty_lines(pieces: ScanPieces, group: PlateGroup, lines: Floats) -> Floats:
     """(m, LINE) float64: the turns next to the first and the last that met the plate.
-
-    None beside a turn that met the plate only between things before it: they may have hidden the
-    next turn.
 
     Parameters
     ----------
@@ -78,14 +56,13 @@ def empty_lines(pieces: ScanPieces, group: PlateGroup, lines: Floats) -> Floats:
     """
     found = []
     drive, row = pieces.drive[group.pieces], pieces.row[group.pieces]
-    is_hidden = (pieces.values[group.pieces][:, [BEFORE, BEHIND]] == HIDDEN).any(axis=1)
     for number in np.unique(drive).tolist():
         chosen = np.flatnonzero(drive == number)
-        found += _next_turns(lines[chosen], row[chosen], is_hidden[chosen])
+        found += _next_turns(lines[chosen], row[chosen])
     return np.array(found, np.float64).reshape(-1, LINE)
 
 
-def _next_turns(lines: Floats, rows: Integers, is_hidden: NDArray[np.bool_]) -> list[Floats]:
+def _next_turns(lines: Floats, rows: Integers) -> list[Floats]:
     """The turns before and behind those of one scanner."""
     weights = lines[:, LONG]
     along = _mean_direction(lines)
@@ -102,11 +79,7 @@ def _next_turns(lines: Floats, rows: Integers, is_hidden: NDArray[np.bool_]) -> 
         return []
     middle = np.average(lines[best][:, [U, V]], axis=0) @ along
     found = []
-    for outer, way in ((rows[best].min(), -1), (rows[best].max(), 1)):
-        mine = best[rows[best] == outer]
-        if is_hidden[mine].any() and not lines[mine][:, [OPEN_START, OPEN_END]].any():
-            continue
-        turn = outer + way
+    for turn in (rows[best].min() - 1, rows[best].max() + 1):
         line = np.zeros(LINE)
         line[[U, V]] = (start + slope * turn) * across + (middle - _FAR_M) * along
         line[[ALONG_U, ALONG_V]] = along

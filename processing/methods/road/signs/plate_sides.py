@@ -25,10 +25,6 @@ brighter than that is a face, and between them either may be."""
 _LEAST_SIDE = 0.05
 """Share of a plate's points from which a side counts: fewer may be of its rim or its post."""
 
-_LEAST_SPAN = 1.0
-"""Standard deviations of diffuse things: on a scale on which the brightest face hardly exceeds what
-shines at least, smaller differences are of the scale and not of the faces."""
-
 
 class PlateSides(NamedTuple):
     """What the two sides of a plate tell.
@@ -109,9 +105,9 @@ def sides_of(pieces: ScanPieces, members: Integers, normal: Floats) -> PlateSide
 
 def _faint(shine: float, face_shine: float) -> float:
     """How far what shines stays below what faces reach, 0 to 1."""
-    if math.isnan(face_shine):
+    span = face_shine - SHINING
+    if not span > 0.0:
         return 0.0
-    span = max(face_shine - SHINING, _LEAST_SPAN)
     return min(max((face_shine - shine) / span, 0.0), 1.0)
 
 

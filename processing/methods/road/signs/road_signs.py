@@ -13,12 +13,12 @@ from scipy.spatial import cKDTree
 from processing.core.arrays import Floats, Integers
 from processing.core.monitor import Monitor, PartMonitor
 from processing.core.worked_ahead import in_order
+from processing.methods.road.objects.ground_heights import height_of
 from processing.methods.road.objects.sparse_plan import SparsePlan
 from processing.methods.road.objects.survey import survey_ground
 from processing.methods.road.signs.distinct_plates import distinct_plates
 from processing.methods.road.signs.piece_kernels import COUNT, FIRST, FROM, LAST, TO
 from processing.methods.road.signs.plate_fit import FittedPlate, fit_plates
-from processing.methods.road.signs.plate_ground import ground_below
 from processing.methods.road.signs.plate_groups import PlateGroup, plate_groups
 from processing.methods.road.signs.plate_lines import empty_lines, lines_of
 from processing.methods.road.signs.plates import Plate, plate_alone, plates_of
@@ -222,8 +222,7 @@ class DriveWays:
                 places.append(drive.trajectory.xyz[::_EVERY, :2])
                 heading = np.radians(drive.trajectory.roll_pitch_heading_deg[::_EVERY, 2])
                 steps.append(np.column_stack([np.sin(heading), np.cos(heading)]))
-        self._places = np.concatenate(places) if places else np.empty((0, 2))
-        self._tree = cKDTree(self._places) if places else None
+        self._tree = cKDTree(np.concatenate(places)) if places else None
         self._steps = np.concatenate(steps) if steps else np.empty((0, 2))
 
     def at(self, place: Floats) -> Floats:
@@ -231,13 +230,6 @@ class DriveWays:
         if self._tree is None:
             return np.full(2, np.nan)
         return np.asarray(self._steps[int(self._tree.query(place[:2])[1])])
-
-    def place_at(self, place: Floats, origin: Floats) -> tuple[float, float]:
-        """Where the vehicle was beside a place, m about an origin; NaN without a way."""
-        if self._tree is None:
-            return np.nan, np.nan
-        x, y = (self._places[int(self._tree.query(place[:2])[1])] - origin[:2]).tolist()
-        return x, y
 
 
 def turn_ways(drives: Sequence[Drive], pieces: ScanPieces) -> Floats:
@@ -274,7 +266,7 @@ def _signs(
     plan = below[0]
     found: list[RoadSign] = []
     for plate in plates:
-        level = _level_below(plate, pieces, below, ways)
+        level = _level_below(plate, pieces, below)
         facts = facts_of(plate, level, ways.at(plate.centre + plan.origin))
         point, drive = _point_near(plate, pieces)
         own_points, own_drives = _points_on(plate, pieces)
@@ -324,17 +316,17 @@ def _may_be_sign(
     ways: DriveWays,
 ) -> bool:
     """Whether a plate may be a sign if it is a supplement or hangs on what holds signs."""
-    level = _level_below(plate, pieces, below, ways)
+    level = _level_below(plate, pieces, below)
     facts = facts_of(plate, level, ways.at(plate.centre + below[0].origin))
     return best_chance_of(facts._replace(narrow=0.0)) > _HOPELESS
 
 
 def _level_below(
-    plate: Plate, pieces: ScanPieces, below: tuple[SparsePlan, NDArray[np.float32]], ways: DriveWays
+    plate: Plate, pieces: ScanPieces, below: tuple[SparsePlan, NDArray[np.float32]]
 ) -> float:
     """Height of the ground below a plate, m about the origin of the plan."""
-    road = ways.place_at(plate.centre + below[0].origin, below[0].origin)
-    level = ground_below(plate.centre, road, below)
+    plan, ground = below
+    level = height_of(ground, plan, float(plate.centre[0]), float(plate.centre[1]))
     return level if np.isfinite(level) else float(np.median(pieces.ground[plate.pieces]))
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cache, cached_property, lru_cache
+from functools import cache, lru_cache
 
 import numpy as np
 
@@ -80,14 +80,6 @@ class SignShape:
     size_m: float
     high_m: float
     wall_share: float = 0.0
-
-    def __hash__(self) -> int:
-        return self._hash
-
-    @cached_property
-    def _hash(self) -> int:
-        """Outlines are looked up by their shape tens of thousands of times a street."""
-        return hash((self.shape, self.size_m, self.high_m, self.wall_share))
 
     @property
     def wide_m(self) -> float:

@@ -8,7 +8,6 @@ import pytest
 from processing.core.arrays import Floats
 from processing.core.monitor import SilentMonitor
 from processing.methods.road.signs.fit_kernels import (
-    CAP,
     LINE,
     OPEN_END,
     OPEN_START,
@@ -32,11 +31,6 @@ from processing.methods.road.signs.sign_shapes import (
     shape_of,
     standard_shapes,
 )
-from processing.methods.road.signs.stretch_kernels import (
-    parts_kernel,
-    snap_kernel,
-    stretch_kernel,
-)
 
 SPACING_M = 0.02
 TURN_M = 0.09
@@ -51,7 +45,7 @@ def lines_on(shape: SignShape, middle: tuple[float, float], hidden_m: float = np
     for offset in np.arange(-1.5, 1.5, TURN_M):
         line = np.zeros(LINE)
         line[:2], line[2:4] = offset * across - 3 * ALONG, ALONG
-        enters, leaves, _, _ = chord_of(outline_of(shape), line, np.array([*middle, 0.0]))
+        enters, leaves = chord_of(outline_of(shape), line, np.array([*middle, 0.0]))
         pulses = np.arange(enters + random.uniform(0, SPACING_M), leaves, SPACING_M)
         seen = pulses[line[1] + pulses * ALONG[1] < hidden_m] if leaves > enters else pulses[:0]
         if seen.size < 2:
@@ -195,83 +189,3 @@ def test_outlines_tell_how_deep_they_lie_in_each_other() -> None:
     assert overlap_kernel(disc, origin, disc, np.array([0.5, 0.0, 0.0])) == pytest.approx(0.1)
     assert overlap_kernel(disc, origin, square, np.array([0.0, 0.7, 0.0])) == pytest.approx(-0.1)
     assert overlap_kernel(square, origin, square, np.array([0.55, 0.0, 0.0])) == pytest.approx(0.05)
-
-
-def test_what_a_line_passes_is_told_across_the_rim() -> None:
-    square = outline_of(shape_of("square", 0.6))
-    flat, steep = np.zeros(LINE), np.zeros(LINE)
-    askew = np.array([np.cos(0.1), np.sin(0.1)])
-    flat[:2], flat[2:4], flat[4:6] = (0.0, 0.3) - 0.3 * askew, askew, (0.2, 0.01)
-    steep[:2], steep[3], steep[4:6] = (0.0, 0.0), 1.0, (0.2, 0.01)
-    for line in (flat, steep):
-        line[OPEN_END] = 1.0
-        assert line[4] + 0.1 == pytest.approx(chord_of(square, line, np.zeros(3))[1], abs=0.01)
-    assert chord_of(square, flat, np.zeros(3))[3] == pytest.approx(np.sin(0.1))
-    costs = [
-        cost_of(square, one[None], np.zeros(3), SIGMA_M, np.inf) - 0.25 for one in (flat, steep)
-    ]
-    assert costs[0] == pytest.approx((0.09 * np.sin(0.1) / SIGMA_M) ** 2, rel=0.15)
-    assert costs[1] == CAP - 0.25
-
-
-@pytest.mark.parametrize(("reach", "is_said"), [(0.0, True), (0.5, True), (0.1, False)])
-def test_a_ray_says_nothing_beyond_where_its_turn_met_the_plane_again(
-    reach: float, is_said: bool
-) -> None:
-    ray = np.zeros(LINE)
-    ray[0], ray[2], ray[4:6], ray[OPEN_START] = -0.5, 1.0, (reach, 0.01), -1.0
-    cost = cost_of(outline_of(shape_of("circle", 0.6)), ray[None], np.zeros(3), SIGMA_M, np.inf)
-    assert (cost > 0) == is_said
-
-
-def test_a_wide_board_whose_lines_are_broken_by_dark_paint_is_one() -> None:
-    random = np.random.default_rng(5)
-    board, along = SignShape(RECTANGLE, 2.8, 1.8), np.array([np.cos(0.09), np.sin(0.09)])
-    found = []
-    for height in np.arange(-1.2, 1.2, 0.21):
-        line = np.zeros(LINE)
-        line[:2], line[2:4] = np.array([0.0, height]) - 3 * along, along
-        enters, leaves, _, _ = chord_of(outline_of(board), line, np.zeros(3))
-        if leaves <= enters + 0.02:
-            continue
-        cuts = np.sort(random.uniform(enters + 0.2, leaves - 0.2, 2)) if leaves > enters + 1 else []
-        starts, ends = [enters + 0.004, *cuts], [*cuts, leaves - 0.003]
-        for number, (start, end) in enumerate(zip(starts, ends, strict=True)):
-            part = line.copy()
-            part[:2] += (start + 0.03 * (number > 0)) * along
-            part[4:6] = end - start - 0.03 * (number > 0), 0.007
-            part[OPEN_START], part[OPEN_END] = number == 0, number == len(cuts)
-            found.append(part)
-    plates = fitted(np.array(found)).plates
-    assert [one.shape.shape for one in plates] == [RECTANGLE]
-    assert plates[0].shape.size_m == pytest.approx(2.8, abs=0.03)
-    assert plates[0].shape.high_m == pytest.approx(1.8, abs=0.06)
-
-
-def test_of_a_stack_with_pieces_of_its_post_each_part_is_looked_at() -> None:
-    plate = lines_on(SignShape(RECTANGLE, 0.6, 0.22), (0.0, 0.0))
-    post = [lines_on(SignShape(RECTANGLE, 0.08, 0.1), (0.0, v)) for v in (-1.4, -1.1, 0.6, 0.8)]
-    plates = fitted(np.concatenate([plate, *post])).plates
-    assert plates[0].shape.shape == RECTANGLE
-    assert plates[0].shape.size_m == pytest.approx(0.6, abs=TURN_M + 0.02)
-    assert plates[0].shape.high_m == pytest.approx(0.22, abs=0.02)
-
-
-def test_parts_lie_between_levels_that_few_lines_cross() -> None:
-    low = np.concatenate([np.full(20, 0.0), np.full(1, 0.4), np.full(20, 1.0)])
-    high = np.concatenate([np.full(20, 0.4), np.full(1, 1.0), np.full(20, 1.5)])
-    parts = parts_kernel(low, high, 0.1, 0.01, 0.1)
-    assert parts.ravel() == pytest.approx([-np.inf, 0.4, 1.0, np.inf], abs=0.02)
-    assert parts_kernel.py_func(low, high, 0.1, 0.01, 0.1) == pytest.approx(parts)  # type: ignore[attr-defined]
-    assert len(parts_kernel(low[:5], high[:5], 0.3, 0.01, 0.1)) == 0
-
-
-def test_sides_are_usual_ones_where_points_allow_it() -> None:
-    every = lines_on(SignShape(RECTANGLE, 0.6, 0.3), (0.0, 0.0))
-    for high, usual in ((0.3, 0.3), (0.345, 0.345)):
-        every = lines_on(SignShape(RECTANGLE, 0.6, high), (0.0, 0.0))
-        pose, sides = np.zeros(3), np.array([0.605, high + 0.004])
-        cost = stretch_kernel(every, np.array([0.008, 0.003]), pose, sides, np.zeros(2))
-        snapped = snap_kernel(every, np.array([0.008, 0.003]), (cost, 3.0, 0.1), pose, sides)
-        assert snapped <= cost + 6.0
-        assert sides == pytest.approx([0.6, usual], abs=0.02)

@@ -96,8 +96,3 @@ def test_a_wall_that_shines_a_little_is_faint_beside_faces_and_a_face_among_its_
 
 def test_what_is_dull_is_not_faint() -> None:
     assert sides((1.0, WHITE)).faint == 0.0
-
-
-def test_on_a_scale_that_hardly_shows_faces_none_is_faint() -> None:
-    assert sides((1.0, 4.55), elsewhere=4.6).faint < 0.1
-    assert sides((1.0, 4.6), elsewhere=FACE).faint > 0.9
