@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
@@ -61,6 +62,10 @@ _FOOT, _RAISED_SLABS = np.uint32((1 << 7) - 1), 12
 or a hedge before it hides: 2.4 m, longer than what hangs on fronts of houses."""
 
 
+_Middles: TypeAlias = list[tuple[Floats, int]]
+"""Of columns, in cells of the plan, with the slabs at which each stands free."""
+
+
 @dataclass(frozen=True)
 class FoundColumns:
     """Columns of a survey.
@@ -87,13 +92,33 @@ class FoundColumns:
         return FoundColumns(self.middles[which], self.ground[which], self.slabs[which])
 
 
+class UprightColumns(NamedTuple):
+    """Columns of each kind.
+
+    Attributes
+    ----------
+    standing : FoundColumns
+        Heights of each cell count from the ground of its own.
+    posts : FoundColumns
+        Heights count from the ground of the cell that is asked about: beside gutters and steps
+        more low posts stand free so. Middles of trunks come out otherwise, by which their search
+        measured worse on streets.
+    raised : FoundColumns
+        As posts; those of which no foot was seen.
+    """
+
+    standing: FoundColumns
+    posts: FoundColumns
+    raised: FoundColumns
+
+
 def find_columns(
     drives: Sequence[Drive],
     plan: SparsePlan,
     ground: NDArray[np.float32],
     monitor: Monitor,
-) -> tuple[FoundColumns, FoundColumns]:
-    """Columns of all drives together, and those of which no foot was seen.
+) -> UprightColumns:
+    """Columns of all drives together.
 
     Parameters
     ----------
@@ -104,25 +129,28 @@ def find_columns(
     for chunk in chunks_of(drives, plan.origin, monitor):
         filled = slabs.reshape(-1), several.reshape(-1), many.reshape(-1)
         slabs_kernel(chunk.local, chunk.is_noise, plan.table, ground.reshape(-1), filled)
-    standing: list[tuple[Floats, int]] = []
-    raised: list[tuple[Floats, int]] = []
+    found: tuple[_Middles, ...] = ([], [], [])
 
-    def of_tile(tile: int) -> tuple[list[tuple[Floats, int]], list[tuple[Floats, int]]]:
+    def of_tile(tile: int) -> tuple[_Middles, ...]:
         monitor.check()
         margin = _HALO + _APART_CELLS
         few, some, most = (plan.window(one, tile, margin, 0) for one in (slabs, several, many))
         below = _of_cells(plan.window(ground, tile, _HALO_OF_GROUND, np.nan), len(few))
         # Single points of noise don't stand beside what shows by many, as sparse walls do.
-        return _columns_of(free_slabs(few, few, below) | free_slabs(most, some, below))
+        each, one = (
+            free_slabs(few, few, told) | free_slabs(most, some, told)
+            for told in (np.zeros_like(below), below)
+        )
+        return _columns_of(each)[0], *_columns_of(one)
 
-    for tile, both in enumerate(in_order(of_tile, range(len(plan)))):
-        for found, here in zip((standing, raised), both, strict=True):
-            found += [
+    for tile, parts in enumerate(in_order(of_tile, range(len(plan)))):
+        for kind, here in zip(found, parts, strict=True):
+            kind += [
                 (plan.middles(tile, np.asarray(middle - 0.5)), bits)
                 for middle, bits in here
                 if ((middle >= 0) & (middle < TILE)).all()
             ]
-    return _on_ground(standing, plan, ground), _on_ground(raised, plan, ground)
+    return UprightColumns(*(_on_ground(kind, plan, ground) for kind in found))
 
 
 def distinct_columns(columns: FoundColumns) -> FoundColumns:
@@ -264,9 +292,7 @@ def _ring_steps() -> list[tuple[int, int]]:
 _RING_STEPS = np.array(_ring_steps(), np.int64)
 
 
-def _columns_of(
-    free: NDArray[np.uint32],
-) -> tuple[list[tuple[Floats, int]], list[tuple[Floats, int]]]:
+def _columns_of(free: NDArray[np.uint32]) -> tuple[_Middles, _Middles]:
     """Middles of columns in cells of the tile inside the window, and where they stand free.
 
     Those that stand free low, and those of which no foot was seen.
@@ -286,9 +312,7 @@ def _columns_of(
     return standing, _peaks(is_raised, np.where(is_raised, run, 0), free)
 
 
-def _peaks(
-    is_column: NDArray[np.bool_], counts: Integers, free: NDArray[np.uint32]
-) -> list[tuple[Floats, int]]:
+def _peaks(is_column: NDArray[np.bool_], counts: Integers, free: NDArray[np.uint32]) -> _Middles:
     """Of cells that lie near each other the middle of those that have most about them."""
     weights = counts.astype(np.float64)
     about = ndimage.uniform_filter(weights, 3, mode="constant")
@@ -298,7 +322,7 @@ def _peaks(
     # A cell between two columns has most about it without being one.
     about[~is_column] = 0.0
     best = ndimage.maximum_filter(about, 2 * _APART_CELLS + 1, mode="constant")
-    found: list[tuple[Floats, int]] = []
+    found: _Middles = []
     border = _HALO + _APART_CELLS
     for row, column in np.argwhere(is_column & (about == best)).tolist():
         part = (slice(row - 1, row + 2), slice(column - 1, column + 2))

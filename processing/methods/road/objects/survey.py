@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.core.monitor import Monitor, PartMonitor
-from processing.methods.road.objects.columns import FoundColumns, find_columns
+from processing.methods.road.objects.columns import FoundColumns, UprightColumns, find_columns
 from processing.methods.road.objects.ground_heights import ground_heights
 from processing.methods.road.objects.sparse_plan import SparsePlan, plan_of
 from processing.recording.columns.counted_classes import class_columns
@@ -65,8 +65,19 @@ def survey_columns(drives: Sequence[Drive], monitor: Monitor) -> tuple[SurveyGro
     OutOfRange
         The drives lie too far apart.
     """
-    below, columns, _ = _kept_of(drives).columns(drives, monitor)
-    return below, columns
+    below, columns = _kept_of(drives).columns(drives, monitor)
+    return below, columns.standing
+
+
+def post_columns(drives: Sequence[Drive], monitor: Monitor) -> FoundColumns:
+    """What stands upright where the ground beside it is another: more low posts are among them.
+
+    Raises
+    ------
+    OutOfRange
+        The drives lie too far apart.
+    """
+    return _kept_of(drives).columns(drives, monitor)[1].posts
 
 
 def raised_columns(drives: Sequence[Drive], monitor: Monitor) -> FoundColumns:
@@ -77,7 +88,7 @@ def raised_columns(drives: Sequence[Drive], monitor: Monitor) -> FoundColumns:
     OutOfRange
         The drives lie too far apart.
     """
-    return _kept_of(drives).columns(drives, monitor)[2]
+    return _kept_of(drives).columns(drives, monitor)[1].raised
 
 
 class _KeptSurvey:
@@ -87,7 +98,7 @@ class _KeptSurvey:
         self._lock = threading.Lock()
         self._noise: tuple[int, ...] = ()
         self._ground: SurveyGround | None = None
-        self._columns: tuple[FoundColumns, FoundColumns] | None = None
+        self._columns: UprightColumns | None = None
 
     def ground(self, drives: Sequence[Drive], monitor: Monitor) -> SurveyGround:
         with self._lock:
@@ -95,13 +106,13 @@ class _KeptSurvey:
 
     def columns(
         self, drives: Sequence[Drive], monitor: Monitor
-    ) -> tuple[SurveyGround, FoundColumns, FoundColumns]:
+    ) -> tuple[SurveyGround, UprightColumns]:
         with self._lock:
             below = self._ground_now(drives, PartMonitor(monitor, 0.0, 0.5))
             if self._columns is None:
                 part = PartMonitor(monitor, 0.5, 1.0)
                 self._columns = find_columns(drives, below.plan, below.heights, part)
-            return below, *self._columns
+            return below, self._columns
 
     def _ground_now(self, drives: Sequence[Drive], monitor: Monitor) -> SurveyGround:
         noise = tuple(_known_noise(drive) for drive in drives)

@@ -16,7 +16,7 @@ from processing.core.arrays import Floats, Integers
 from processing.core.monitor import Monitor, PartMonitor
 from processing.methods.road.objects.column_points import ColumnPoints, points_about_each
 from processing.methods.road.objects.sparse_plan import SparsePlan
-from processing.methods.road.objects.survey import raised_columns, survey_columns
+from processing.methods.road.objects.survey import post_columns, raised_columns, survey_ground
 from processing.methods.road.poles.alike_shafts import alike_of
 from processing.methods.road.poles.carried import (
     ARMS_FROM_M,
@@ -138,8 +138,8 @@ def street_poles(drives: Sequence[Drive], monitor: Monitor) -> tuple[StreetPole,
        for one; of what a crown leaves in doubt the search for trees has its say.
     3. Wires, arms, plates and reflectors tell its type.
     """
-    below, columns = survey_columns(drives, PartMonitor(monitor, 0.0, 0.4))
-    plan = below.plan
+    columns = post_columns(drives, PartMonitor(monitor, 0.0, 0.4))
+    plan = survey_ground(drives, monitor).plan
     raised = raised_columns(drives, monitor)
     shafts = find_shafts(drives, plan, columns, PartMonitor(monitor, 0.4, 0.7))
     hidden = find_hidden_shafts(drives, plan, raised, shafts, PartMonitor(monitor, 0.7, 0.75))
