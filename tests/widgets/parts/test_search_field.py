@@ -25,9 +25,10 @@ def window(qtbot: QtBot) -> QWidget:
     layout.addWidget(field)
     layout.addWidget(tree)
     window.show()
-    window.activateWindow()
-    qtbot.waitActive(window)
+    with qtbot.waitActive(window):
+        window.activateWindow()
     field.setFocus()
+    qtbot.waitUntil(field.hasFocus)
     return window
 
 
