@@ -27,9 +27,9 @@ def scratch_array(file: Path, dtype: DTypeLike, count: int) -> NDArray[Any]:
     """
     if count == 0:
         return np.zeros(0, dtype)
-    with report_as_user_error(file), file.open("wb") as made:
-        _take_room(made, count * np.dtype(dtype).itemsize)
     with report_as_user_error(file):
+        with file.open("wb") as made:
+            _take_room(made, count * np.dtype(dtype).itemsize)
         return np.memmap(file, dtype, "r+", shape=(count,))
 
 

@@ -61,7 +61,7 @@ def measure_growth(options: BenchmarkOptions) -> tuple[Measurement, ...]:
             for work, seconds in _times_of(Path(name), abs(size)):
                 if size > 0:
                     times[work].append(seconds)
-    return tuple(_row(name, sizes, times[name]) for name in _WORKS)
+    return tuple(growth_row(name, work, sizes, times[name]) for name, work in _WORKS.items())
 
 
 def exponent_of(sizes: Sequence[int], seconds: Sequence[float]) -> float:
@@ -148,13 +148,16 @@ def _label_times(project: Project, drive: Drive, folder: Path) -> Iterator[tuple
     )
 
 
-def _row(name: str, sizes: list[int], seconds: list[float]) -> Measurement:
+def growth_row(
+    name: str, work: Text, sizes: Sequence[int], seconds: Sequence[float]
+) -> Measurement:
+    """The exponent with which the time of a work grows with the points."""
     reported = ", ".join(
-        f"{size / 1e6:g} M {in_short(one)}" for size, one in zip(sizes, seconds, strict=True)
+        f"{size / 1e6:g} M {_short(one)}" for size, one in zip(sizes, seconds, strict=True)
     )
     return Measurement(
         f"growth-{name}",
-        Text("Growth: {work}", "増え方: {work}").filled(work=_WORKS[name]),
+        Text("Growth: {work}", "増え方: {work}").filled(work=work),
         exponent_of(sizes, seconds),
         "exponent",
         MOST_EXPONENT,
@@ -164,6 +167,5 @@ def _row(name: str, sizes: list[int], seconds: list[float]) -> Measurement:
     )
 
 
-def in_short(seconds: float) -> str:
-    """A time with the digits that tell something."""
+def _short(seconds: float) -> str:
     return f"{1000 * seconds:.1f} ms" if seconds < 0.1 else f"{seconds:.2f} s"

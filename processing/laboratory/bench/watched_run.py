@@ -33,6 +33,11 @@ class WatchedRun:
     complaints: str
     memory: MemoryWatch
 
+    @property
+    def moments(self) -> dict[str, float]:
+        """When it said what, where each line is a word and a moment on the clock of all."""
+        return {word: float(at) for word, at in (line.split() for line in self.lines)}
+
     def over_baseline(
         self, baseline_s: float, begin_s: float, end_s: float
     ) -> tuple[float | None, float | None]:

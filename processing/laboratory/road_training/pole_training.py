@@ -30,7 +30,7 @@ from processing.laboratory.road_training.boosted_confidence import learn_model
 from processing.laboratory.road_training.learned_confidence import LabelledThings
 from processing.laboratory.road_training.varied_streets import varied_streets
 from processing.methods.road.objects.column_points import points_about
-from processing.methods.road.objects.survey import post_columns, survey_ground
+from processing.methods.road.objects.survey import survey_columns
 from processing.methods.road.poles.pole_confidence import MODELS, SIGNS, PoleFacts, facts_of, is_low
 from processing.methods.road.poles.shaft_kernels import FREE
 from processing.methods.road.poles.shafts import Shaft, find_shafts, with_whole_sides
@@ -94,9 +94,8 @@ def known_shafts(scenes: Iterator[RoadScene]) -> dict[bool, LabelledThings]:
 
 def _judge_shafts(scene: RoadScene) -> Iterator[tuple[bool, PoleFacts, bool]]:
     monitor = SilentMonitor()
-    below, columns = survey_ground(scene.drives, monitor), post_columns(scene.drives, monitor)
-    plan = below.plan
-    shafts = find_shafts(scene.drives, plan, columns, monitor)
+    (plan, _), columns = survey_columns(scene.drives, monitor)
+    shafts = find_shafts(scene.drives, plan, columns.posts, monitor)
     if not shafts:
         return
     truth = read_mapped(scene.truth("poles"))

@@ -19,7 +19,7 @@ from processing.core.monitor import SilentMonitor
 from processing.core.output_streams import write_every_character
 from processing.core.text import Text
 from processing.laboratory.bench.case import BenchmarkOptions, Measurement
-from processing.laboratory.bench.growth import MOST_EXPONENT, exponent_of, in_short, sizes_within
+from processing.laboratory.bench.growth import growth_row, sizes_within
 from processing.laboratory.bench.large_street import write_long_delivery
 from processing.laboratory.bench.watched_run import WatchedRun, run_watched
 from processing.project.importing.importing import ImportRequest, import_drives
@@ -41,8 +41,11 @@ def measure_extraction_growth(options: BenchmarkOptions) -> tuple[Measurement, .
     with tempfile.TemporaryDirectory(prefix="zuka-bench-") as name:
         rehearsal = _drive(Path(name) / "rehearsal", min(_REHEARSED, sizes[-1]))
         runs = [_run_on(Path(name), rehearsal, size) for size in sizes]
-    moments = [_moments(one) for one in runs]
-    rows = [_growth_row(tool, sizes, [one[tool] for one in moments]) for tool in _THING_TOOLS]
+    times = [_times_of(one) for one in runs]
+    rows = [
+        growth_row(tool, TOOLS[tool].name, sizes, [one[tool] for one in times])
+        for tool in _THING_TOOLS
+    ]
     return (*rows, _memory_row(sizes, [_held_gib(one) for one in runs]))
 
 
@@ -64,33 +67,15 @@ def _drive(folder: Path, points: int) -> Path:
     return made
 
 
-def _ends(ran: WatchedRun) -> dict[str, float]:
-    return {word: float(at) for word, at in (line.split() for line in ran.lines)}
-
-
-def _moments(ran: WatchedRun) -> Mapping[str, float]:
+def _times_of(ran: WatchedRun) -> Mapping[str, float]:
     """Seconds of each tool."""
-    return {tool: end - begin for (_, begin), (tool, end) in pairwise(_ends(ran).items())}
+    return {tool: end - begin for (_, begin), (tool, end) in pairwise(ran.moments.items())}
 
 
 def _held_gib(ran: WatchedRun) -> float | None:
     """Memory in no file over that of the process with everything compiled."""
-    ends = _ends(ran)
-    return ran.over_baseline(ends["ready"], ends["ready"], ends[_THING_TOOLS[-1]])[1]
-
-
-def _growth_row(tool: str, sizes: Sequence[int], seconds: Sequence[float]) -> Measurement:
-    told = zip(sizes, seconds, strict=True)
-    return Measurement(
-        f"growth-{tool}",
-        Text("Growth: {work}", "増え方: {work}").filled(work=TOOLS[tool].name),
-        exponent_of(sizes, seconds),
-        "exponent",
-        MOST_EXPONENT,
-        is_at_most=True,
-        detail=", ".join(f"{size / 1e6:g} M {in_short(one)}" for size, one in told),
-        figures={f"{size}_s": one for size, one in zip(sizes, seconds, strict=True)},
-    )
+    ready_s, end_s = ran.moments["ready"], ran.moments[_THING_TOOLS[-1]]
+    return ran.over_baseline(ready_s, ready_s, end_s)[1]
 
 
 def _memory_row(sizes: Sequence[int], held: Sequence[float | None]) -> Measurement:

@@ -76,8 +76,7 @@ def _held_gib(roads: Sequence[Sequence[Drive]], into: Path) -> list[float | None
     for number, road in enumerate(roads):
         arguments = [str(into / f"{number}"), *(str(drive.folder) for drive in road)]
         watched = run_watched("processing.laboratory.bench.cases.road_run", arguments)
-        moments = {word: float(at) for word, at in (line.split() for line in watched.lines)}
-        ends = moments["ready"], moments["done"]
+        ends = watched.moments["ready"], watched.moments["done"]
         held.append(watched.over_baseline(ends[0], *ends)[1])
     return held
 

@@ -111,7 +111,7 @@ def summed_columns(
     drives: Sequence[Drive], monitor: Monitor
 ) -> tuple[SparsePlan, FoundColumns, ColumnSums]:
     """The columns of drives, one of each thing, and what stands about them."""
-    below, columns = survey_columns(drives, PartMonitor(monitor, 0.0, 0.4))
+    below, (columns, *_) = survey_columns(drives, PartMonitor(monitor, 0.0, 0.4))
     columns = distinct_columns(columns)
     sums = sum_columns(drives, below.plan, columns, PartMonitor(monitor, 0.4, 1.0))
     return below.plan, columns, sums

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.core.arrays import Floats, Integers
+from processing.core.arrays import Flags, Floats, Integers
 from processing.core.kernels import kernel
 from processing.core.monitor import Monitor, PartMonitor
 from processing.core.scratch_arrays import nameless_array
@@ -53,6 +53,12 @@ class ColumnPoints:
     def of(self, column: int) -> slice:
         """The lines of a column."""
         return slice(int(self.starts[column]), int(self.starts[column + 1]))
+
+    def chosen(self, is_in: Flags) -> ColumnPoints:
+        """Some of the points, (n,) bool, of as many columns."""
+        lines = np.flatnonzero(is_in)
+        starts = np.searchsorted(lines, self.starts)
+        return ColumnPoints(starts, self.local[lines], self.drives[lines], self.points[lines])
 
 
 def points_about(

@@ -104,7 +104,7 @@ class UprightColumns(NamedTuple):
         more low posts stand free so. Middles of trunks come out otherwise, by which their search
         measured worse on streets.
     raised : FoundColumns
-        As posts; those of which no foot was seen.
+        As posts; those of which nothing below 1.6 m above the ground was seen.
     """
 
     standing: FoundColumns

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.core.monitor import Monitor, PartMonitor
-from processing.methods.road.objects.columns import FoundColumns, UprightColumns, find_columns
+from processing.methods.road.objects.columns import UprightColumns, find_columns
 from processing.methods.road.objects.ground_heights import ground_heights
 from processing.methods.road.objects.sparse_plan import SparsePlan, plan_of
 from processing.recording.columns.counted_classes import class_columns
@@ -57,7 +57,9 @@ def survey_ground(drives: Sequence[Drive], monitor: Monitor) -> SurveyGround:
     return _kept_of(drives).ground(drives, monitor)
 
 
-def survey_columns(drives: Sequence[Drive], monitor: Monitor) -> tuple[SurveyGround, FoundColumns]:
+def survey_columns(
+    drives: Sequence[Drive], monitor: Monitor
+) -> tuple[SurveyGround, UprightColumns]:
     """The ground of all drives together, and what stands upright on it.
 
     Raises
@@ -65,30 +67,7 @@ def survey_columns(drives: Sequence[Drive], monitor: Monitor) -> tuple[SurveyGro
     OutOfRange
         The drives lie too far apart.
     """
-    below, columns = _kept_of(drives).columns(drives, monitor)
-    return below, columns.standing
-
-
-def post_columns(drives: Sequence[Drive], monitor: Monitor) -> FoundColumns:
-    """What stands upright where the ground beside it is another: more low posts are among them.
-
-    Raises
-    ------
-    OutOfRange
-        The drives lie too far apart.
-    """
-    return _kept_of(drives).columns(drives, monitor)[1].posts
-
-
-def raised_columns(drives: Sequence[Drive], monitor: Monitor) -> FoundColumns:
-    """What stands upright of which nothing below 1.6 m above the ground was seen.
-
-    Raises
-    ------
-    OutOfRange
-        The drives lie too far apart.
-    """
-    return _kept_of(drives).columns(drives, monitor)[1].raised
+    return _kept_of(drives).columns(drives, monitor)
 
 
 class _KeptSurvey:

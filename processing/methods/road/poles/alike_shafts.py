@@ -10,7 +10,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from processing.core.arrays import Floats, Integers
-from processing.methods.road.poles.shafts import Shaft
+from processing.methods.road.poles.shafts import Shaft, feet_of
 
 _NEAR_M, _APART_M = 25.0, 0.4
 """Rows are looked for so far along: delineators stand up to 40 m apart, most at 10 m (視線誘導標設
@@ -33,7 +33,7 @@ def alike_of(shafts: Sequence[Shaft]) -> Floats:
 
     if not shafts:
         return np.zeros(0)
-    feet = np.array([one.foot[:2] for one in shafts])
+    feet = feet_of(shafts)
     pairs = np.asarray(cKDTree(feet).query_pairs(_NEAR_M, output_type="ndarray"), np.int64)
     both = np.concatenate([pairs, pairs[:, ::-1]])
     count = np.bincount(both[_are_alike(shafts, feet, both), 0], minlength=len(shafts))

@@ -19,7 +19,7 @@ from processing.core.monitor import Monitor
 from processing.methods.road.objects.column_points import points_about
 from processing.methods.road.objects.sparse_plan import SparsePlan
 from processing.methods.road.poles.shaft_sides import towards_vehicle
-from processing.methods.road.poles.shafts import Shaft
+from processing.methods.road.poles.shafts import Shaft, feet_of
 from processing.recording.drive import Drive
 
 _NEAR_M, _FAR_M = 1.0, 40.0
@@ -83,7 +83,7 @@ def mirror_images(
     """
     if not shafts:
         return frozenset()
-    feet = cKDTree(np.array([one.foot[:2] for one in shafts]))
+    feet = cKDTree(feet_of(shafts))
     pairs: list[_Pair] = []
     for number in asked:
         monitor.check()

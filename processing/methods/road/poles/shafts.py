@@ -157,6 +157,11 @@ class Shaft:
         return 2 * self.noise_m / max(float(heights.std()) * math.sqrt(len(heights)), 1e-9)
 
 
+def feet_of(shafts: Sequence[Shaft]) -> Floats:
+    """(n, 2) where shafts stand, m about the plan's origin."""
+    return np.array([one.foot[:2] for one in shafts]).reshape(-1, 2)
+
+
 def find_shafts(
     drives: Sequence[Drive], plan: SparsePlan, columns: FoundColumns, monitor: Monitor
 ) -> list[Shaft]:
@@ -189,21 +194,16 @@ def _are_bare(columns: FoundColumns, found: Sequence[Shaft]) -> Flags:
 
     if not found:
         return np.ones(len(columns), np.bool_)
-    known = cKDTree(np.array([one.foot[:2] for one in found]))
-    return np.asarray(known.query(columns.middles)[0] > ONE_M)
+    return np.asarray(cKDTree(feet_of(found)).query(columns.middles)[0] > ONE_M)
 
 
 def _near(gathered: ColumnPoints, columns: FoundColumns, which: Flags) -> ColumnPoints:
     """The points near the middles of some columns."""
     is_near = np.zeros(len(gathered.points), np.bool_)
     near_kernel(gathered.local, gathered.starts, columns.middles, which, is_near)
-    counts = np.diff(np.concatenate([[0], np.cumsum(is_near)])[gathered.starts])
-    return ColumnPoints(
-        np.concatenate([[0], np.cumsum(counts[which])]),
-        gathered.local[is_near],
-        gathered.drives[is_near],
-        gathered.points[is_near],
-    )
+    near = gathered.chosen(is_near)
+    # The others have none, so that what is left lies side by side.
+    return replace(near, starts=near.starts[np.append(which, True)])
 
 
 @kernel
@@ -253,8 +253,7 @@ def find_hidden_shafts(
     found = [one for one in _one_of_each(found) if one.low_m >= _HIDDEN_M]
     if not found or not standing:
         return found
-    known = cKDTree(np.array([one.foot[:2] for one in standing]))
-    away = np.asarray(known.query(np.array([one.foot[:2] for one in found]))[0])
+    away = np.asarray(cKDTree(feet_of(standing)).query(feet_of(found))[0])
     return [found[number] for number in np.flatnonzero(away > ONE_M).tolist()]
 
 
@@ -321,12 +320,7 @@ def shafts_about(points: Floats) -> list[Floats]:
 def _only(gathered: ColumnPoints, members: Sequence[int]) -> ColumnPoints:
     """The points of some drives."""
     is_in = np.isin(gathered.drives, members)
-    if is_in.all():
-        return gathered
-    starts = np.concatenate([[0], np.cumsum(is_in)])[gathered.starts]
-    return ColumnPoints(
-        starts, gathered.local[is_in], gathered.drives[is_in], gathered.points[is_in]
-    )
+    return gathered if is_in.all() else gathered.chosen(is_in)
 
 
 def _of_pass(
@@ -396,7 +390,7 @@ def _one_of_each(found: Sequence[Shaft]) -> list[Shaft]:
     if not found:
         return []
     order = sorted(range(len(found)), key=lambda one: -found[one].told[POINTS])
-    feet = np.array([found[one].foot[:2] for one in order]).reshape(-1, 2)
+    feet = feet_of([found[one] for one in order])
     leans = np.array([found[one].lean for one in order]).reshape(-1, 2)
     is_kept = np.zeros(len(order), np.bool_)
     tree, reach = cKDTree(feet), _SAME_M + 2 * _LIMITS.steepest * LEVEL_M

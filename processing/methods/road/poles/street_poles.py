@@ -16,7 +16,7 @@ from processing.core.arrays import Floats, Integers
 from processing.core.monitor import Monitor, PartMonitor
 from processing.methods.road.objects.column_points import ColumnPoints, points_about_each
 from processing.methods.road.objects.sparse_plan import SparsePlan
-from processing.methods.road.objects.survey import post_columns, raised_columns, survey_ground
+from processing.methods.road.objects.survey import survey_columns
 from processing.methods.road.poles.alike_shafts import alike_of
 from processing.methods.road.poles.carried import (
     ARMS_FROM_M,
@@ -39,6 +39,7 @@ from processing.methods.road.poles.shaft_kernels import LEVEL_M, POINTS
 from processing.methods.road.poles.shaft_sides import seen_sides
 from processing.methods.road.poles.shafts import (
     Shaft,
+    feet_of,
     find_hidden_shafts,
     find_shafts,
     with_whole_sides,
@@ -138,11 +139,10 @@ def street_poles(drives: Sequence[Drive], monitor: Monitor) -> tuple[StreetPole,
        for one; of what a crown leaves in doubt the search for trees has its say.
     3. Wires, arms, plates and reflectors tell its type.
     """
-    columns = post_columns(drives, PartMonitor(monitor, 0.0, 0.4))
-    plan = survey_ground(drives, monitor).plan
-    raised = raised_columns(drives, monitor)
-    shafts = find_shafts(drives, plan, columns, PartMonitor(monitor, 0.4, 0.7))
-    hidden = find_hidden_shafts(drives, plan, raised, shafts, PartMonitor(monitor, 0.7, 0.75))
+    (plan, _), columns = survey_columns(drives, PartMonitor(monitor, 0.0, 0.4))
+    shafts = find_shafts(drives, plan, columns.posts, PartMonitor(monitor, 0.4, 0.7))
+    part = PartMonitor(monitor, 0.7, 0.75)
+    hidden = find_hidden_shafts(drives, plan, columns.raised, shafts, part)
     if not shafts and not hidden:
         return ()
     usual_m = usual_noise_m(shafts or hidden)
@@ -258,11 +258,6 @@ def _likely(
         for (number, one), chance in zip(beside.items(), chances.tolist(), strict=True)
         if chance >= least
     }
-
-
-def feet_of(shafts: Sequence[Shaft]) -> Floats:
-    """(n, 2) where shafts stand, m about the plan's origin."""
-    return np.array([one.foot[:2] for one in shafts]).reshape(-1, 2)
 
 
 def own_points(

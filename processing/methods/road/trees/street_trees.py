@@ -145,7 +145,7 @@ def upright_things(
        those that may be trees' (:mod:`processing.methods.road.trees.crowns`). What has flat sides
        is left out after that: it takes its share, so that nothing beside it looks like a tree.
     """
-    (plan, ground), columns = survey_columns(drives, PartMonitor(monitor, 0.0, 0.4))
+    (plan, ground), (columns, *_) = survey_columns(drives, PartMonitor(monitor, 0.0, 0.4))
     asked = _joined(columns) if about is None else _near(_joined(columns), about)
     trunks = _standing_trunks(drives, plan, asked, settings, PartMonitor(monitor, 0.4, 0.8))
     if not trunks:

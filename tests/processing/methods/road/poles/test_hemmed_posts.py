@@ -13,10 +13,10 @@ from processing.laboratory.simulate.scene.mesh import TriangleShape, box, tube
 from processing.methods.road.objects.column_points import points_about
 from processing.methods.road.objects.columns import FoundColumns
 from processing.methods.road.objects.sparse_plan import SparsePlan
-from processing.methods.road.objects.survey import post_columns, survey_ground
+from processing.methods.road.objects.survey import survey_columns
 from processing.methods.road.poles.carried import carried_of
-from processing.methods.road.poles.shafts import find_shafts, with_whole_sides
-from processing.methods.road.poles.street_poles import REACH_M, feet_of, own_points
+from processing.methods.road.poles.shafts import feet_of, find_shafts, with_whole_sides
+from processing.methods.road.poles.street_poles import REACH_M, own_points
 from processing.recording.drive import Drive
 from tests.processing.methods.road.bad_recordings import (
     HEAD_45,
@@ -84,8 +84,8 @@ def street(tmp_path_factory: pytest.TempPathFactory) -> Street:
     folder: Path = tmp_path_factory.mktemp("hemmed")
     driven = DrivenRecording(way, facing_along(way), scene, head=HEAD_45, pulses=6_000)
     drives = recorded(folder, driven)
-    below, columns = survey_ground(drives, SilentMonitor()), post_columns(drives, SilentMonitor())
-    return Street(drives, below.plan, columns)
+    below, columns = survey_columns(drives, SilentMonitor())
+    return Street(drives, below.plan, columns.posts)
 
 
 def test_a_cane_is_found_beside_its_cloth(street: Street) -> None:

@@ -9,7 +9,7 @@ import pytest
 
 from processing.core.monitor import SilentMonitor
 from processing.laboratory.simulate.scene.mesh import box, tube
-from processing.methods.road.objects.survey import post_columns, raised_columns, survey_ground
+from processing.methods.road.objects.survey import survey_columns
 from processing.methods.road.poles.shafts import find_hidden_shafts, find_shafts
 from tests.processing.methods.road.bad_recordings import (
     HEAD_45,
@@ -34,10 +34,9 @@ def test_a_pole_behind_a_wall_is_found_by_what_shows_above_it(tmp_path: Path) ->
     way, monitor = straight(LENGTH_M), SilentMonitor()
     driven = DrivenRecording(way, facing_along(way), scene, head=HEAD_45, pulses=3_000)
     drives = recorded(tmp_path, driven)
-    below, columns = survey_ground(drives, monitor), post_columns(drives, monitor)
-    standing = find_shafts(drives, below.plan, columns, monitor)
-    raised = raised_columns(drives, monitor)
-    (pole,) = find_hidden_shafts(drives, below.plan, raised, standing, monitor)
+    below, columns = survey_columns(drives, monitor)
+    standing = find_shafts(drives, below.plan, columns.posts, monitor)
+    (pole,) = find_hidden_shafts(drives, below.plan, columns.raised, standing, monitor)
     foot = pole.foot + below.plan.origin - ORIGIN
     assert foot[:2] == pytest.approx(PLACE, abs=0.03)
     assert foot[2] == pytest.approx(FLOOR_M, abs=0.1)

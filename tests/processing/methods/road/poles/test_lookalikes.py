@@ -12,7 +12,7 @@ from processing.core.monitor import SilentMonitor
 from processing.laboratory.simulate.scene.mesh import TriangleShape, box, tube
 from processing.methods.road.objects.column_points import points_about
 from processing.methods.road.objects.sparse_plan import SparsePlan
-from processing.methods.road.objects.survey import post_columns, survey_ground
+from processing.methods.road.objects.survey import survey_columns
 from processing.methods.road.poles import street_poles
 from processing.methods.road.poles.mirror_images import mirror_images
 from processing.methods.road.poles.reflectors import ReflectorSearch
@@ -97,8 +97,10 @@ def shafts(tmp_path_factory: pytest.TempPathFactory) -> Shafts:
     folder: Path = tmp_path_factory.mktemp("lookalikes")
     driven = DrivenRecording(way, facing_along(way), scene, head=HEAD_45, pulses=3_000)
     drives = recorded(folder, driven)
-    below, columns = survey_ground(drives, SilentMonitor()), post_columns(drives, SilentMonitor())
-    return Shafts(drives, below.plan, find_shafts(drives, below.plan, columns, SilentMonitor()))
+    below, columns = survey_columns(drives, SilentMonitor())
+    return Shafts(
+        drives, below.plan, find_shafts(drives, below.plan, columns.posts, SilentMonitor())
+    )
 
 
 def test_a_square_post_is_told_from_a_round_one(shafts: Shafts) -> None:

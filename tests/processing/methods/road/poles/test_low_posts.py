@@ -12,7 +12,7 @@ from processing.core.monitor import SilentMonitor
 from processing.laboratory.simulate.scene.mesh import TriangleShape, box, tube
 from processing.methods.road.objects.column_points import points_about
 from processing.methods.road.objects.sparse_plan import SparsePlan
-from processing.methods.road.objects.survey import post_columns, survey_ground
+from processing.methods.road.objects.survey import survey_columns
 from processing.methods.road.poles.alike_shafts import alike_of
 from processing.methods.road.poles.shafts import Shaft, find_shafts
 from processing.methods.road.poles.street_poles import REACH_M
@@ -87,8 +87,8 @@ def street(tmp_path_factory: pytest.TempPathFactory) -> Street:
     folder: Path = tmp_path_factory.mktemp("low_posts")
     driven = DrivenRecording(way, facing_along(way), scene, pulses=6_000)
     drives = recorded(folder, driven)
-    below, columns = survey_ground(drives, SilentMonitor()), post_columns(drives, SilentMonitor())
-    found = find_shafts(drives, below.plan, columns, SilentMonitor())
+    below, columns = survey_columns(drives, SilentMonitor())
+    found = find_shafts(drives, below.plan, columns.posts, SilentMonitor())
     return Street(drives, below.plan, found)
 
 
