@@ -51,7 +51,8 @@ def nameless_array(folder: Path, dtype: DTypeLike, shape: tuple[int, ...]) -> ND
         return np.zeros(shape, dtype)
     with report_as_user_error(folder), tempfile.TemporaryFile(dir=folder) as made:
         _take_room(made, size)
-        return np.memmap(made, dtype, "r+", shape=shape)
+        # A plain array: each little part of a memmap costs as much as work on it.
+        return np.asarray(np.memmap(made, dtype, "r+", shape=shape))
 
 
 def _take_room(made: BinaryIO, size: int) -> None:

@@ -127,7 +127,7 @@ class Trajectory:
             For a time that is not covered.
         """
         times = self._check_times(time)
-        return np.column_stack([np.interp(times, self.time, axis) for axis in self._axes])
+        return np.column_stack([np.interp(times, self._clock, axis) for axis in self._axes])
 
     def rotations_at(self, time: ArrayLike) -> NDArray[np.float64]:
         """How the vehicle was turned.
@@ -181,8 +181,8 @@ class Trajectory:
         """
         times = self._check_times(time)
         x, y, z = (
-            axis - np.interp(times, self.time, own)
-            for axis, own in zip(np.asarray(xyz, dtype=np.float64).T, self.xyz.T, strict=True)
+            axis - np.interp(times, self._clock, own)
+            for axis, own in zip(np.asarray(xyz, dtype=np.float64).T, self._axes, strict=True)
         )
         w, i, j, k = self._quaternions_at(times)
         # v' = v + 2 q × (q × v + w v) with the inverse turn's vector part, -(i, j, k).
@@ -192,8 +192,13 @@ class Trajectory:
         )
 
     @cached_property
+    def _clock(self) -> NDArray[np.float64]:
+        """The times in one piece, as `_axes`: interpolation copies what isn't, at every call."""
+        return np.ascontiguousarray(self.time)
+
+    @cached_property
     def _axes(self) -> tuple[NDArray[np.float64], ...]:
-        """Easting, northing and height, each in one piece: interpolation copies what isn't."""
+        """Easting, northing and height, each in one piece."""
         return tuple(np.ascontiguousarray(axis) for axis in self.xyz.T)
 
     @cached_property
@@ -223,7 +228,7 @@ class Trajectory:
         return q
 
     def _quaternions_at(self, times: NDArray[np.float64]) -> tuple[NDArray[np.float64], ...]:
-        w, x, y, z = (np.interp(times, self.time, axis) for axis in self._quaternions)
+        w, x, y, z = (np.interp(times, self._clock, axis) for axis in self._quaternions)
         length = np.sqrt(w * w + x * x + y * y + z * z)
         return w / length, x / length, y / length, z / length
 

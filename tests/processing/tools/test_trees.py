@@ -22,6 +22,7 @@ from processing.map.feature import Feature, Position, Vertex
 from processing.methods.road.objects.survey import survey_ground
 from processing.methods.road.poles.trunks_among import tree_chances
 from processing.methods.road.requested_position import RequestedPosition
+from processing.methods.road.trees import crown_cells
 from processing.recording.drive import Drive
 from processing.tools.tool import Candidate
 from processing.tools.trees import TreeParameters, diagnose_trees, find_trees
@@ -249,6 +250,22 @@ def test_a_cancel_leaves_nothing(avenue_drives: tuple[Drive, ...]) -> None:
 
     with pytest.raises(Cancelled):
         find_trees(avenue_drives, TreeParameters(), Stopped())
+
+
+def test_cells_of_a_long_street_lie_in_files_and_tell_the_same(
+    drives: tuple[Drive, ...],
+    told: RunOutcome,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(crown_cells, "_FIRST_SLOTS", 1 << 9)
+    monkeypatch.setattr(crown_cells, "_MOST_IN_MEMORY", 1 << 9)
+    before = sorted(drives[0].folder.iterdir())
+    filed = told_by("trees", drives, tmp_path)
+    assert sorted(drives[0].folder.iterdir()) == before
+    assert [one.attributes for one in filed.candidates] == [
+        one.attributes for one in told.candidates
+    ]
 
 
 def test_a_street_without_trees_is_told(tmp_path: Path) -> None:

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from processing.core.arrays import Floats, Integers
 from processing.core.monitor import Monitor, PartMonitor
@@ -162,8 +163,6 @@ def street_poles(drives: Sequence[Drive], monitor: Monitor) -> tuple[StreetPole,
 
 def _apart(judged: Sequence[_Judged], shafts: Sequence[Shaft]) -> list[_Judged]:
     """Those of which no surer one, named before them, stands in their place."""
-    from scipy.spatial import cKDTree
-
     if not judged:
         return []
     feet = feet_of([shafts[one.number] for one in judged])
@@ -225,7 +224,7 @@ def shafts_about_all(
         The least chance of what may be one.
     """
     shafts, around, usual_m = found
-    feet, fellows = feet_of(shafts), fellows_of(shafts)
+    fellows, stands = fellows_of(shafts), cKDTree(feet_of(shafts))
     reflectors = ReflectorSearch(drives, shafts, around, plan.origin)
     alike = alike_of(shafts) * [is_low(one) for one in shafts]
     beside = {number: replace(_NOTHING, alike=one) for number, one in enumerate(alike.tolist())}
@@ -240,7 +239,7 @@ def shafts_about_all(
         monitor.check()
         carried = Carried()
         if _may_carry(shafts[number], usual_m):
-            carried = carried_of(own_points(around, number, shafts, feet), shafts[number])
+            carried = carried_of(own_points(around, number, shafts, stands), shafts[number])
         sides = seen_sides(drives, shafts[number], plan.origin)
         shines = reflectors.shines(number, shafts[number])
         told[number] = ShaftAbout(one, carried, sides, shines, tree=0.0)
@@ -261,7 +260,7 @@ def _likely(
 
 
 def own_points(
-    around: ColumnPoints, number: int, shafts: Sequence[Shaft], feet: Floats
+    around: ColumnPoints, number: int, shafts: Sequence[Shaft], stands: cKDTree
 ) -> ShaftNeighbourhood:
     """Points about a shaft, by its number, of the heads that measured it.
 
@@ -269,8 +268,8 @@ def own_points(
 
     Parameters
     ----------
-    feet : (n, 2) float64
-        Of all shafts, m about the plan's origin (:func:`feet_of`).
+    stands : cKDTree
+        Of the feet of all shafts (:func:`feet_of`).
     """
     shaft = shafts[number]
     part = around.of(number)
@@ -278,8 +277,8 @@ def own_points(
     is_own = np.isin(around.drives[part], heads)
     beyond = [np.empty((0, 3))]
     if shaft.top_m > ARMS_FROM_M:
-        away = np.hypot(*(feet - shaft.foot[:2]).T)
-        for other in np.flatnonzero((away > 0) & (away < 2 * REACH_M)).tolist():
+        near = stands.query_ball_point(shaft.foot[:2], 2 * REACH_M, return_sorted=True)
+        for other in (one for one in near if one != number):
             theirs = around.of(other)
             high = np.flatnonzero(around.local[theirs, 2] - shaft.foot[2] > ARMS_FROM_M)
             local = around.local[theirs].take(high, axis=0) - shaft.foot

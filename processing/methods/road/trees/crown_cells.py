@@ -9,7 +9,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple, TypeVar
+from pathlib import Path
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +18,7 @@ from numpy.typing import NDArray
 from processing.core.arrays import Floats, Integers
 from processing.core.kernels import kernel
 from processing.core.monitor import Monitor
+from processing.core.scratch_arrays import nameless_array
 from processing.methods.road.objects.drive_chunks import chunks_of
 from processing.methods.road.objects.sparse_plan import TILE, SparsePlan, cell_of
 from processing.recording.drive import Drive
@@ -65,6 +67,10 @@ _EMPTY_KEY = -1
 
 _FIRST_SLOTS = 1 << 15
 """Of the table: 20 m of street; it doubles when it is half full."""
+
+_MOST_IN_MEMORY = 1 << 20
+"""Rows of a table; wider ones lie in files without a name beside the drive, so that memory doesn't
+grow with it."""
 
 
 class StandingStems(NamedTuple):
@@ -120,6 +126,10 @@ class CrownCells:
         middles: Floats = (self.places + np.float64(0.5)) * CELL_M
         return middles
 
+    def are_above(self, some: Integers, filled: NDArray[np.bool_]) -> NDArray[np.bool_]:
+        """Whether right below some cells, by their number, lies one that is marked as filled."""
+        return np.isin(_keys_of(self.places[some]) - 1, _keys_of(self.places[filled]))
+
     def components(self, is_open: NDArray[np.bool_], link: int) -> Integers:
         """(n,) int64: which cells hang together with each other; −1: not open.
 
@@ -168,6 +178,7 @@ def crown_cells(
     sums: NDArray[np.float32] = np.zeros((_FIRST_SLOTS // 2, _SUMS), np.float32)
     boxes: NDArray[np.float32] = np.zeros((_FIRST_SLOTS // 2, 6), np.float32)
     places = np.zeros((_FIRST_SLOTS // 2, 4), np.int64)
+    folder = drives[0].folder
     used = 0
     for chunk in chunks_of(drives, plan.origin, monitor):
         begin = 0
@@ -181,8 +192,8 @@ def crown_cells(
                 (slots, places, sums, boxes),
             )
             if begin < len(chunk.local):
-                slots = _doubled(slots)
-                sums, boxes, places = _wider(sums), _wider(boxes), _wider(places)
+                slots, places = _doubled(slots, folder), _wider(places, folder)
+                sums, boxes = _wider(sums, folder), _wider(boxes, folder)
     sums, boxes, trunks, places = sums[:used], boxes[:used], places[:used, 3], places[:used, :3]
     is_told, is_flat, is_bough = np.zeros((3, used), np.bool_)
     keys = _keys_of(places)
@@ -194,15 +205,26 @@ def crown_cells(
     )
 
 
-def _doubled(slots: Integers) -> Integers:
+def _doubled(slots: Integers, folder: Path) -> Integers:
     """The table with twice as much room."""
-    wider = np.full((2, 2 * slots.shape[1]), _EMPTY_KEY, np.int64)
+    wider = _room_for((2, 2 * slots.shape[1]), slots.dtype, folder)
+    wider[:] = _EMPTY_KEY
     rehash_kernel(slots, wider)
     return wider
 
 
-def _wider(rows: NDArray[_Number]) -> NDArray[_Number]:
-    return np.concatenate([rows, np.zeros_like(rows)])
+def _wider(rows: NDArray[_Number], folder: Path) -> NDArray[_Number]:
+    wider: NDArray[_Number] = _room_for((2 * len(rows), rows.shape[1]), rows.dtype, folder)
+    wider[: len(rows)] = rows
+    return wider
+
+
+# The type of the values is the caller's.
+def _room_for(shape: tuple[int, int], dtype: np.dtype[Any], folder: Path) -> NDArray[Any]:
+    """Zeros in memory, or many of them on the disk of a folder."""
+    if max(shape) <= _MOST_IN_MEMORY:
+        return np.zeros(shape, dtype)
+    return nameless_array(folder, dtype, shape)
 
 
 @kernel

@@ -189,6 +189,7 @@ class CrownShares:
             np.array(plan.query_ball_point(top, 2 * _AXIS_M, return_sorted=True), np.int64)
             for top in self._tops
         ]
+        self._stands = cKDTree(self._tops)
         self._sizes = [np.bincount(parts[parts >= 0]) for parts in self._parts]
         self._low = self._low_cells()
         touched = [self._touched(number) for number in range(len(trunks))]
@@ -198,13 +199,14 @@ class CrownShares:
 
     def crowns(self, is_asked: NDArray[np.bool_], monitor: Monitor) -> list[Crown]:
         """What each trunk carries if only those that are asked for share."""
-        order = np.argsort(self._tops[:, 0], kind="stable")
+        strips = np.floor(self._tops[:, 0] / CROWN_M).astype(np.int64)
+        order = np.lexsort((self._tops[:, 1], strips))
         order = order[is_asked[order]]
         shares = np.full(len(self._cells), -1, np.int64)
         share_kernel(
             self._middles,
             self._parts,
-            (order, self._tops, self._reach, self._highest, self._part_of),
+            (order, strips, self._tops, self._reach, self._highest, self._part_of),
             shares,
         )
         by_trunk = np.argsort(shares, kind="stable")
@@ -249,14 +251,15 @@ class CrownShares:
         """How ill this trunk's share suits the neighbour that it suits best."""
         if self._part_of[number, 1] < 0:
             return 1.0
-        away = np.hypot(*(self._tops - self._tops[number]).T)
         link, part = self._part_of[number].tolist()
-        is_rival = is_asked & (self._touches[:, link] == part) & (away < CROWN_M)
-        is_rival[number] = False
-        worse = [
+        beside = self._stands.query_ball_point(self._tops[number], CROWN_M, return_sorted=True)
+        near = np.array(beside, np.int64)
+        is_rival = is_asked[near] & (self._touches[near, link] == part) & (near != number)
+        rivals: Integers = near[is_rival]
+        worse: list[float] = [
             (middles[one] + middles[number]).aside(self._tops[one])
             - middles[one].aside(self._tops[one])
-            for one in np.flatnonzero(is_rival).tolist()
+            for one in rivals.tolist()
             if middles[one].count
         ]
         return min([1.0, *worse])
@@ -310,9 +313,10 @@ class CrownShares:
         # Legs of a tripod rise as boughs do.
         is_leafy = cells.is_told & ~cells.is_flat & ~cells.is_bough
         is_low = ~self._is_high & is_leafy & (bottom >= LOW_M) & (cells.counts >= _FEWEST)
-        filled = set(map(tuple, cells.places[~self._is_high].tolist()))
-        places = zip(np.flatnonzero(is_low).tolist(), cells.places[is_low].tolist(), strict=True)
-        return {(i, j, k): cell for cell, (i, j, k) in places if (i, j, k - 1) not in filled}
+        low = np.flatnonzero(is_low)
+        low = low[~cells.are_above(low, ~self._is_high)]
+        places = zip(low.tolist(), cells.places[low].tolist(), strict=True)
+        return {(i, j, k): cell for cell, (i, j, k) in places}
 
     def _lowest(self, share: Integers, number: int) -> float:
         """Where branches begin, m about the plan's origin: those that hang below the crown too."""
@@ -406,46 +410,58 @@ def _bare(height_m: float, flat_share: float, shape: CrownShape) -> Crown:
 def share_kernel(
     middles: Floats,
     parts: Integers,
-    trunks: tuple[Integers, Floats, Floats, Floats, Integers],
+    trunks: tuple[Integers, Integers, Floats, Floats, Floats, Integers],
     shares: Integers,
 ) -> None:
     """Give each cell to a trunk of its part.
 
     Parameters
     ----------
-    trunks : (order, tops, reach, highest, part_of)
-        Numbers of those that share, from west to east; of all, where they end, the width that
-        crowns of such have, how high such trees can be, and their part: of which row of ``parts``,
-        and which.
+    trunks : (order, strips, tops, reach, highest, part_of)
+        Numbers of those that share, by strips `CROWN_M` wide from west to east, in each from south
+        to north; of all, their strip, where they end, the width that crowns of such have, how high
+        such trees can be, and their part: of which row of ``parts``, and which.
     shares : (n,) int64
         Written; −1 where no trunk of the part is near.
     """
-    order, tops, reach, highest, part_of = trunks
+    order, strips, tops, reach, highest, part_of = trunks
     for cell in range(len(middles)):
         if parts[1, cell] < 0:
             continue
         east, north = middles[cell, 0], middles[cell, 1]
-        low, high = 0, order.size
-        while low < high:
-            middle = (low + high) // 2
-            if tops[order[middle], 0] < east - CROWN_M:
-                low = middle + 1
-            else:
-                high = middle
         best = np.inf
-        for rank in range(low, order.size):
-            trunk = order[rank]
-            if tops[trunk, 0] > east + CROWN_M:
-                break
-            if (
-                part_of[trunk, 1] != parts[part_of[trunk, 0], cell]
-                or middles[cell, 2] > highest[trunk]
-            ):
-                continue
-            away = math.hypot(east - tops[trunk, 0], north - tops[trunk, 1])
-            if away < CROWN_M and away / reach[trunk] < best:
-                best = away / reach[trunk]
-                shares[cell] = trunk
+        own = math.floor(east / CROWN_M)
+        for strip in range(own - 1, own + 2):
+            for rank in range(_first_rank(trunks, strip, north - CROWN_M), order.size):
+                trunk = order[rank]
+                if strips[trunk] > strip or tops[trunk, 1] > north + CROWN_M:
+                    break
+                if (
+                    part_of[trunk, 1] != parts[part_of[trunk, 0], cell]
+                    or middles[cell, 2] > highest[trunk]
+                ):
+                    continue
+                away = math.hypot(east - tops[trunk, 0], north - tops[trunk, 1])
+                if away < CROWN_M and away / reach[trunk] < best:
+                    best = away / reach[trunk]
+                    shares[cell] = trunk
+
+
+@kernel
+def _first_rank(
+    trunks: tuple[Integers, Integers, Floats, Floats, Floats, Integers], strip: int, north: float
+) -> int:
+    """The first trunk in order that is not before a place."""
+    order, strips, tops = trunks[:3]
+    low, high = 0, order.size
+    while low < high:
+        middle = (low + high) // 2
+        trunk = order[middle]
+        if strips[trunk] < strip or (strips[trunk] == strip and tops[trunk, 1] < north):
+            low = middle + 1
+        else:
+            high = middle
+    return low
 
 
 def _lowest(cells: CrownCells, share: Integers) -> float:

@@ -91,7 +91,7 @@ def test_points_of_a_large_survey_lie_in_a_file_without_a_name(
     monkeypatch.setattr(column_points, "_MOST_IN_MEMORY", 0)
     before = sorted(drives[0].folder.iterdir())
     filed = points_about_each(drives, plan, groups, REACH_M, monitor)
-    assert isinstance(filed.local, np.memmap)
+    assert isinstance(filed.local.base, np.memmap)
     assert sorted(drives[0].folder.iterdir()) == before
     for name in ("starts", "local", "drives", "points"):
         np.testing.assert_array_equal(getattr(filed, name), getattr(held, name))

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 from processing.core.monitor import SilentMonitor
 from processing.laboratory.simulate.scene.mesh import TriangleShape, box, tube
@@ -108,5 +109,5 @@ def test_a_post_far_from_its_column_keeps_its_diameter(street: Street) -> None:
 def test_a_plate_is_told_below_a_crown(street: Street) -> None:
     number = street.at(SIGN)
     shaft = street.shafts[number]
-    own = own_points(street.around, number, street.shafts, feet_of(street.shafts))
+    own = own_points(street.around, number, street.shafts, cKDTree(feet_of(street.shafts)))
     assert carried_of(own, shaft).smooth > 0.6
