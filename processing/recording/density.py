@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 
 from processing.core.arrays import Floats, Integers
+from processing.core.kernels import kernel
 from processing.recording.drive import Drive
 
 _PLACE_M = 0.4
@@ -103,6 +104,8 @@ def middle_points(drive: Drive) -> Floats:
     """
     first = max(0, (drive.count - _LOOKED_AT) // 2)
     xyz = drive.xyz(slice(first, min(drive.count, first + _LOOKED_AT)))
+    if np.isfinite(xyz.sum()):
+        return xyz
     finite: Floats = xyz[np.isfinite(xyz).all(axis=1)]
     return finite
 
@@ -168,10 +171,36 @@ def _at_trunks_of(cubes: _Cubes) -> float:
 def _cubes_of(xyz: Floats) -> _Cubes:
     if not len(xyz):
         return _Cubes(np.empty(0, np.int64), np.empty(0, np.int64))
-    cubes = ((xyz - xyz.min(axis=0)) / _PLACE_M).astype(np.int64) & _LAST_CUBE
-    codes = (cubes[:, 0] << 2 * _BITS) | (cubes[:, 1] << _BITS) | cubes[:, 2]
-    numbers, counts = np.unique(codes, return_counts=True)
-    return _Cubes(numbers, counts)
+    codes, counts = np.empty((2, len(xyz)), np.int64)
+    runs = runs_kernel(xyz, xyz.min(axis=0), codes, counts)
+    order = np.argsort(codes[:runs], kind="stable")
+    codes = codes[order]
+    first = np.flatnonzero(np.diff(codes, prepend=-1))
+    return _Cubes(codes[first], np.add.reduceat(counts[order], first))
+
+
+@kernel
+def runs_kernel(xyz: Floats, low: Floats, codes: Integers, counts: Integers) -> int:
+    """Write the cubes of points that follow each other and how many there are of each.
+
+    Of a scan line many points lie in one cube, so that few of them are left to be sorted.
+
+    Returns
+    -------
+    int
+        How many were written.
+    """
+    runs = 0
+    for point in range(len(xyz)):
+        code = 0
+        for axis in range(3):
+            cube = int((xyz[point, axis] - low[axis]) / _PLACE_M) & _LAST_CUBE
+            code = (code << _BITS) | cube
+        if runs == 0 or codes[runs - 1] != code:
+            codes[runs], counts[runs] = code, 0
+            runs += 1
+        counts[runs - 1] += 1
+    return runs
 
 
 def spread_of(xyz: Floats) -> float:

@@ -9,11 +9,13 @@ Where a constant says “by trial”, no measurement varied it alone.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.worked_ahead import in_order
 from processing.recording.drive import Drive
 from processing.recording.kinds import ImageKind
 from processing.recording.vehicle_path.trajectory import Trajectory
@@ -111,10 +113,12 @@ def beam_origins(drive: Drive) -> BeamOrigins | None:
         return BeamOrigins(drive, None, np.zeros(1, np.int64), np.array([position]))
     if drive.revolutions is None or drive.count < _FEWEST_POINTS:
         return None
-    fits = [
-        _fit(drive, drive.revolutions.pulses_per_revolution, middle)
-        for middle in _middles(drive.count)
-    ]
+    per_revolution = drive.revolutions.pulses_per_revolution
+
+    def fit(middle: int) -> tuple[int, _Floats | None]:
+        return _fit(drive, per_revolution, middle)
+
+    fits = in_order(fit, _middles(drive.count).tolist())
     known = [(point, centre) for point, centre in fits if centre is not None]
     if not known:
         return None
@@ -138,8 +142,7 @@ def _fit(drive: Drive, per_revolution: float, middle: int) -> tuple[int, _Floats
     """The centre of the revolutions around a point, in the vehicle's frame where there is one."""
     pulses = drive.columns["pulse"]
     half = _REVOLUTIONS / 2 * per_revolution
-    start = int(np.searchsorted(pulses, pulses[middle] - half))
-    stop = int(np.searchsorted(pulses, pulses[middle] + half))
+    start, stop = (_first_from(pulses, pulses[middle] + off) for off in (-half, half))
     if stop - start < _FEWEST_POINTS:
         return middle, None
     points = np.arange(start, stop, max(1, (stop - start) // _MOST_POINTS))
@@ -151,6 +154,11 @@ def _fit(drive: Drive, per_revolution: float, middle: int) -> tuple[int, _Floats
         xyz = drive.trajectory.to_vehicle(xyz, times)
     angles = (np.asarray(pulses[points]) - pulses[start]) * (2 * np.pi / per_revolution)
     return middle, _centre(xyz, angles)
+
+
+def _first_from(pulses: NDArray[np.int64], least: float) -> int:
+    """The first point from a pulse on; a number of their own kind spares a copy of all."""
+    return int(np.searchsorted(pulses, pulses.dtype.type(math.ceil(least))))
 
 
 def _centre(xyz: _Floats, angles: _Floats) -> _Floats | None:

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.core.arrays import Floats, Integers
+from processing.methods.road.poles.leaves import filled_cells
 from processing.methods.road.poles.patch_kernels import (
     ASIDE,
     BULGING,
@@ -250,10 +251,7 @@ def _wires(points: Floats, away: Floats) -> int:
     far = points[(away > _NEAR_M) & (away < _FAR_M)]
     if len(far) < _WIRE_FEWEST:
         return 0
-    _, member = np.unique(
-        np.floor(far / _WIRE_CELL_M).astype(np.int64), axis=0, return_inverse=True
-    )
-    member = member.reshape(-1)
+    _, member = filled_cells(np.floor(far / _WIRE_CELL_M).astype(np.int64))
     number = np.bincount(member).astype(np.float64)
     middle = np.column_stack([np.bincount(member, axis) / number for axis in far.T])
     off = far - middle[member]

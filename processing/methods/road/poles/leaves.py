@@ -9,6 +9,7 @@ directions, which tells the same). Whose a crown is, trees ask
 from __future__ import annotations
 
 import itertools
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -43,6 +44,10 @@ _FLAT = 0.15
 
 _PAIRS = ((0, 0), (1, 0), (1, 1), (2, 0), (2, 1), (2, 2))
 """Of axes whose products make a matrix of second moments."""
+
+_MOST_SPARE = 16
+"""Cells of the box about points, over their number, up to which a table of all is quicker than to
+sort."""
 
 _SECTORS = 12
 """Of 30 degrees."""
@@ -91,7 +96,7 @@ def leaves_about(points: Floats, shaft: Shaft) -> LeavesAbout:
     free = points[(points[:, 2] > _LOW_M) & ~_is_on(points, shaft)]
     if len(free) == 0:
         return LeavesAbout(0, 0, 1.0, 1.0)
-    cells, member = _filled_cells(_cells_of(free))
+    cells, member = filled_cells(_cells_of(free))
     is_told, is_flat = _shapes(free, member, cells)
     middles = (cells + 0.5) * _CELL_M
     axis = shaft.lean * top
@@ -125,14 +130,23 @@ def _cells_of(points: Floats) -> Integers:
     return np.floor(points / _CELL_M).astype(np.int64)
 
 
-def _filled_cells(cells: Integers) -> tuple[Integers, Integers]:
+def filled_cells(cells: Integers) -> tuple[Integers, Integers]:
     """The different ones of cells, rising, and which of them each is: one number a cell."""
     low = cells.min(axis=0)
-    shape = cells.max(axis=0) - low + 1
-    numbers = np.ravel_multi_index(tuple((cells - low).T), tuple(shape.tolist()))
-    different, member = np.unique(numbers, return_inverse=True)
-    places = np.column_stack(np.unravel_index(different, tuple(shape.tolist())))
-    return places + low, member.reshape(-1)
+    shape = tuple((cells.max(axis=0) - low + 1).tolist())
+    numbers = np.ravel_multi_index(tuple((cells - low).T), shape)
+    if math.prod(shape) > _MOST_SPARE * len(cells):
+        different, member = np.unique(numbers, return_inverse=True)
+        member = member.reshape(-1)
+    else:
+        is_filled = np.zeros(math.prod(shape), np.bool_)
+        is_filled[numbers] = True
+        different = np.flatnonzero(is_filled)
+        rank = np.empty(is_filled.size, np.int64)
+        rank[different] = np.arange(different.size)
+        member = rank[numbers]
+    places = np.column_stack(np.unravel_index(different, shape))
+    return places + low, member
 
 
 def _shapes(

@@ -12,7 +12,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.core.arrays import Floats, Integers
+from processing.core.arrays import Flags, Floats, Integers
+from processing.core.kernels import kernel
+from processing.core.worked_ahead import in_order
 from processing.methods.road.objects.column_points import ColumnPoints
 from processing.methods.road.poles.carried import PIECE_M, is_short
 from processing.methods.road.poles.shafts import Shaft
@@ -69,10 +71,16 @@ class ReflectorSearch:
     ) -> None:
         self._drives, self._around, self._origin = drives, around, origin
         feet = np.array([one.foot[2] for one in shafts])
-        some = np.arange(0, len(around.local), len(around.local) // _LOOKED_AT + 1)
-        owners = np.searchsorted(around.starts, some, side="right") - 1
-        high = some[around.local[some, 2] - feet[owners] > _UPRIGHT_M]
-        self._bounds = [self._bounds_of(number, some, high) for number in range(len(drives))]
+        step = len(around.local) // _LOOKED_AT + 1
+        is_high = np.zeros(-(-len(around.local) // step), np.bool_)
+        upright_kernel(around.local, around.starts, feet, step, is_high)
+
+        def bounds_of(drive: int) -> Floats:
+            mine = around.drives[::step] == drive
+            high = np.flatnonzero(mine & is_high)
+            return self._bounds_of(drive, step * np.flatnonzero(mine), step * high)
+
+        self._bounds = list(in_order(bounds_of, range(len(drives))))
 
     def shines(self, number: int, shaft: Shaft) -> float:
         """Whether a reflector is on the upper half of a shaft, by its number, or a face on it.
@@ -99,16 +107,14 @@ class ReflectorSearch:
             return float(bright >= _FEWEST)
         return float(bright >= _FEWEST_OF_FACE and _has_face(up[is_on], is_bright))
 
-    def _bounds_of(self, drive: int, some: Integers, high: Integers) -> Floats:
+    def _bounds_of(self, drive: int, mine: Integers, high: Integers) -> Floats:
         """The least intensity of a bright point of a drive, for each class of ranges.
 
         Parameters
         ----------
-        some, high : (n,) int64
-            Lines of points that are looked at, and those of them that are above the ground.
+        mine, high : (n,) int64
+            Lines of its points that are looked at, and those of them that are above the ground.
         """
-        mine = some[self._around.drives[some] == drive]
-        high = high[self._around.drives[high] == drive]
         chosen = high if high.size >= _LEAST_HIGH * mine.size else mine
         chosen = chosen[:: chosen.size // _SAMPLE + 1]
         brightness = brightness_of(self._intensity(drive, chosen), self._classes(drive, chosen))
@@ -130,6 +136,18 @@ class ReflectorSearch:
         off = self._around.local[lines] + self._origin - trajectory.positions_at(times)
         ranges = np.where(is_known, np.linalg.norm(off, axis=1), 0.0)
         return range_classes(ranges, CLASSES)
+
+
+@kernel
+def upright_kernel(
+    local: Floats, starts: Integers, feet: Floats, step: int, is_high: Flags
+) -> None:
+    """Mark, of every so many points about shafts, those above the ground about the foot."""
+    shaft = 0
+    for number in range(is_high.size):
+        while number * step >= starts[shaft + 1]:
+            shaft += 1
+        is_high[number] = local[number * step, 2] - feet[shaft] > _UPRIGHT_M
 
 
 def _has_face(heights: Floats, is_bright: NDArray[np.bool_]) -> bool:

@@ -267,11 +267,13 @@ def with_whole_sides(
     around : ColumnPoints
         Points about the shafts, `ABOUT_M` and farther.
     """
-    whole: list[Shaft] = []
-    for number, shaft in enumerate(shafts):
+
+    def whole(number: int) -> Shaft:
         monitor.check()
-        whole.append(_fitted_again(around, number, shaft) if _is_cut(shaft) else shaft)
-    return whole
+        shaft = shafts[number]
+        return _fitted_again(around, number, shaft) if _is_cut(shaft) else shaft
+
+    return list(in_order(whole, range(len(shafts))))
 
 
 def _is_cut(shaft: Shaft) -> bool:
@@ -338,10 +340,12 @@ def _of_pass(
 
     for _ in in_order(measure, chunk_ranges(len(columns), _COLUMNS_AT_ONCE)):
         monitor.check()
-    return [
-        _standing(columns, gathered, column, told[column, number])
-        for column, number in np.argwhere(_are_shafts(told)).tolist()
-    ]
+
+    def standing(shaft: list[int]) -> Shaft:
+        column, number = shaft
+        return _standing(columns, gathered, column, told[column, number])
+
+    return list(in_order(standing, np.argwhere(_are_shafts(told)).tolist()))
 
 
 def _are_shafts(told: Floats) -> NDArray[np.bool_]:

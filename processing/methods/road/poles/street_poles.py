@@ -13,8 +13,10 @@ from typing import NamedTuple
 import numpy as np
 from scipy.spatial import cKDTree
 
-from processing.core.arrays import Floats, Integers
+from processing.core.arrays import Flags, Floats, Integers
+from processing.core.kernels import kernel
 from processing.core.monitor import Monitor, PartMonitor
+from processing.core.worked_ahead import in_order
 from processing.methods.road.objects.column_points import ColumnPoints, points_about_each
 from processing.methods.road.objects.sparse_plan import SparsePlan
 from processing.methods.road.objects.survey import survey_columns
@@ -229,21 +231,26 @@ def shafts_about_all(
     alike = alike_of(shafts) * [is_low(one) for one in shafts]
     beside = {number: replace(_NOTHING, alike=one) for number, one in enumerate(alike.tolist())}
     beside = _likely(shafts, beside, usual_m, least)
-    for number in beside:
+
+    def told_beside(number: int) -> Surroundings:
         monitor.check()
         local = around.local[around.of(number)] - shafts[number].foot
-        told_beside = surroundings_of(local, shafts[number], usual_m, fellows[number])
-        beside[number] = replace(told_beside, alike=beside[number].alike)
-    told: dict[int, ShaftAbout] = {}
-    for number, one in _likely(shafts, beside, usual_m, least).items():
+        told = surroundings_of(local, shafts[number], usual_m, fellows[number])
+        return replace(told, alike=beside[number].alike)
+
+    beside = dict(zip(beside, in_order(told_beside, list(beside)), strict=True))
+    likely = _likely(shafts, beside, usual_m, least)
+
+    def told_about(number: int) -> ShaftAbout:
         monitor.check()
         carried = Carried()
         if _may_carry(shafts[number], usual_m):
             carried = carried_of(own_points(around, number, shafts, stands), shafts[number])
         sides = seen_sides(drives, shafts[number], plan.origin)
         shines = reflectors.shines(number, shafts[number])
-        told[number] = ShaftAbout(one, carried, sides, shines, tree=0.0)
-    return told
+        return ShaftAbout(likely[number], carried, sides, shines, tree=0.0)
+
+    return dict(zip(likely, in_order(told_about, likely), strict=True))
 
 
 def _likely(
@@ -273,23 +280,62 @@ def own_points(
     """
     shaft = shafts[number]
     part = around.of(number)
-    heads = np.unique(shaft.drives)
-    is_own = np.isin(around.drives[part], heads)
-    beyond = [np.empty((0, 3))]
+    is_head = np.zeros(int(shaft.drives.max(initial=-1)) + 1, np.bool_)
+    is_head[shaft.drives] = True
+    own = np.array([[part.start, part.stop]])
+    others = np.empty((0, 2), np.int64)
     if shaft.top_m > ARMS_FROM_M:
-        near = stands.query_ball_point(shaft.foot[:2], 2 * REACH_M, return_sorted=True)
-        for other in (one for one in near if one != number):
-            theirs = around.of(other)
-            high = np.flatnonzero(around.local[theirs, 2] - shaft.foot[2] > ARMS_FROM_M)
-            local = around.local[theirs].take(high, axis=0) - shaft.foot
-            is_near = np.hypot(local[:, 0], local[:, 1]) < REACH_M
-            is_near &= np.isin(around.drives[theirs].take(high), heads)
-            beyond.append(local[is_near])
-    return ShaftNeighbourhood(
-        around.local[part][is_own] - shaft.foot,
-        around.drives[part][is_own],
-        np.concatenate(beyond),
-    )
+        beside = stands.query_ball_point(shaft.foot[:2], 2 * REACH_M, return_sorted=True)
+        near = np.array([one for one in beside if one != number], np.int64)
+        others = np.column_stack([around.starts[near], around.starts[near + 1]])
+    local, heads = _about(around, own, shaft.foot, is_head, (-np.inf, np.inf))
+    beyond, _ = _about(around, others, shaft.foot, is_head, (ARMS_FROM_M, REACH_M))
+    return ShaftNeighbourhood(local, heads, beyond)
+
+
+def _about(
+    around: ColumnPoints, parts: Integers, foot: Floats, is_head: Flags, limits: tuple[float, float]
+) -> tuple[Floats, Integers]:
+    """(n, 3) points of some heads about a foot, and (n,) the head of each.
+
+    Parameters
+    ----------
+    parts : (k, 2) int64
+        First line of the points about a shaft, and the one behind the last.
+    limits : tuple of float
+        Above which height above the foot, and how near in plan, m.
+    """
+    points, wanted = (around.local, around.drives), (foot, is_head)
+    # Counted first: where shafts stand close, few of the points about the others are wanted.
+    count = about_kernel(points, parts, wanted, limits, (np.empty((0, 3)), np.empty(0, np.int64)))
+    local, heads = np.empty((count, 3)), np.empty(count, np.int64)
+    about_kernel(points, parts, wanted, limits, (local, heads))
+    return local, heads
+
+
+@kernel
+def about_kernel(
+    points: tuple[Floats, Integers],
+    parts: Integers,
+    wanted: tuple[Floats, Flags],
+    limits: tuple[float, float],
+    found: tuple[Floats, Integers],
+) -> int:
+    """Write the points that `_about` wants, in their order, as far as there is room; how many."""
+    (local, drives), (foot, is_head) = points, wanted
+    count = 0
+    for part in range(len(parts)):
+        for point in range(parts[part, 0], parts[part, 1]):
+            if drives[point] >= is_head.size or not is_head[drives[point]]:
+                continue
+            up = local[point, 2] - foot[2]
+            east, north = local[point, 0] - foot[0], local[point, 1] - foot[1]
+            if up > limits[0] and math.hypot(east, north) < limits[1]:
+                if count < found[1].size:
+                    found[0][count, 0], found[0][count, 1], found[0][count, 2] = east, north, up
+                    found[1][count] = drives[point]
+                count += 1
+    return count
 
 
 def _may_carry(shaft: Shaft, usual_m: float) -> bool:

@@ -79,5 +79,5 @@ def _offset(plate: Plate, other: Plate) -> Floats:
 
 def _are_back_to_back(plate: Plate, other: Plate) -> bool:
     """Whether two plates look away from each other with their post between them."""
-    off = abs(float(_offset(plate, other)[2]))
+    off = abs(float((other.centre - plate.centre) @ plate.normal))
     return bool(plate.normal @ other.normal < -_OPPOSED and off > _POST_BETWEEN_M)

@@ -9,7 +9,17 @@ from numpy.typing import NDArray
 
 from processing.core.arrays import Floats, Integers
 from processing.core.kernels import kernel
-from processing.methods.road.signs.piece_kernels import COUNT, FROM, PIECE, TO, VIEW
+from processing.methods.road.signs.piece_kernels import (
+    BEFORE,
+    BEHIND,
+    COUNT,
+    FIRST,
+    FROM,
+    GOES_ON,
+    PIECE,
+    TO,
+    VIEW,
+)
 
 FLAT_M = 0.02
 """Both ends of a piece lie so near to a plate's plane: noise of centimetres at most, and plates
@@ -249,6 +259,48 @@ PLANE_MIDDLE, PLANE_RIGHT, PLANE_UP, PLANE_NORMAL, PLANE_NOISE, PLANE_LOW, PLANE
 far its pieces lie off it, and their box, right and up of the middle."""
 
 PLANE_WIDTH = 17
+
+
+@kernel
+def turns_kernel(
+    values: Floats, met_by: tuple[Integers, Integers], members: Integers, plane: Floats
+) -> tuple[int, float, float]:
+    """How many turns met a plane's pieces, on what share of them nothing goes on at either end.
+
+    And the mean length that they draw on the plane, over that of its box along their way.
+
+    Parameters
+    ----------
+    met_by : tuple of (n,) int64
+        Drive and row of each piece.
+    """
+    key = np.empty(members.size, np.int64)
+    rows = met_by[1][members].max() + 1
+    for member in range(members.size):
+        key[member] = met_by[0][members[member]] * rows + met_by[1][members[member]]
+    order = np.argsort(values[members, FIRST], kind="mergesort")
+    order = order[np.argsort(key[order], kind="mergesort")]
+    along, drawn = np.zeros(2), np.zeros(2)
+    turns, clear, drawn_m, begin = 0, 0, 0.0, 0
+    for end in range(1, members.size + 1):
+        if end < members.size and key[order[end]] == key[order[begin]]:
+            continue
+        first, last = members[order[begin]], members[order[end - 1]]
+        clear += values[first, BEFORE] != GOES_ON and values[last, BEHIND] != GOES_ON
+        for axis in range(2):
+            way = plane[PLANE_RIGHT + 3 * axis : PLANE_RIGHT + 3 * axis + 3]
+            ends = np.zeros(2)
+            for i in range(3):
+                ends[0] += (values[first, FROM + i] - plane[PLANE_MIDDLE + i]) * way[i]
+                ends[1] += (values[last, TO + i] - plane[PLANE_MIDDLE + i]) * way[i]
+            drawn[axis] = ends[1] - ends[0]
+        turns, begin = turns + 1, end
+        drawn_m += math.sqrt(drawn[0] ** 2 + drawn[1] ** 2)
+        along += drawn * (-1.0 if drawn[1] < 0 else 1.0)
+    size = plane[PLANE_HIGH : PLANE_HIGH + 2] - plane[PLANE_LOW : PLANE_LOW + 2]
+    whole = abs(along[0]) * size[0] + abs(along[1]) * size[1]
+    whole /= max(math.sqrt(along[0] ** 2 + along[1] ** 2), 1e-9)
+    return turns, clear / turns, drawn_m / turns / max(whole, 1e-9)
 
 
 @kernel

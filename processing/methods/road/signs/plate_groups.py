@@ -11,6 +11,7 @@ from scipy.spatial import cKDTree
 
 from processing.core.arrays import Floats, Integers
 from processing.core.monitor import Monitor
+from processing.core.worked_ahead import in_order
 from processing.methods.road.signs.link_kernels import (
     PLANE_HIGH,
     PLANE_LOW,
@@ -25,16 +26,15 @@ from processing.methods.road.signs.link_kernels import (
     flat_kernel,
     link_kernel,
     plane_kernel,
+    turns_kernel,
 )
 from processing.methods.road.signs.piece_kernels import (
     BEFORE,
     BEHIND,
     BRIGHTS,
     COUNT,
-    FIRST,
     FREE,
     FROM,
-    GOES_ON,
     HIDDEN,
     TO,
     VIEW,
@@ -155,8 +155,8 @@ def plate_groups(pieces: ScanPieces, ways: Floats, monitor: Monitor) -> list[Pla
     values = pieces.values
     is_bright = 2 * values[:, BRIGHTS] > values[:, COUNT]
     is_seed = is_bright | (values[:, BEFORE] == FREE) | (values[:, BEHIND] == FREE)
-    groups: list[PlateGroup] = []
-    for number in range(int(pieces.drive.max(initial=-1)) + 1):
+
+    def linked_of(number: int) -> list[Integers]:
         monitor.check()
         mine = np.flatnonzero(is_seed & (pieces.drive == number))
         mine = mine[np.argsort(pieces.row[mine], kind="stable")]
@@ -164,10 +164,14 @@ def plate_groups(pieces: ScanPieces, ways: Floats, monitor: Monitor) -> list[Pla
         link_kernel(values[mine], pieces.row[mine], is_bright[mine], ways[mine], linked)
         order = np.argsort(linked, kind="stable")
         cuts = np.flatnonzero(np.diff(linked[order])) + 1
-        for members in np.split(mine[order], cuts):
-            monitor.check()
-            if members.size >= _FEWEST_PIECES:
-                groups += _planes(pieces, members)
+        return np.split(mine[order], cuts)
+
+    groups: list[PlateGroup] = []
+    drives = range(int(pieces.drive.max(initial=-1)) + 1)
+    for members in (one for some in in_order(linked_of, drives) for one in some):
+        monitor.check()
+        if members.size >= _FEWEST_PIECES:
+            groups += _planes(pieces, members)
     found: list[PlateGroup] = []
     for one in _completed(pieces, _joined(pieces, groups, is_bright), is_bright):
         monitor.check()
@@ -196,22 +200,11 @@ def _may_be_dull(pieces: ScanPieces, group: PlateGroup) -> bool:
     size = group.high - group.low
     if size.min() < _DULL_LEAST_M or size.max() > _DULL_LARGEST_M:
         return False
-    values = pieces.values[group.pieces]
-    if values[:, COUNT].sum() < _DULL_POINTS:
+    if pieces.values[group.pieces, COUNT].sum() < _DULL_POINTS:
         return False
-    rows = pieces.row[group.pieces]
-    key = pieces.drive[group.pieces] * (rows.max() + 1) + rows
-    order = np.lexsort([values[:, FIRST], key])
-    starts = np.flatnonzero(np.diff(key[order], prepend=-1))
-    if starts.size < _DULL_TURNS:
-        return False
-    first, last = order[starts], order[np.append(starts[1:], key.size) - 1]
-    is_clear = (values[first, BEFORE] != GOES_ON) & (values[last, BEHIND] != GOES_ON)
-    drawn = group.flat(values[last, TO : TO + 3]) - group.flat(values[first, FROM : FROM + 3])
-    along = (drawn * np.where(drawn[:, 1:] < 0, -1.0, 1.0)).sum(axis=0)
-    whole = float(np.abs(along) @ size / max(float(np.linalg.norm(along)), 1e-9))
-    span = float(np.linalg.norm(drawn, axis=1).mean()) / whole
-    return bool(is_clear.mean() >= _LEAST_CLEAR and span >= _LEAST_SPAN)
+    met_by = pieces.drive, pieces.row
+    turns, clear, span = turns_kernel(pieces.values, met_by, group.pieces, group.plane)
+    return turns >= _DULL_TURNS and clear >= _LEAST_CLEAR and span >= _LEAST_SPAN
 
 
 def _is_plate_sized(group: PlateGroup) -> bool:
@@ -336,9 +329,8 @@ def _completed(
     about += middles[:, 1] * planes[:, PLANE_UP:PLANE_NORMAL]
     reach = np.hypot(*(high - low + 2 * RIM_M).T) / 2
     is_own = np.zeros(len(pieces), np.bool_)
-    for number, (group, found) in enumerate(
-        zip(groups, tree.query_ball_point(about, reach, return_sorted=False), strict=True)
-    ):
+    near_each = tree.query_ball_point(about, reach, return_sorted=False, workers=2)
+    for number, (group, found) in enumerate(zip(groups, near_each, strict=True)):
         near = np.array(found, np.int64)
         chosen = np.empty(near.size, np.int64)
         count = complete_kernel(

@@ -11,6 +11,7 @@ from scipy.spatial import cKDTree
 
 from processing.core.arrays import Floats
 from processing.core.monitor import Monitor
+from processing.core.worked_ahead import in_order
 from processing.methods.road.objects.column_points import points_about
 from processing.methods.road.objects.sparse_plan import SparsePlan
 from processing.methods.road.signs.plates import Plate
@@ -73,15 +74,18 @@ def posts_of(
     tree = cKDTree(centres[:, :2])
     near = tree.query_ball_point(centres[:, :2], _ONE_POST_M)
     gathered = points_about(drives, plan, centres[:, :2].copy(), _REACH_M, monitor)
-    found: list[PostForm | None] = []
-    for number, (plate, ground) in enumerate(plates):
+
+    def of_plate(number: int) -> PostForm | None:
+        monitor.check()
+        plate, ground = plates[number]
         # A point is of the nearest plate alone: those of plates near by hold what this one lacks.
         owners = tree.query_ball_point(centres[number, :2], 2 * _REACH_M)
         local = np.concatenate([gathered.local[gathered.of(one)] for one in owners])
         outlines = [plates[one][0].outline[:, 2] for one in near[number]]
         span = np.array([min(map(np.min, outlines)), max(map(np.max, outlines))]) - ground
-        found.append(_form_of(plate, _in_frame(plate, local, ground), span))
-    return found
+        return _form_of(plate, _in_frame(plate, local, ground), span)
+
+    return list(in_order(of_plate, range(len(plates))))
 
 
 def _in_frame(plate: Plate, local: Floats, ground_m: float) -> Floats:

@@ -16,6 +16,7 @@ import numpy as np
 
 from processing.core.arrays import Floats, Integers
 from processing.core.monitor import Monitor
+from processing.core.worked_ahead import in_order
 from processing.methods.road.wires.span_kernels import (
     ASIDE,
     BEND,
@@ -140,9 +141,12 @@ def spans_of(points: WirePoints, monitor: Monitor) -> list[WireSpan]:
     order = np.argsort(group, kind="stable")
     _, first, sizes = np.unique(group[order], return_index=True, return_counts=True)
     large = sizes >= _FEWEST
-    pieces: list[WireSpan] = []
-    for start, size in zip(first[large].tolist(), sizes[large].tolist(), strict=True):
-        pieces += _pieces(points, order[start : start + size], monitor)
+    parts = zip(first[large].tolist(), sizes[large].tolist(), strict=True)
+
+    def of_part(part: tuple[int, int]) -> list[WireSpan]:
+        return _pieces(points, order[part[0] : part[0] + part[1]], monitor)
+
+    pieces = [piece for some in in_order(of_part, parts) for piece in some]
     return _followed_to_ends(points.thin, _joined(local, pieces, monitor))
 
 

@@ -431,6 +431,14 @@ def groups_kernel(
 
 
 @kernel
+def both_kernel(group: NDArray[np.int64], other: NDArray[np.int64]) -> None:
+    """Join what is joined in another array, too; each points to an earlier point or itself."""
+    for point in range(group.size):
+        a, b = _first(group, point), _first(group, other[point])
+        group[max(a, b)] = min(a, b)
+
+
+@kernel
 def firsts_kernel(group: NDArray[np.int64]) -> None:
     """Write the first of its group for each point."""
     for point in range(group.size):

@@ -23,6 +23,7 @@ from processing.methods.road.wires.solid_cells import SolidCells, solid_keys
 from processing.methods.road.wires.wire_kernels import (
     LineLimits,
     WireGrid,
+    both_kernel,
     crowded_kernel,
     firsts_kernel,
     groups_kernel,
@@ -199,12 +200,30 @@ def points_on_lines(
     monitor.check()
     order, cells, starts, grid = _sorted(local)
     local, direction = local[order], direction[order]
-    group = np.arange(len(local), dtype=np.int64)
-    for some in chunk_ranges(len(cells), _CELLS_AT_ONCE):
-        monitor.check()
-        groups_kernel(local, direction, cells, starts, grid, _LIMITS.core_m, some, group)
-    firsts_kernel(group)
+    group = _groups(local, direction, (cells, starts, grid), monitor)
     return WirePoints(local, direction, group, which[order], numbers[order], solid, thin)
+
+
+def _groups(
+    local: Floats, direction: Floats, sorted_by: tuple[Integers, Integers, WireGrid],
+    monitor: Monitor,
+) -> Integers:  # fmt: skip
+    """The first of the points that lie on each other's lines with each one."""
+    cells, starts, grid = sorted_by
+    half = len(cells) // 2
+
+    def joined(part: tuple[int, int]) -> Integers:
+        group = np.arange(len(local), dtype=np.int64)
+        for first, last in chunk_ranges(part[1] - part[0], _CELLS_AT_ONCE):
+            monitor.check()
+            some = part[0] + first, part[0] + last
+            groups_kernel(local, direction, cells, starts, grid, _LIMITS.core_m, some, group)
+        return group
+
+    group, other = in_order(joined, ((0, half), (half, len(cells))))
+    both_kernel(group, other)
+    firsts_kernel(group)
+    return group
 
 
 def _directions(
