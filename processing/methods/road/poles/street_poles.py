@@ -19,6 +19,7 @@ from processing.core.monitor import Monitor, PartMonitor
 from processing.core.worked_ahead import in_order
 from processing.methods.road.objects.column_points import ColumnPoints, points_about_each
 from processing.methods.road.objects.sparse_plan import SparsePlan
+from processing.methods.road.objects.standing_apart import stand_apart
 from processing.methods.road.objects.survey import survey_columns
 from processing.methods.road.poles.alike_shafts import alike_of
 from processing.methods.road.poles.carried import (
@@ -165,15 +166,8 @@ def street_poles(drives: Sequence[Drive], monitor: Monitor) -> tuple[StreetPole,
 
 def _apart(judged: Sequence[_Judged], shafts: Sequence[Shaft]) -> list[_Judged]:
     """Those of which no surer one, named before them, stands in their place."""
-    if not judged:
-        return []
-    feet = feet_of([shafts[one.number] for one in judged])
-    near = cKDTree(feet).query_pairs(_APART_M, output_type="ndarray")
-    near = near[np.hypot(*(feet[near[:, 0]] - feet[near[:, 1]]).T) < _APART_M]
-    is_kept = np.ones(len(judged), np.bool_)
-    for first, second in near[np.lexsort(near.T)].tolist():
-        is_kept[second] &= not is_kept[first]
-    return [one for one, kept in zip(judged, is_kept.tolist(), strict=True) if kept]
+    are_kept = stand_apart(feet_of([shafts[one.number] for one in judged]), _APART_M)
+    return [one for one, is_kept in zip(judged, are_kept.tolist(), strict=True) if is_kept]
 
 
 def _judged(

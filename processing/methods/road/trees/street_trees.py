@@ -21,6 +21,7 @@ from processing.methods.road.objects.columns import FoundColumns
 from processing.methods.road.objects.driven_path import driven_places
 from processing.methods.road.objects.foot import foot_height
 from processing.methods.road.objects.sparse_plan import SparsePlan
+from processing.methods.road.objects.standing_apart import stand_apart
 from processing.methods.road.objects.survey import survey_columns
 from processing.methods.road.trees.clearances import Clearances, GroundBelowCrowns
 from processing.methods.road.trees.column_trunks import ColumnTrunk, column_trunks
@@ -112,12 +113,10 @@ def street_trees(
     drives: Sequence[Drive], settings: TreeSettings, monitor: Monitor
 ) -> tuple[StreetTree, ...]:
     """The upright things of a survey that may be trees, of those of one tree the surest."""
-    kept: list[StreetTree] = []
-    found = upright_things(drives, settings, monitor)
-    for tree in sorted(found, key=lambda one: -one.confidence):
-        if all(np.hypot(*(tree.foot - one.foot)[:2]) >= _APART_M for one in kept):
-            kept.append(tree)
-    return tuple(kept)
+    found = sorted(upright_things(drives, settings, monitor), key=lambda one: -one.confidence)
+    feet = np.array([one.foot[:2] for one in found]).reshape(-1, 2)
+    are_kept = stand_apart(feet, _APART_M).tolist()
+    return tuple(one for one, is_kept in zip(found, are_kept, strict=True) if is_kept)
 
 
 def upright_things(
