@@ -205,9 +205,11 @@ def points_on_lines(
 
 
 def _groups(
-    local: Floats, direction: Floats, sorted_by: tuple[Integers, Integers, WireGrid],
+    local: Floats,
+    direction: Floats,
+    sorted_by: tuple[Integers, Integers, WireGrid],
     monitor: Monitor,
-) -> Integers:  # fmt: skip
+) -> Integers:
     """The first of the points that lie on each other's lines with each one."""
     cells, starts, grid = sorted_by
     half = len(cells) // 2
