@@ -2,7 +2,17 @@
 
 from __future__ import annotations
 
-from PySide6.QtWidgets import QComboBox, QHBoxLayout, QMenu, QSizePolicy, QToolButton, QWidget
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import (
+    QComboBox,
+    QHBoxLayout,
+    QMenu,
+    QSizePolicy,
+    QStyle,
+    QStyleOptionComboBox,
+    QToolButton,
+    QWidget,
+)
 
 from processing.core.text import Language
 from processing.image.attributes.attributes import ATTRIBUTES, available, most_telling_attribute
@@ -15,7 +25,12 @@ from widgets.shared.map_source import MapSource
 from widgets.shared.orientation_menu import fill_orientation_menu
 from widgets.shared.view_settings import ViewSettings
 
-_LEAST_BOX_PX = 48
+_LEAST_BOX_PX, _LEAST_DRIVE_PX = 48, 96
+"""Names of drives begin alike in many projects: less of them is cut off."""
+
+_INNER_PX = 1
+"""Between a box's field and its words, on either side."""
+
 _ARROWS = {(False, False): "→", (False, True): "←", (True, False): "↑", (True, True): "↓"}
 
 
@@ -43,9 +58,10 @@ class ImageViewSettings(QWidget):
         self._source = source
         self._settings = settings
         self._language: Language = language
-        self._drive = QComboBox(self)
-        self._kind = QComboBox(self)
-        self._attribute = QComboBox(self)
+        self._may_shrink = False
+        self._drive = _ElidedBox(self)
+        self._kind = _ElidedBox(self)
+        self._attribute = _ElidedBox(self)
         for box in (self._drive, self._kind, self._attribute):
             box.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToContents)
         ImageKindList(self._kind, language)
@@ -77,6 +93,8 @@ class ImageViewSettings(QWidget):
         for box in (self._drive, self._kind, self._attribute):
             box.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
             box.setMinimumWidth(_LEAST_BOX_PX)
+        self._may_shrink = True
+        self._show()
 
     @property
     def drive(self) -> Drive | None:
@@ -88,6 +106,9 @@ class ImageViewSettings(QWidget):
         settings, drive = self._settings, self.drive
         drives = [(one.info.name, one.id) for one in self._source.drives()]
         _fill(self._drive, drives, settings.drive_id)
+        self._drive.setToolTip(drive.info.name if drive else "")
+        if self._may_shrink:
+            self._drive.setMinimumWidth(min(self._drive.sizeHint().width(), _LEAST_DRIVE_PX))
         kinds = drive.image_kinds if drive else ()
         _fill(
             self._kind,
@@ -127,6 +148,20 @@ class ImageViewSettings(QWidget):
 
     def _on_attribute_activated(self) -> None:
         self._settings.change_look(attribute=str(self._attribute.currentData()))
+
+
+class _ElidedBox(QComboBox):
+    """A box whose words end in dots where they don't fit; Qt would cut a letter in two."""
+
+    def initStyleOption(self, option: QStyleOptionComboBox) -> None:  # noqa: N802 - Qt's name
+        """Give what is drawn the words that fit."""
+        super().initStyleOption(option)
+        style = QStyle.ComplexControl.CC_ComboBox, QStyle.SubControl.SC_ComboBoxEditField
+        room = self.style().subControlRect(style[0], option, style[1], self).width()
+        words = self.fontMetrics().elidedText(
+            option.currentText, Qt.TextElideMode.ElideRight, room - 2 * _INNER_PX
+        )
+        option.currentText = words
 
 
 def _fill(box: QComboBox, entries: list[tuple[str, str]], current: str) -> None:

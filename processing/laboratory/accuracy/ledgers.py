@@ -137,10 +137,15 @@ class CheckedLedger:
         """What rows say in a column, beside the truth, where both say something."""
         fact = self.ledger.columns[column]
         pairs = [
-            (self.rows[one.result.number].get(column, ""), one.truth.facts.get(fact))
+            (self.rows[one.result.number].get(column, ""), self._true(one.truth, fact))
             for one in self.matches.partners
         ]
         return [one for one in pairs if one[0] and one[1] is not None]
+
+    def _true(self, thing: MappedFeature, fact: str) -> object:
+        if (self.ledger.tool, fact) == ("poles", "type"):
+            return poles.known_type(thing)
+        return thing.facts.get(fact)
 
     def _column(self, column: str, fact: str) -> str:
         pairs = self.pairs_of(column)

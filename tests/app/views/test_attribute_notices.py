@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from PySide6.QtWidgets import QComboBox
+from PySide6.QtWidgets import QComboBox, QStyleOptionComboBox
 
 from app.document.document import Document
 from app.jobs.jobs import JobQueue
@@ -97,3 +97,31 @@ def test_a_line_names_the_drives_that_lack_what_was_chosen(
     )
     with qtbot.assertNotEmitted(news.reported):
         document.shared.view_settings.change_look(attribute="intensity")
+
+
+def test_words_that_do_not_fit_end_in_dots_and_the_name_of_the_drive_is_whole(
+    qtbot, source: _Source
+) -> None:
+    choice = ImageViewSettings(source, MapChanges(), _shown(source), language="en")
+    qtbot.addWidget(choice)
+    choice.let_shrink()
+    with qtbot.waitExposed(choice):
+        choice.show()
+    drive, _, attribute = choice.findChildren(QComboBox)
+    choice.resize(choice.minimumSizeHint())
+    assert _drawn_words(drive) == drive.currentText()
+    assert drive.toolTip() == drive.currentText()
+    assert _drawn_words(attribute).endswith("…")
+
+
+def _shown(source: _Source) -> ViewSettings:
+    settings = ViewSettings()
+    drive, *_ = source.drives()
+    settings.show_image(drive.id, drive.image_kinds[0])
+    return settings
+
+
+def _drawn_words(box: QComboBox) -> str:
+    option = QStyleOptionComboBox()
+    box.initStyleOption(option)
+    return option.currentText
