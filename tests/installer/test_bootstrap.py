@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -9,8 +10,9 @@ from pathlib import Path
 import pytest
 
 from installer.bootstrap import version_complaint
+from installer.commands import compile_modules
 from installer.display import has_display, virtual_display
-from installer.environment import was_moved
+from installer.environment import Environment, was_moved
 from installer.steps import InputStamp, Stop, fingerprint, run, status_of
 from installer.system_packages import PACKAGES, not_installed
 from tests.house_rules.sources import ROOT, text_of
@@ -114,3 +116,21 @@ def test_the_lock_pins_every_package_with_hashes_and_names_no_index() -> None:
     assert len(packages) > 50
     assert [line for line in packages if "==" not in line or not line.endswith("\\")] == []
     assert [line for line in lines if "--index" in line or "://" in line] == []
+
+
+def test_modules_have_their_byte_code_beside_them_where_python_may_not_write_it(
+    tmp_path: Path,
+) -> None:
+    folders = [tmp_path / name for name in ("app", "processing", "resources", "widgets")]
+    for folder in folders:
+        folder.mkdir()
+        (folder / "street.py").write_text("lids = 3\n")
+    environment = Environment(tmp_path, {**os.environ, "PYTHONDONTWRITEBYTECODE": "1"})
+    python = environment.program("python")
+    python.parent.mkdir(parents=True)
+    python.symlink_to(sys.executable)
+    compile_modules(environment)
+    assert all(list(folder.rglob("street.*.pyc")) for folder in folders)
+    (folders[0] / "lids.py").write_text("lids =\n")
+    with pytest.raises(Stop):
+        compile_modules(environment)
