@@ -57,7 +57,7 @@ class SampledCells:
 
     def part_seen_again(self, shares: NDArray[np.float32]) -> _Part:
         """What is learnt from the cells and what was said, (c, k), of them and those around."""
-        rows = self.cells.cells.with_neighbours(shares)[self.chosen]
+        rows = self.cells.cells.with_neighbours(shares, SilentMonitor())[self.chosen]
         return rows, self.cells.codes[self.chosen], self.stands_for
 
 

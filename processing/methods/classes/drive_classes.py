@@ -290,7 +290,7 @@ def rows_seen_again(
     cells: ClassCells, models: ClassModels, monitor: Monitor
 ) -> NDArray[np.float32]:
     """(c, f + 3 k) what the second trees are asked: features, and what the first said around."""
-    return cells.with_neighbours(class_shares(models.alone, cells.rows, monitor))
+    return cells.with_neighbours(class_shares(models.alone, cells.rows, monitor), monitor)
 
 
 def shares_of_cells(

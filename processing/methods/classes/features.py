@@ -25,6 +25,7 @@ from processing.methods.classes.shape_kernels import (
     beside_columns_kernel,
     even_kernel,
     extremes_kernel,
+    means_around_kernel,
     shapes_kernel,
 )
 from processing.methods.noise.features.cell_kernels import (
@@ -33,7 +34,6 @@ from processing.methods.noise.features.cell_kernels import (
     SUMS,
     CellLevel,
     column_kernel,
-    mean_around_kernel,
     number_kernel,
     point_sums_kernel,
 )
@@ -96,7 +96,7 @@ class ClassCells:
     levels: tuple[CellLevel, ...]
     held_by: tuple[Integers, ...]
 
-    def with_neighbours(self, shares: NDArray[np.float32]) -> NDArray[np.float32]:
+    def with_neighbours(self, shares: NDArray[np.float32], monitor: Monitor) -> NDArray[np.float32]:
         """The features, and what the cells around each are likely to be.
 
         Parameters
@@ -109,19 +109,35 @@ class ClassCells:
         (c, f + 3 k) float32
             Features, the cell's own shares, means of those within 0.6 and 2.4 m.
         """
-        parts = [self.rows, shares]
-        for number in _AGREE_LEVELS:
-            level, held = self.levels[number], self.held_by[number]
-            sums = np.zeros((level.codes.size, shares.shape[1] + 1))
-            add_rows_kernel(held.astype(np.int32), shares, sums)
-            means = np.empty((level.codes.size, shares.shape[1]), np.float32)
-            column = np.empty(level.codes.size, np.float32)
-            for which in range(shares.shape[1]):
-                totals = np.ascontiguousarray(sums[:, which])
-                mean_around_kernel(level, level.codes, totals, column)
-                means[:, which] = column
-            parts.append(means[held])
-        return np.hstack(parts)
+        near = [self.means_around(shares, number, monitor) for number in _AGREE_LEVELS]
+        return np.hstack([self.rows, shares, *near])
+
+    def means_around(
+        self, values: NDArray[np.float32], number: int, monitor: Monitor
+    ) -> NDArray[np.float32]:
+        """Means over the finest cells in the 27 cubes of one size about each of the finest.
+
+        Parameters
+        ----------
+        values : (c, k) float32
+        number : int
+            The size's place among the levels.
+
+        Returns
+        -------
+        (c, k) float32
+        """
+        level, held = self.levels[number], self.held_by[number]
+        sums = np.zeros((level.codes.size, values.shape[1] + 1))
+        add_rows_kernel(held.astype(np.int32), np.ascontiguousarray(values), sums)
+        means = np.empty((level.codes.size, values.shape[1]), np.float32)
+        share_out(
+            lambda start, stop: means_around_kernel(level, sums, start, stop, means),
+            level.codes.size,
+            _CELLS_AT_ONCE,
+            monitor,
+        )
+        return np.asarray(means[held], np.float32)
 
 
 def class_cells(
@@ -215,4 +231,4 @@ def warm_up() -> None:
     from processing.core.monitor import SilentMonitor
 
     cells = class_cells(np.zeros((2, 3)), np.zeros(2), np.zeros(2, np.float32), SilentMonitor())
-    cells.with_neighbours(np.ones((len(cells.rows), 2), np.float32))
+    cells.with_neighbours(np.ones((len(cells.rows), 2), np.float32), SilentMonitor())

@@ -13,7 +13,6 @@ from processing.methods.classes.aerial_cells import AerialPoints, aerial_cells
 from processing.methods.classes.features import ClassCells
 from processing.methods.classes.ground_strips import strip_columns
 from processing.methods.classes.shape_kernels import add_rows_kernel
-from processing.methods.noise.features.cell_kernels import mean_around_kernel
 
 RETURN_COLUMNS = 3
 """Of each point: log2 of its intensity over the ground's, which return it is, and of how many."""
@@ -54,9 +53,9 @@ def flight_cells(
         columns += [measures, (measures[:, 0] * is_ground)[:, None]]
     values = np.ascontiguousarray(np.hstack(columns), np.float32)
     own = _means(cells.cell_of, values)
-    parts = [own, *(_around(cells, own, number) for number in _AROUND)]
+    parts = [own, *(cells.means_around(own, number, monitor) for number in _AROUND)]
     lit = [(4, 5)] if measures is None else [(4, 5), (4, own.shape[1] - 1)]
-    wide = _around(cells, own, _WIDER)
+    wide = cells.means_around(own, _WIDER, monitor)
     contrast = [
         _of_ground(part, ground, light) - _of_ground(wide, ground, light)
         for ground, light in lit
@@ -87,16 +86,3 @@ def _of_ground(part: NDArray[np.float32], ground: int, light: int) -> NDArray[np
     share = part[:, ground]
     bright = np.where(share > 0, part[:, light] / np.maximum(share, 1e-6), 0.0)
     return bright.astype(np.float32)
-
-
-def _around(cells: ClassCells, own: NDArray[np.float32], number: int) -> NDArray[np.float32]:
-    """(c, k) means over the 27 cells of one size about each of the finest."""
-    level, held = cells.levels[number], cells.held_by[number]
-    sums = np.zeros((level.codes.size, own.shape[1] + 1))
-    add_rows_kernel(held.astype(np.int32), own, sums)
-    means = np.empty((level.codes.size, own.shape[1]), np.float32)
-    column = np.empty(level.codes.size, np.float32)
-    for which in range(own.shape[1]):
-        mean_around_kernel(level, level.codes, np.ascontiguousarray(sums[:, which]), column)
-        means[:, which] = column
-    return np.asarray(means[held], np.float32)

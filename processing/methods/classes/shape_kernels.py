@@ -11,6 +11,7 @@ from processing.core.arrays import Floats, Integers
 from processing.core.kernels import kernel
 from processing.methods.noise.features.cell_kernels import (
     COUNT,
+    SIDES,
     SUM_Z,
     SUMS,
     CellLevel,
@@ -105,6 +106,27 @@ def add_rows_kernel(group: NDArray[np.int32], values: NDArray[np.float32], sums:
         row[values.shape[1]] += 1.0
 
 
+@kernel
+def means_around_kernel(
+    level: CellLevel, sums: Floats, start: int, stop: int, found: NDArray[np.float32]
+) -> None:
+    """Means over the finest cells in the 27 cubes around each of a level's cubes: ``found`` (c, k).
+
+    ``sums`` (c, k + 1): of each cube as from :func:`add_rows_kernel`.
+    """
+    columns = sums.shape[1] - 1
+    total = np.empty(columns + 1)
+    for i in range(start, stop):
+        total[:] = 0
+        for side in range(SIDES):
+            cell = beside(level, level.codes[i], side)
+            if cell >= 0:
+                for column in range(columns + 1):
+                    total[column] += sums[cell, column]
+        for column in range(columns):
+            found[i, column] = total[column] / max(total[columns], 1.0)
+
+
 def warm_up() -> None:
     """Compile the kernels."""
     codes, slots = np.zeros(1, np.int64), np.zeros(16, np.int32)
@@ -114,4 +136,6 @@ def warm_up() -> None:
     shapes_kernel(level, 0, 1, np.empty((1, SHAPES), np.float32))
     extremes_kernel(codes, np.zeros(1), np.zeros(1), np.zeros(1))
     beside_columns_kernel(level, np.zeros(1), np.zeros(1), np.empty((1, 2)))
-    add_rows_kernel(np.zeros(1, np.int32), np.zeros((1, 2), np.float32), np.zeros((1, 3)))
+    sums = np.zeros((1, 3))
+    add_rows_kernel(np.zeros(1, np.int32), np.zeros((1, 2), np.float32), sums)
+    means_around_kernel(level, sums, 0, 1, np.empty((1, 2), np.float32))

@@ -33,8 +33,9 @@ def class_score(counts: ConfusionMatrix) -> PointScore:
 
     The mean is over the classes that the truth has, without noise, which another tool finds, and
     without “other”.
-    Ground and road surface are also counted as one class, as the thesis has them. “Balanced” is the
-    mean for as many points of each of these classes and none of others.
+    Ground and road surface are also counted as one class, as the thesis has them, over all points
+    and, as its own figures are, without those that are truly “other”. “Balanced” is the mean for as
+    many points of each of these classes and none of others.
 
     References
     ----------
@@ -44,10 +45,7 @@ def class_score(counts: ConfusionMatrix) -> PointScore:
     classes = _each_class(known)
     judged = judged_classes(known)
     ground = known.against_rest(GROUND_CODES)
-    f_of = dict(zip(known.codes, known.f_measure.tolist(), strict=True))
-    joined = [f_of[code] for code in judged if code not in GROUND_CODES]
-    if len(joined) < len(judged):
-        joined.append(ground.f_measure)
+    if not set(judged).isdisjoint(GROUND_CODES):
         name = Text("2, 11 ground and road surface", "2・11 地面と路面")
         classes.append(ClassScore("ground_and_road", name, ground))
     return PointScore(
@@ -73,7 +71,15 @@ def class_score(counts: ConfusionMatrix) -> PointScore:
             NamedFigure(
                 "mean_f_ground_joined",
                 Text("mean F, ground and road as one", "F値のクラス平均（地面・路面は1クラス）"),
-                float(np.mean(joined)) if joined else float("nan"),
+                _mean_f_ground_joined(known),
+            ),
+            NamedFigure(
+                "mean_f_as_thesis",
+                Text(
+                    "the same, points that are “other” left out",
+                    "同上、正解が「その他」の点を除く",
+                ),
+                _mean_f_ground_joined(known.without_true((_OTHER,))),
             ),
             NamedFigure(
                 "mean_f_balanced",
@@ -93,6 +99,15 @@ def judged_classes(known: ConfusionMatrix) -> tuple[int, ...]:
         for code, points in zip(known.codes, known.true_counts.tolist(), strict=True)
         if points and code not in NOISE_CODES and code != _OTHER
     )
+
+
+def _mean_f_ground_joined(known: ConfusionMatrix) -> float:
+    judged = judged_classes(known)
+    f_of = dict(zip(known.codes, known.f_measure.tolist(), strict=True))
+    joined = [f_of[code] for code in judged if code not in GROUND_CODES]
+    if len(joined) < len(judged):
+        joined.append(known.against_rest(GROUND_CODES).f_measure)
+    return float(np.mean(joined)) if joined else float("nan")
 
 
 def balanced_sample(known: ConfusionMatrix) -> ConfusionMatrix:

@@ -29,7 +29,7 @@ _POINTS, _SURE, _LINE, _PLANE, _THICKNESS, _NORMAL_X, _NORMAL_Y, _NORMAL_Z, _DIS
 COLUMN = 6
 """Columns of :func:`column_kernel`."""
 
-_SIDES, _SIDES_BEFORE = 27, 13
+SIDES, _SIDES_BEFORE = 27, 13
 """Cubes in a block of three by three by three, and those before its middle."""
 
 _COLUMN_CELLS = 16
@@ -168,7 +168,7 @@ def mean_around_kernel(
     """
     for i in range(codes.size):
         total, count = 0.0, 0.0
-        for side in range(_SIDES):
+        for side in range(SIDES):
             cell = beside(level, codes[i], side)
             if cell >= 0:
                 total += totals[cell]
@@ -262,7 +262,7 @@ def largest_kernel(
         found[cell] = totals[cell] if joins[cell] else 0.0
         if joins[cell]:
             continue
-        for side in range(_SIDES):
+        for side in range(SIDES):
             other = beside(level, level.codes[cell], side)
             if other >= 0 and joins[other]:
                 found[cell] = max(found[cell], totals[other])
