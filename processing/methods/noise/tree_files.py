@@ -13,7 +13,7 @@ version 1; Protocol Buffers, "Encoding".
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
@@ -30,6 +30,8 @@ _IR_VERSION, _OPSET, _ML_OPSET = 8, 15, 1
 _FLOAT_TENSOR, _INT64_TENSOR = 1, 7
 _LEAF, _BRANCH = b"LEAF", b"BRANCH_LEQ"
 _ALL_BITS = (1 << 64) - 1
+_MORE, _LONGEST = 0x80, 10  # of a varint: the bit of a byte that another follows, most bytes
+_MODES = "nodes_modes"  # says what the leaves say, too; a word a node takes long to read
 
 
 _YES_OR_NO = np.array([0, 1], np.uint8)
@@ -46,6 +48,84 @@ class Forest(NamedTuple):
     class_of: NDArray[np.int32]
     bases: NDArray[np.float64]
     codes: NDArray[np.uint8]
+
+
+class AveragedTrees(NamedTuple):
+    """Trees each of which says how likely every class is; their mean counts.
+
+    ``features`` (m,) int32: the column asked at each node, −1 at a leaf; ``thresholds`` (m,)
+    float32: at most this goes to the next node, more to ``rights`` (m,) int32; ``leaf_of`` (m,)
+    int32: of leaves, the row in ``shares`` (l, k) float32; ``roots`` (t,) int32; ``codes`` (k,)
+    uint8: what the classes are.
+    """
+
+    features: NDArray[np.int32]
+    thresholds: NDArray[np.float32]
+    rights: NDArray[np.int32]
+    leaf_of: NDArray[np.int32]
+    shares: NDArray[np.float32]
+    roots: NDArray[np.int32]
+    codes: NDArray[np.uint8]
+
+
+def read_averaged_trees(path: Path) -> AveragedTrees:
+    """Read the trees that :func:`write_averaged_trees` wrote.
+
+    Raises
+    ------
+    ValueError
+        As :func:`read_trees`.
+    """
+    kept = _attributes_of(path)
+    node_ids = _ints_of(kept["nodes_nodeids"])
+    roots = np.flatnonzero(node_ids == 0)
+    start = roots[_ints_of(kept["nodes_treeids"])]
+    leaves = roots[_ints_of(kept["class_treeids"])] + _ints_of(kept["class_nodeids"])
+    codes = _ints_of(kept["classlabels_int64s"]).astype(np.uint8)
+    leaf_of = np.full(node_ids.size, -1, np.int32)
+    different, rows = np.unique(leaves, return_inverse=True)
+    leaf_of[different] = np.arange(different.size)
+    shares = np.zeros((different.size, codes.size), np.float32)
+    shares[rows, _ints_of(kept["class_ids"])] = _floats_of(kept["class_weights"]) * roots.size
+    return AveragedTrees(
+        np.where(leaf_of >= 0, -1, _ints_of(kept["nodes_featureids"])).astype(np.int32),
+        _floats_of(kept["nodes_values"]).astype(np.float32),
+        (start + _ints_of(kept["nodes_falsenodeids"])).astype(np.int32),
+        leaf_of,
+        shares,
+        roots.astype(np.int32),
+        codes,
+    )
+
+
+def write_averaged_trees(trees: AveragedTrees, path: Path, columns: int) -> None:
+    """Write trees whose mean counts as an ONNX model.
+
+    Its input and outputs are as of :func:`write_forest`.
+    """
+    nodes = np.arange(trees.features.size)
+    tree_of = np.searchsorted(trees.roots, nodes, "right") - 1
+    starts, is_leaf = trees.roots[tree_of], trees.features < 0
+    nothing = np.zeros(nodes.size, np.int64)
+    rows, classes = np.nonzero(trees.shares)
+    leaves = np.flatnonzero(is_leaf)[np.argsort(trees.leaf_of[is_leaf])][rows]
+    attributes = {
+        "nodes_treeids": _ints(tree_of),
+        "nodes_nodeids": _ints(nodes - starts),
+        "nodes_featureids": _ints(np.where(is_leaf, 0, trees.features)),
+        "nodes_truenodeids": _ints(np.where(is_leaf, 0, nodes - starts + 1)),
+        "nodes_falsenodeids": _ints(np.where(is_leaf, 0, trees.rights - starts)),
+        "nodes_missing_value_tracks_true": _ints(nothing),
+        "class_treeids": _ints(tree_of[leaves]),
+        "class_nodeids": _ints((nodes - starts)[leaves]),
+        "class_ids": _ints(classes),
+        "classlabels_int64s": _ints(trees.codes),
+        "nodes_values": _floats(np.where(is_leaf, 0.0, trees.thresholds)),
+        "class_weights": _floats(trees.shares[rows, classes] / trees.roots.size),
+        _MODES: _modes(is_leaf),
+        "post_transform": _word(b"NONE"),
+    }
+    _write_model(attributes, path, columns, trees.codes.size)
 
 
 def read_trees(path: Path) -> Trees:
@@ -67,15 +147,14 @@ def read_forest(path: Path) -> Forest:
     ValueError
         As :func:`read_trees`.
     """
-    (graph,) = _fields(path.read_bytes(), _GRAPH)
-    (node,) = _fields(graph, _NODE)
-    kept = {_fields(one, _NAME)[0].decode(): one for one in _fields(node, _ATTRIBUTE)}
+    kept = _attributes_of(path)
     node_ids = _ints_of(kept["nodes_nodeids"])
     roots = np.flatnonzero(node_ids == 0)
     start = roots[_ints_of(kept["nodes_treeids"])]
-    is_leaf = np.array([mode == _LEAF for mode in _fields(kept["nodes_modes"], _STRINGS)])
     thresholds = _floats_of(kept["nodes_values"])
     leaves = roots[_ints_of(kept["class_treeids"])] + _ints_of(kept["class_nodeids"])
+    is_leaf = np.zeros(node_ids.size, np.bool_)
+    is_leaf[leaves] = True
     thresholds[leaves] = _floats_of(kept["class_weights"])
     bases = _floats_of(kept["base_values"])
     class_of = np.zeros(roots.size, np.int32)
@@ -108,34 +187,6 @@ def write_forest(forest: Forest, path: Path, columns: int) -> None:
     Its input is as of :func:`write_trees`; its outputs are ``label`` (n,) int64, the code of the
     likeliest class, and ``shares`` (n, k) float32.
     """
-    path.write_bytes(
-        _number(1, _IR_VERSION)
-        + _block(2, b"zuka")
-        + _block(_GRAPH, _graph(forest, columns))
-        + _block(8, _block(1, b"") + _number(2, _OPSET))
-        + _block(8, _block(1, b"ai.onnx.ml") + _number(2, _ML_OPSET))
-    )
-
-
-def _graph(forest: Forest, columns: int) -> bytes:
-    node = (
-        _block(1, b"features")
-        + _block(2, b"label")
-        + _block(2, b"shares")
-        + _block(4, b"TreeEnsembleClassifier")
-        + b"".join(_block(_ATTRIBUTE, one) for one in _attributes(forest))
-        + _block(7, b"ai.onnx.ml")
-    )
-    return (
-        _block(_NODE, node)
-        + _block(2, b"zuka")
-        + _block(11, _tensor(b"features", _FLOAT_TENSOR, (columns,)))
-        + _block(12, _tensor(b"label", _INT64_TENSOR, ()))
-        + _block(12, _tensor(b"shares", _FLOAT_TENSOR, (forest.codes.size,)))
-    )
-
-
-def _attributes(forest: Forest) -> Iterator[bytes]:
     trees = forest.trees
     nodes = np.arange(trees.features.size)
     tree_of = np.searchsorted(trees.roots, nodes, "right") - 1
@@ -143,38 +194,77 @@ def _attributes(forest: Forest) -> Iterator[bytes]:
     is_leaf = trees.features < 0
     leaves = np.flatnonzero(is_leaf)
     nothing = np.zeros(nodes.size, np.int64)
-    branches = {
-        "nodes_treeids": tree_of,
-        "nodes_nodeids": nodes - starts,
-        "nodes_featureids": np.where(is_leaf, 0, trees.features),
-        "nodes_truenodeids": np.where(is_leaf, 0, trees.lefts - starts),
-        "nodes_falsenodeids": np.where(is_leaf, 0, trees.rights - starts),
-        "nodes_missing_value_tracks_true": nothing,
-        "class_treeids": tree_of[leaves],
-        "class_nodeids": (nodes - starts)[leaves],
-        "class_ids": forest.class_of[tree_of[leaves]],
-        "classlabels_int64s": forest.codes,
+    attributes = {
+        "nodes_treeids": _ints(tree_of),
+        "nodes_nodeids": _ints(nodes - starts),
+        "nodes_featureids": _ints(np.where(is_leaf, 0, trees.features)),
+        "nodes_truenodeids": _ints(np.where(is_leaf, 0, trees.lefts - starts)),
+        "nodes_falsenodeids": _ints(np.where(is_leaf, 0, trees.rights - starts)),
+        "nodes_missing_value_tracks_true": _ints(nothing),
+        "class_treeids": _ints(tree_of[leaves]),
+        "class_nodeids": _ints((nodes - starts)[leaves]),
+        "class_ids": _ints(forest.class_of[tree_of[leaves]]),
+        "classlabels_int64s": _ints(forest.codes),
+        "nodes_values": _floats(np.where(is_leaf, 0.0, trees.thresholds)),
+        "class_weights": _floats(trees.thresholds[leaves]),
+        "base_values": _floats(forest.bases),
+        _MODES: _modes(is_leaf),
+        "post_transform": _word(b"LOGISTIC" if forest.bases.size == 1 else b"SOFTMAX"),
     }
-    for name, values in branches.items():
-        yield _ints(name, values)
-    yield _floats("nodes_values", np.where(is_leaf, 0.0, trees.thresholds))
-    yield _floats("class_weights", trees.thresholds[leaves])
-    yield _floats("base_values", forest.bases)
-    modes = b"".join(_block(_STRINGS, _LEAF if one else _BRANCH) for one in is_leaf)
-    yield _block(_NAME, b"nodes_modes") + modes + _number(_TYPE, _STRINGS_TYPE)
-    link = b"LOGISTIC" if forest.bases.size == 1 else b"SOFTMAX"
-    transform = _block(_STRING, link) + _number(_TYPE, _STRING_TYPE)
-    yield _block(_NAME, b"post_transform") + transform
+    _write_model(attributes, path, columns, forest.codes.size)
 
 
-def _ints(name: str, values: NDArray[np.integer]) -> bytes:
+def _attributes_of(path: Path) -> dict[str, bytes]:
+    (graph,) = _fields(path.read_bytes(), _GRAPH)
+    (node,) = _fields(graph, _NODE)
+    named = ((_first(one, _NAME).decode(), one) for one in _fields(node, _ATTRIBUTE))
+    return {name: one for name, one in named if name != _MODES}
+
+
+def _write_model(attributes: Mapping[str, bytes], path: Path, columns: int, classes: int) -> None:
+    node = (
+        _block(1, b"features")
+        + _block(2, b"label")
+        + _block(2, b"shares")
+        + _block(4, b"TreeEnsembleClassifier")
+        + b"".join(
+            _block(_ATTRIBUTE, _block(_NAME, name.encode()) + content)
+            for name, content in attributes.items()
+        )
+        + _block(7, b"ai.onnx.ml")
+    )
+    graph = (
+        _block(_NODE, node)
+        + _block(2, b"zuka")
+        + _block(11, _tensor(b"features", _FLOAT_TENSOR, (columns,)))
+        + _block(12, _tensor(b"label", _INT64_TENSOR, ()))
+        + _block(12, _tensor(b"shares", _FLOAT_TENSOR, (classes,)))
+    )
+    path.write_bytes(
+        _number(1, _IR_VERSION)
+        + _block(2, b"zuka")
+        + _block(_GRAPH, graph)
+        + _block(8, _block(1, b"") + _number(2, _OPSET))
+        + _block(8, _block(1, b"ai.onnx.ml") + _number(2, _ML_OPSET))
+    )
+
+
+def _ints(values: NDArray[np.integer]) -> bytes:
     packed = b"".join(_varint(int(value)) for value in values)
-    return _block(_NAME, name.encode()) + _block(_INTS, packed) + _number(_TYPE, _INTS_TYPE)
+    return _block(_INTS, packed) + _number(_TYPE, _INTS_TYPE)
 
 
-def _floats(name: str, values: NDArray[np.float64]) -> bytes:
-    packed = values.astype("<f4").tobytes()
-    return _block(_NAME, name.encode()) + _block(_FLOATS, packed) + _number(_TYPE, _FLOATS_TYPE)
+def _floats(values: NDArray[np.floating]) -> bytes:
+    return _block(_FLOATS, values.astype("<f4").tobytes()) + _number(_TYPE, _FLOATS_TYPE)
+
+
+def _modes(is_leaf: NDArray[np.bool_]) -> bytes:
+    words = b"".join(_block(_STRINGS, _LEAF if one else _BRANCH) for one in is_leaf)
+    return words + _number(_TYPE, _STRINGS_TYPE)
+
+
+def _word(word: bytes) -> bytes:
+    return _block(_STRING, word) + _number(_TYPE, _STRING_TYPE)
 
 
 def _tensor(name: bytes, kind: int, sizes: tuple[int, ...]) -> bytes:
@@ -184,7 +274,17 @@ def _tensor(name: bytes, kind: int, sizes: tuple[int, ...]) -> bytes:
 
 
 def _ints_of(attribute: bytes) -> NDArray[np.int64]:
-    return np.array(list(_varints(b"".join(_fields(attribute, _INTS)))), np.int64)
+    packed = np.frombuffer(b"".join(_fields(attribute, _INTS)), np.uint8)
+    ends = np.flatnonzero(packed < _MORE) + 1
+    starts = np.concatenate([[0], ends[:-1]]).astype(np.int64)
+    values = np.zeros(ends.size, np.uint64)
+    for place in range(_LONGEST):
+        there = starts + place < ends
+        if not there.any():
+            break
+        seven = packed[starts[there] + place].astype(np.uint64) & np.uint64(_MORE - 1)
+        values[there] |= seven << np.uint64(7 * place)
+    return values.view(np.int64)
 
 
 def _floats_of(attribute: bytes) -> NDArray[np.float64]:
@@ -193,7 +293,15 @@ def _floats_of(attribute: bytes) -> NDArray[np.float64]:
 
 def _fields(message: bytes, wanted: int) -> list[bytes]:
     """The contents of a message's fields of one number, bytes as they stand."""
-    found, position = [], 0
+    return list(_each_field(message, wanted))
+
+
+def _first(message: bytes, wanted: int) -> bytes:
+    return next(_each_field(message, wanted))
+
+
+def _each_field(message: bytes, wanted: int) -> Iterator[bytes]:
+    position = 0
     while position < len(message):
         key, position = _varint_at(message, position)
         start = position
@@ -208,15 +316,7 @@ def _fields(message: bytes, wanted: int) -> list[bytes]:
         else:
             raise ValueError(f"wire type {wire} at byte {start}")
         if key >> 3 == wanted:
-            found.append(message[start:position])
-    return found
-
-
-def _varints(packed: bytes) -> Iterator[int]:
-    position = 0
-    while position < len(packed):
-        value, position = _varint_at(packed, position)
-        yield value
+            yield message[start:position]
 
 
 def _varint_at(message: bytes, position: int) -> tuple[int, int]:

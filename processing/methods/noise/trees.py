@@ -120,11 +120,12 @@ def word_trees(trees: Trees, columns: int) -> WordTrees:
         ends[:used],
         roots,
         firsts,
-        _rounded_down(different[:, 1]),
+        rounded_down(different[:, 1]),
     )
 
 
-def _rounded_down(thresholds: Floats) -> NDArray[np.float32]:
+def rounded_down(thresholds: Floats) -> NDArray[np.float32]:
+    """The largest single numbers that are at most some double ones."""
     with np.errstate(over="ignore"):
         nearest = thresholds.astype(np.float32)
     below = np.nextafter(nearest, np.float32(-np.inf))
