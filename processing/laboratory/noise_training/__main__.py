@@ -12,6 +12,7 @@ import sys
 from collections.abc import Iterator, Sequence
 from itertools import chain
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 
@@ -22,11 +23,18 @@ from processing.laboratory.noise_training.examples import (
     LabelledCloud,
     case_in_space,
     case_with_beams,
+    recording_with_beams,
     sample_in_space,
     sample_with_beams,
 )
 from processing.laboratory.noise_training.fitting import TreesSize, fit_trees, shift_to_keep
 from processing.laboratory.noise_training.meadows import grow_grass, remove_most_noise
+from processing.laboratory.noise_training.recordings import (
+    MEADOW,
+    MUCH,
+    VARIED,
+    recorded_scene,
+)
 from processing.laboratory.noise_training.relief import on_relief
 from processing.laboratory.noise_training.scanners import AIRBORNE, MOBILE, STANDING
 from processing.laboratory.noise_training.scenes import TrainingScene, scene_of, thin_scene
@@ -70,11 +78,19 @@ _SCANNERS = {
     "beams": (MOBILE, MOBILE, MOBILE, STANDING),
     "space": (STANDING, STANDING, AIRBORNE, MOBILE),
 }
+_RECORDED = (MOBILE, MOBILE, MOBILE, STANDING, STANDING, MEADOW)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Make the models, or only score those that are there."""
     options = _parser().parse_args(arguments)
+    with TemporaryDirectory(prefix="zuka-") as made:
+        options.folder = options.folder or Path(made)
+        _make_and_score(options)
+    return 0
+
+
+def _make_and_score(options: argparse.Namespace) -> None:
     for what in options.what:
         if not (options.score_only or options.only_first_look):
             _make(what, options)
@@ -83,7 +99,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
         for seed in seeds_of(options.held_out):
             for scene, turn, name in [*_scenes(what, (seed,)), *_on_relief(what, (seed,))]:
                 say(score_line(f"{what} {name}", _classify_scene(what, scene, turn), scene))
-    return 0
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -99,6 +114,17 @@ def _parser() -> argparse.ArgumentParser:
         help="of those on relief with much grass and little noise, which are only asked again",
     )
     parser.add_argument("--dense-seeds", default="301-320", help="likewise, from standing scanners")
+    parser.add_argument(
+        "--recordings",
+        default="",
+        help="seeds of the simulator's own that are learned from, too, where beams are known",
+    )
+    parser.add_argument(
+        "--much-recordings",
+        default="",
+        help="likewise, with the usual kinds of noise many times as often",
+    )
+    parser.add_argument("--folder", type=Path, help="where recordings are kept; none: nowhere")
     parser.add_argument("--held-out", default="501-512", help="of the scenes that are scored")
     parser.add_argument(
         "--kept-with-beams", nargs="*", type=Path, default=[], help="folders of true recordings"
@@ -180,6 +206,8 @@ def _cases(what: str, options: argparse.Namespace) -> Iterator[tuple[int, str, L
             is_space = what == "space"
             case = case_in_space(scene, seed) if is_space else case_with_beams(scene, turn, seed)
             yield seed // 12 % _FOLDS, name, case
+    if what == "beams":
+        yield from _recorded_cases(options)
     for seed in seeds_of(options.relief_seeds):
         for scene, _, name in _on_relief(what, (seed,)):
             yield seed // 12 % _FOLDS, name, case_in_space(scene, seed)
@@ -188,6 +216,16 @@ def _cases(what: str, options: argparse.Namespace) -> Iterator[tuple[int, str, L
         kept = sample_in_space if what == "space" else sample_with_beams
         for case in kept(Drive(folder), _KEPT_SEED + 100 * number):
             yield number % _FOLDS, f"kept {folder.name}", case
+
+
+def _recorded_cases(options: argparse.Namespace) -> Iterator[tuple[int, str, LabelledCloud]]:
+    for seeds, noise in ((options.recordings, VARIED), (options.much_recordings, MUCH)):
+        for seed in seeds_of(seeds):
+            how = _RECORDED[seed % len(_RECORDED)]
+            scene = recorded_scene(how, seed, options.folder, noise)
+            if scene.labels.size >= _FEWEST and scene.beams is not None:
+                name = f"recording {how} {seed}"
+                yield seed // 12 % _FOLDS, name, recording_with_beams(scene, seed)
 
 
 def _scenes(what: str, seeds: Sequence[int]) -> Iterator[tuple[TrainingScene, float, str]]:

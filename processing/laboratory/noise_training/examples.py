@@ -1,4 +1,7 @@
-"""Examples for the trees: features of points that are known to be noise or to be true."""
+"""Examples for the trees: features of points that are known to be noise or to be true.
+
+They come of scenes, of recordings by the simulator, and of true recordings, all of which is kept.
+"""
 
 from __future__ import annotations
 
@@ -12,8 +15,20 @@ from numpy.typing import NDArray
 from processing.core.arrays import Flags
 from processing.core.monitor import SilentMonitor
 from processing.image.images_of_drives import image_of
+from processing.laboratory.noise_training.recordings import RecordedScene
 from processing.laboratory.noise_training.scenes import TrainingScene
-from processing.laboratory.noise_training.streets import FAR, GRASS, POST, RAIL, TREE, WIRE
+from processing.laboratory.noise_training.streets import (
+    CAR,
+    CURB,
+    FACADE,
+    FAR,
+    GRASS,
+    POST,
+    RAIL,
+    ROAD,
+    TREE,
+    WIRE,
+)
 from processing.methods.noise.beams.beam_origins import beam_origins
 from processing.methods.noise.beams.beams_of_drives import beams_of
 from processing.methods.noise.combined import OPEN_IN_SPACE
@@ -25,7 +40,23 @@ from processing.recording.drive import Drive
 
 FeatureVectors = NDArray[np.float32]
 
-_POINTS_PER_SCENE = 8_000
+_POINTS_PER_SCENE, _POINTS_PER_RECORDING = 8_000, 3_000
+_NOISE_OFTEN = 3.0
+"""Of recordings: their noise is so much likelier to be an example, and counts so much less."""
+
+_ON_SURFACE_M = 0.04
+"""Noise so near to a true point harms nobody and tells nothing: it is no example."""
+
+_KIND_OF_CODE = {
+    **dict.fromkeys((2, 11), ROAD),
+    **dict.fromkeys((3, 4), GRASS),
+    **dict.fromkeys((65, 66), POST),
+    **dict.fromkeys((1, 6, 15), FACADE),
+    5: TREE,
+    14: WIRE,
+    64: CAR,
+    67: CURB,
+}
 _MOST_POINTS = 200_000
 _CHUNKS = 4
 _FEWEST_ROWS = 50
@@ -86,6 +117,12 @@ class LabelledCloud:
         Where only places are known.
     seed : int
         Chance is drawn from it, so that every pass sees the same.
+    is_clear : (n,) bool or None
+        Which points may be examples; None for all.
+    points_wanted : int
+        Examples, about; of thin things and noise there are more.
+    noise_often : float
+        How many times as often as others noise is an example. It counts as much less.
     """
 
     noise: NDArray[np.int64]
@@ -94,6 +131,9 @@ class LabelledCloud:
     search: BeamSearch | None = None
     intensity: NDArray[np.uint16] | None = None
     space: SpaceSearch | None = None
+    is_clear: Flags | None = None
+    points_wanted: int = _POINTS_PER_SCENE
+    noise_often: float = 1.0
 
     def alone(self) -> tuple[Examples, Examples]:
         """Examples of points by themselves: what the first look sees of each, and everything.
@@ -173,16 +213,55 @@ class LabelledCloud:
             light += np.where(kinds < 0, 0.0, random.normal(-0.7, 1.3, 12)[kinds])
 
     def _some(self, rows: FeatureVectors, points: NDArray[np.int64]) -> Examples:
-        """Some of the rows, thin things twice as often as others."""
+        """Some of the rows, thin things twice as often as others, and noise as is wanted."""
         random = np.random.default_rng(self.seed + 1)
-        is_thin = np.isin(self.kinds[points], _THIN)
-        often = np.where(is_thin, 2.0, 1.0) * _POINTS_PER_SCENE / max(1, points.size)
+        is_thin, is_noise = np.isin(self.kinds[points], _THIN), self.noise[points] > 0
+        usual = self.points_wanted / max(1, points.size)
+        often = np.where(is_thin, 2.0, np.where(is_noise, self.noise_often, 1.0)) * usual
         chosen = random.random(points.size) < often
-        is_noise = self.noise[points] > 0
-        weights = np.where(is_noise, 1.0, _TRUE_WEIGHT)
+        if self.is_clear is not None:
+            chosen &= self.is_clear[points]
+        of_noise = min(1.0, usual) / min(1.0, self.noise_often * usual)
+        weights = np.where(is_noise, of_noise, _TRUE_WEIGHT)
         weights[is_thin] = _THIN_WEIGHT
         weights[np.isin(self.kinds[points], _EASILY_LOST)] = _LOST_WEIGHT
         return Examples(rows[chosen], is_noise[chosen], weights[chosen])
+
+
+def recording_with_beams(scene: RecordedScene, seed: int) -> LabelledCloud:
+    """A recording by the simulator whose beams are known.
+
+    Raises
+    ------
+    ValueError
+        They aren't.
+    """
+    if scene.beams is None:
+        raise ValueError("no beams are known of this recording")
+    kind_of_code = np.full(256, -1)
+    kind_of_code[list(_KIND_OF_CODE)] = list(_KIND_OF_CODE.values())
+    return LabelledCloud(
+        scene.is_noise.astype(np.int64),
+        kind_of_code[scene.labels],
+        seed,
+        search_with_beams(scene.beams, SilentMonitor()),
+        scene.intensity,
+        is_clear=_clear_of_surfaces(scene),
+        points_wanted=_POINTS_PER_RECORDING,
+        noise_often=_NOISE_OFTEN,
+    )
+
+
+def _clear_of_surfaces(scene: RecordedScene) -> Flags:
+    """(n,) whether a point is true, or noise away from what is."""
+    from scipy.spatial import cKDTree
+
+    is_clear, noise = np.ones(scene.labels.size, np.bool_), np.flatnonzero(scene.is_noise)
+    if 0 < noise.size < scene.labels.size:
+        true = cKDTree(scene.xyz[~scene.is_noise])
+        away, _ = true.query(scene.xyz[noise], distance_upper_bound=_ON_SURFACE_M)
+        is_clear[noise] = np.isinf(away)
+    return is_clear
 
 
 def case_with_beams(scene: TrainingScene, turn: float, seed: int) -> LabelledCloud:

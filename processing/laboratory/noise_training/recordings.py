@@ -1,7 +1,7 @@
 """Recordings with known noise, made by the simulator: streets, street scans, sites, flights.
 
-Any scanner and mounting, measuring by phase or by pulses, with more noise than is usual, so that
-every kind is met.
+Any scanner and mounting, measuring by phase or by pulses. Those that judge have more noise than is
+usual; those that are learned from have all kinds side by side, and grass of any height.
 """
 
 from __future__ import annotations
@@ -26,10 +26,16 @@ from processing.laboratory.simulate.assembly.street import Street
 from processing.laboratory.simulate.requests import SiteRequest, StreetRequest
 from processing.laboratory.simulate.scanning.any_mounting import any_sensor, write_sensor
 from processing.laboratory.simulate.scanning.delivered_files import CRS_NAME
+from processing.laboratory.simulate.scanning.noise_options import (
+    NoiseOptions,
+    noise_options,
+    varied_noise,
+)
 from processing.laboratory.simulate.scanning.returns import Weather
 from processing.laboratory.simulate.scanning.sensors import SENSORS, Sensor
 from processing.laboratory.simulate.scene.chance import chance
 from processing.laboratory.simulate.site import DATES, simulate_site
+from processing.laboratory.simulate.sites.bodies import SiteKind
 from processing.laboratory.simulate.street.styles import style_of
 from processing.laboratory.simulate.street_scans import StreetScan, scan_street
 from processing.laboratory.simulate.streets import simulate_street
@@ -41,7 +47,9 @@ from processing.project.importing.importing import ImportRequest, import_drives
 from processing.recording.drive import Drive
 
 MOBILE, STANDING, SITE, AIRBORNE = "mobile", "standing", "site", "airborne"
-NOISE_CODES = (7, 18)
+MEADOW = "meadow"
+MUCH, VARIED, QUIET = "much", "varied", "quiet"
+NOISE_CODES, LOW_PLANT = (7, 18), 3
 _STYLES, _SITE_STYLES = (
     ("urban", "urban", "rural", "highway"),
     ("levee", "cutting", "pad", "hillside"),
@@ -57,7 +65,19 @@ _OFTEN = {"phase": (-0.3, 0.9), "pulse": (0.0, 2.5)}
 """Powers of ten of the usual noise, so that every kind is met; a phase-based scanner has much."""
 
 _QUIET = (-2.0, -0.3)
+_MORE_AMBIGUITIES_M = (25.2, *_AMBIGUITIES_M)
+"""With the shorter one of a Z+F 5003."""
+
+_EXIT_M, _DIVERGENCE_RAD = (0.003, 0.015), (0.0003, 0.002)
+"""Of beams: the wider, the more of them meet an edge and what is behind it."""
+
+_GROWTH, _FLATTEST = (0.03, 3.0), (0.06, 0.3)
+"""From lawns to meadows of half a metre; thin blades let a flat beam by, dense ones end it."""
+
+_MEADOW_STEPS_M = (0.022, 0.06)
 _STRIP_SHARE, _STRIP_M = 0.5, (15.0, 30.0)
+_WET_SHARE = 0.35
+_ON_TRIPODS = ("p40", "vz400i", "zf5016")
 _SECTORS, _PULSES = (1.0, 1.0, 0.4, 0.15), (200_000, 500_000)
 _SITE_LENGTH_M, _SITE_SPACINGS_M = (20.0, 45.0), (0.03, 0.09)
 _FLIGHT_SPACINGS_M, _FLIGHT_POINTS = (0.25, 2.0), 60_000
@@ -103,19 +123,20 @@ class RecordedScene:
         return RecordedScene(self.xyz[kept], self.labels[kept], self.intensity[kept], beams)
 
 
-def recorded_scene(how: str, seed: int, folder: Path, *, is_quiet: bool = False) -> RecordedScene:
+def recorded_scene(how: str, seed: int, folder: Path, noise: str = MUCH) -> RecordedScene:
     """The scene of a seed; made once and kept as a file of the folder.
 
     Parameters
     ----------
-    how : {"mobile", "standing", "site", "airborne"}
-    is_quiet : bool
-        With next to no noise.
+    how : {"mobile", "standing", "site", "meadow", "airborne"}
+        A meadow is a site scanned from one place, with its sweeps.
+    noise : {"much", "varied", "quiet"}
+        The usual kinds many times as often; all kinds (and grass of any height); next to none.
     """
-    path = folder / f"{how}-{seed}{'-quiet' if is_quiet else ''}.npz"
+    path = folder / f"{how}-{seed}{'' if noise == MUCH else f'-{noise}'}.npz"
     if not path.is_file():
         folder.mkdir(parents=True, exist_ok=True)
-        _write_scene(_MAKERS[how](seed, _seldom if is_quiet else _often), path)
+        _write_scene(_MAKERS[how](seed, noise), path)
     return _read_scene(path)
 
 
@@ -138,16 +159,35 @@ def _read_scene(path: Path) -> RecordedScene:
     return RecordedScene(arrays["xyz"], arrays["labels"], arrays["intensity"], beams)
 
 
-Often = Callable[[Generator, Sensor], float]
-"""How many times the usual noise a scene has."""
+def _noise_of(random: Generator, seed: int, sensor: Sensor, noise: str) -> NoiseOptions:
+    if noise == VARIED:
+        return varied_noise(seed, sensor)
+    powers = _QUIET if noise == QUIET else _OFTEN[sensor.measures_by]
+    return noise_options(seed, sensor, float(10 ** random.uniform(*powers)))
 
 
-def _often(random: Generator, sensor: Sensor) -> float:
-    return float(10 ** random.uniform(*_OFTEN[sensor.measures_by]))
+def _weather_of(seed: int) -> Weather:
+    """Of recordings that are learned from."""
+    random = chance(seed, "training", "weather")
+    return Weather(
+        float(random.uniform(0.05, 0.7)) if random.random() < _WET_SHARE else 0.0,
+        float(random.uniform(0.3, 0.9)),
+        float(random.choice([0.0, 0.5, 0.9])),
+        float(np.exp(random.uniform(*np.log(_GROWTH)))),
+        float(np.exp(random.uniform(*np.log(_FLATTEST)))),
+    )
 
 
-def _seldom(random: Generator, _: Sensor) -> float:
-    return float(10 ** random.uniform(*_QUIET))
+def _varied_sensor(seed: int, sensor: Sensor) -> Sensor:
+    """The same scanner with a beam of any width, and any range of unambiguity."""
+    random = chance(seed, "training", "beam")
+    is_phase = sensor.measures_by == "phase"
+    return replace(
+        sensor,
+        exit_m=round(float(np.exp(random.uniform(*np.log(_EXIT_M)))), 4),
+        divergence_rad=round(float(np.exp(random.uniform(*np.log(_DIVERGENCE_RAD)))), 6),
+        most_m=float(random.choice(_MORE_AMBIGUITIES_M)) if is_phase else sensor.most_m,
+    )
 
 
 def _of_any_kind(random: Generator, sensor: Sensor) -> Sensor:
@@ -158,10 +198,12 @@ def _of_any_kind(random: Generator, sensor: Sensor) -> Sensor:
     return replace(sensor, measures_by="pulse", most_m=max(sensor.most_m, 150.0))
 
 
-def _mobile(seed: int, often: Often) -> RecordedScene:
+def _mobile(seed: int, noise: str) -> RecordedScene:
     """Some seconds of one head, or all that a surveyor cut out of them."""
     random = chance(seed, "training", MOBILE)
     sensor = _of_any_kind(random, any_sensor(seed))
+    is_varied = noise == VARIED
+    sensor = _varied_sensor(seed, sensor) if is_varied else sensor
     with TemporaryDirectory(prefix="zuka-") as at:
         delivery, own = Path(at) / "street", Path(at) / "sensor.toml"
         write_sensor(sensor, own)
@@ -171,10 +213,11 @@ def _mobile(seed: int, often: Often) -> RecordedScene:
             style=str(random.choice(_STYLES)),
             own_sensor=str(own),
             avenue=bool(random.random() < 0.2),
-            noise=often(random, sensor),
             images=False,
         )
-        simulate_street(request, delivery, SilentMonitor())
+        options = _noise_of(random, seed, sensor, noise)
+        weather = _weather_of(seed) if is_varied else None
+        simulate_street(request, delivery, SilentMonitor(), noise=options, weather=weather)
         file = min(delivery.glob("*.laz"))
         labels = delivery / "truth" / f"{file.stem}.labels.npy"
         drive, own_labels = _imported(file, (delivery / "trajectory.csv",), labels)
@@ -222,31 +265,62 @@ def _drive_scene(drive: Drive, labels: NDArray[np.uint8]) -> RecordedScene:
     return RecordedScene(beams.xyz, labels[points], intensity, beams)
 
 
-def _standing(seed: int, often: Often) -> RecordedScene:
+def _standing(seed: int, noise: str) -> RecordedScene:
     """One scan with its sweeps; now and then two or three as one cloud, of places alone."""
     random = chance(seed, "training", STANDING)
-    sensor = _of_any_kind(random, SENSORS[str(random.choice(["p40", "vz400i", "zf5016"]))])
+    sensor = _of_any_kind(random, SENSORS[str(random.choice(_ON_TRIPODS))])
+    sensor = _varied_sensor(seed, sensor) if noise == VARIED else sensor
     street = Street(seed, style_of(str(random.choice(_STYLES))), 20.0)
-    noise = often(random, sensor)
+    options = _noise_of(random, seed, sensor, noise)
     pulses, share = int(random.integers(*_PULSES)), float(random.choice(_SECTORS))
     weather = Weather(0.0, float(random.uniform(0.3, 0.9)), 0.0, float(random.uniform(0.03, 1.0)))
+    weather = _weather_of(seed) if noise == VARIED else weather
     with TemporaryDirectory(prefix="zuka-") as at:
         file = Path(at) / "scan.laz"
-        scan = StreetScan(0, sensor, pulses, share, noise)
+        scan = StreetScan(0, sensor, pulses, share, options)
         scan_street(street, scan, weather, file, SilentMonitor())
         drive, labels = _imported(file, (), file.with_suffix(".labels.npy"))
+        return _swept_scene(drive, labels)
+
+
+def _swept_scene(drive: Drive, labels: NDArray[np.uint8]) -> RecordedScene:
+    """A standing scan, with its beams where they are found."""
+    with TemporaryDirectory(prefix="zuka-") as at:
         found = standing_scan_of(drive, Path(at), SilentMonitor())
         if found is None:
             xyz = drive.xyz(slice(0, drive.count))
-            return RecordedScene(
-                xyz - xyz.mean(axis=0), labels, np.asarray(drive.columns["intensity"])
-            )
-        beams, points = found.beams_of(range(found.row_starts.size - 1))
+            intensity = np.asarray(drive.columns["intensity"])
+            return RecordedScene(xyz - xyz.mean(axis=0), labels, intensity)
+        starts = found.row_starts
+        last = int(np.searchsorted(starts, 2 * _MOST_POINTS, "right")) - 1
+        beams, points = found.beams_of(range(max(1, last)))
         intensity = np.asarray(drive.columns["intensity"][points])
         return RecordedScene(np.array(beams.xyz), labels[points], intensity, beams)
 
 
-def _site(seed: int, _: Often) -> RecordedScene:
+def _meadow(seed: int, _: str) -> RecordedScene:
+    """A site from one place: banks, hills and grass of any height, with little noise."""
+    random = chance(seed, "training", MEADOW)
+    request = SiteRequest(
+        seed=seed,
+        length_m=float(random.uniform(*_SITE_LENGTH_M)),
+        style=str(random.choice(_SITE_STYLES)),
+        sensor=str(random.choice(_ON_TRIPODS)),
+        stations=1,
+        spacing_m=float(np.exp(random.uniform(*np.log(_MEADOW_STEPS_M)))),
+    )
+    with TemporaryDirectory(prefix="zuka-") as at:
+        folder = Path(at) / "site"
+        simulate_site(request, folder, SilentMonitor(), weather=_weather_of(seed))
+        date = str(random.choice(DATES))
+        labels = folder / "truth" / f"labels_{date}.npy"
+        coded = np.load(labels)  # grass is but "other" there
+        coded[np.load(folder / "truth" / f"kinds_{date}.npy") == SiteKind.GRASS] = LOW_PLANT
+        np.save(labels, coded)
+        return _swept_scene(*_imported(folder / "in" / f"{date}.laz", (), labels))
+
+
+def _site(seed: int, noise: str) -> RecordedScene:
     """A site's stations as one cloud, or one of them."""
     import laspy
 
@@ -255,13 +329,14 @@ def _site(seed: int, _: Often) -> RecordedScene:
         seed=seed,
         length_m=float(random.uniform(*_SITE_LENGTH_M)),
         style=str(random.choice(_SITE_STYLES)),
-        sensor=str(random.choice(["p40", "vz400i", "zf5016"])),
+        sensor=str(random.choice(_ON_TRIPODS)),
         stations=int(random.integers(1, 4)),
         spacing_m=float(np.exp(random.uniform(*np.log(_SITE_SPACINGS_M)))),
     )
     with TemporaryDirectory(prefix="zuka-") as at:
         folder = Path(at) / "site"
-        simulate_site(request, folder, SilentMonitor())
+        weather = _weather_of(seed) if noise == VARIED else None
+        simulate_site(request, folder, SilentMonitor(), weather=weather)
         date = str(random.choice(DATES))
         points = laspy.read(folder / "in" / f"{date}.laz")
         xyz, labels = np.asarray(points.xyz), np.load(folder / "truth" / f"labels_{date}.npy")
@@ -270,7 +345,7 @@ def _site(seed: int, _: Often) -> RecordedScene:
     return _piece_of_many(random, scene)
 
 
-def _airborne(seed: int, _: Often) -> RecordedScene:
+def _airborne(seed: int, _: str) -> RecordedScene:
     random = chance(seed, "training", AIRBORNE)
     spacing = float(np.exp(random.uniform(*np.log(_FLIGHT_SPACINGS_M))))
     extent = float(np.clip(spacing * np.sqrt(_FLIGHT_POINTS), 40.0, 400.0))
@@ -292,10 +367,11 @@ def _piece_of_many(random: Generator, scene: RecordedScene) -> RecordedScene:
     return scene.chosen(away <= np.partition(away, _MOST_POINTS)[_MOST_POINTS])
 
 
-_MAKERS: Mapping[str, Callable[[int, Often], RecordedScene]] = {
+_MAKERS: Mapping[str, Callable[[int, str], RecordedScene]] = {
     MOBILE: _mobile,
     STANDING: _standing,
     SITE: _site,
+    MEADOW: _meadow,
     AIRBORNE: _airborne,
 }
 

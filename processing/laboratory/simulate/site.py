@@ -46,7 +46,12 @@ _DAY_S = 86_400.0
 
 
 def simulate_site(
-    request: SiteRequest, folder: Path, monitor: Monitor, *, registration_m: float = 0.0
+    request: SiteRequest,
+    folder: Path,
+    monitor: Monitor,
+    *,
+    registration_m: float = 0.0,
+    weather: Weather | None = None,
 ) -> Simulated:
     """Make a site, record it on both dates, and write the delivery and its truth.
 
@@ -57,6 +62,8 @@ def simulate_site(
     registration_m : float
         Standard deviation of an error that all of the later date has in common: nothing changed
         where nothing was done, and yet the clouds differ.
+    weather : Weather or None
+        Of both dates; None: drawn for the seed.
 
     Raises
     ------
@@ -72,7 +79,7 @@ def simulate_site(
     with write_whole_folder(folder) as hidden:
         for part in ("in", "truth"):
             (hidden / part).mkdir()
-        count = _write(request, sensor, hidden, (monitor, registration_m))
+        count = _write(request, sensor, hidden, (monitor, registration_m), weather)
     monitor.report(1.0)
     points = tuple(folder / "in" / f"{date}.laz" for date in DATES)
     return Simulated(folder, points, (), (), folder / "truth", CRS, count)
@@ -87,6 +94,7 @@ class _Site:
     terrain: SiteTerrain
     position: SiteReference
     polygon: Floats
+    weather: Weather | None
 
     @property
     def cells(self) -> tuple[int, int]:
@@ -95,7 +103,13 @@ class _Site:
         return -(-(rows - 1) // per_cell), -(-(columns - 1) // per_cell)
 
 
-def _write(request: SiteRequest, sensor: Sensor, hidden: Path, work: tuple[Monitor, float]) -> int:
+def _write(
+    request: SiteRequest,
+    sensor: Sensor,
+    hidden: Path,
+    work: tuple[Monitor, float],
+    weather: Weather | None,
+) -> int:
     """Write all files; gives how many points there are."""
     monitor, registration_m = work
     random = chance(request.seed, "place")
@@ -103,7 +117,12 @@ def _write(request: SiteRequest, sensor: Sensor, hidden: Path, work: tuple[Monit
     east, north = np.round(random.uniform((-30_000, -60_000), (10_000, -20_000)))
     position = SiteReference(float(east), float(north))
     site = _Site(
-        request, sensor, terrain, position, _polygon(request.seed, terrain.before.heights.size_m)
+        request,
+        sensor,
+        terrain,
+        position,
+        _polygon(request.seed, terrain.before.heights.size_m),
+        weather,
     )
     starts = [_FIRST_S + float(random.integers(0, 30_000)) * 1000.0]
     starts.append(starts[0] + round(float(random.uniform(5, 60))) * _DAY_S)
@@ -173,7 +192,7 @@ def _survey(site: _Site, date: str, monitor: Monitor) -> SiteSurvey:
     starts = scans_at(pattern, len(stations))
     moving = chance(request.seed, "moving", date)
     tracks = tracks_of(moving, layout, starts[-1] + pattern.scan_s)
-    weather = Weather(
+    usual = Weather(
         float(moving.uniform(0, 0.6)) if moving.random() < 0.5 else 0.0,
         float(moving.uniform(0.4, 1.0)),
     )
@@ -182,7 +201,7 @@ def _survey(site: _Site, date: str, monitor: Monitor) -> SiteSurvey:
         date,
         sensor,
         pattern,
-        weather,
+        site.weather or usual,
         stations,
         layout,
         scene,

@@ -19,6 +19,7 @@ from processing.laboratory.simulate.scanning.delivered_files import (
     DeliveredPoints,
     PointFile,
 )
+from processing.laboratory.simulate.scanning.noise_options import NoiseOptions
 from processing.laboratory.simulate.scanning.passing_noise import Path
 from processing.laboratory.simulate.scanning.return_kernels import intensities
 from processing.laboratory.simulate.scanning.returns import (
@@ -63,15 +64,15 @@ class StreetScan:
         About how many are sent in all.
     share : float
         Of the horizon that is scanned: the less, the finer.
-    noise : float
-        How many times as much as is usual.
+    noise : NoiseOptions or None
+        None: what is usual for the street's seed.
     """
 
     number: int
     sensor: Sensor
     pulses: int
     share: float = 1.0
-    noise: float = 1.0
+    noise: NoiseOptions | None = None
 
     @property
     def pattern(self) -> TripodScanPattern:
@@ -152,7 +153,7 @@ def _stretches(
         scan.sensor,
         ScanPattern(rows.size, 1.0 / pattern.column_s, 0.0),
         path,
-        often=scan.noise,
+        options=scan.noise,
     )
     scanner = scanner_numbers(scan.sensor, pattern.columns, weather)
     per_stretch = max(1, _PULSES_AT_ONCE // rows.size)

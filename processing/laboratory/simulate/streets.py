@@ -38,6 +38,7 @@ from processing.laboratory.simulate.scanning.delivered_files import (
     PointFile,
 )
 from processing.laboratory.simulate.scanning.moving import MovingScene
+from processing.laboratory.simulate.scanning.noise_options import NoiseOptions, noise_options
 from processing.laboratory.simulate.scanning.recording import (
     Evidence,
     HeadChunk,
@@ -74,13 +75,24 @@ _MOST_STEPS = np.iinfo(np.int16).max
 _TRUTH_SHARE = 0.97  # of the progress; the rest is truth
 
 
-def simulate_street(request: StreetRequest, folder: Path, monitor: Monitor) -> Simulated:
+def simulate_street(
+    request: StreetRequest,
+    folder: Path,
+    monitor: Monitor,
+    *,
+    noise: NoiseOptions | None = None,
+    weather: Weather | None = None,
+) -> Simulated:
     """Make a street and its recording.
 
     Parameters
     ----------
     folder : Path
         New or empty; whole or not there afterwards.
+    noise : NoiseOptions or None
+        None: what the request says.
+    weather : Weather or None
+        None: drawn for the seed.
 
     Raises
     ------
@@ -104,7 +116,7 @@ def simulate_street(request: StreetRequest, folder: Path, monitor: Monitor) -> S
             is_avenue=request.avenue,
             is_flush=request.flush,
         )
-        work = _Work(request, street, sensor, hidden)
+        work = _Work(request, street, sensor, hidden, noise=noise, weather=weather)
         for number in range(request.passes):
             share = _TRUTH_SHARE / request.passes
             work.drive(number, PartMonitor(monitor, number * share, (number + 1) * share))
@@ -135,7 +147,14 @@ class _Work:
     """One simulation on its way: what is known of it so far."""
 
     def __init__(
-        self, request: StreetRequest, street: Street, sensor: Sensor, folder: Path
+        self,
+        request: StreetRequest,
+        street: Street,
+        sensor: Sensor,
+        folder: Path,
+        *,
+        noise: NoiseOptions | None,
+        weather: Weather | None,
     ) -> None:
         self.request, self.street, self.sensor, self.folder = request, street, sensor, folder
         random = chance(request.seed, "place")
@@ -145,7 +164,7 @@ class _Work:
         self.origin[2] = random.uniform(5, 300)
         self.start_s = float(np.round(random.uniform(3.5e8, 4.2e8), 3))
         wet = random.random() > _DRY_SHARE
-        self.weather = Weather(
+        self.weather = weather or Weather(
             float(random.uniform(0.05, 0.7)) if wet else 0.0,
             float(random.uniform(0.3, 0.9)),
             float(random.choice([0.0, 0.5, 0.9])),
@@ -154,7 +173,12 @@ class _Work:
         self.scan_pattern = ScanPattern(
             request.pulses or sensor.pulses, request.turns_per_s or sensor.turns_per_s, 0.0
         )
-        self.setup = Setup(sensor, self.scan_pattern, self.weather, request.noise)
+        self.setup = Setup(
+            sensor,
+            self.scan_pattern,
+            self.weather,
+            noise or noise_options(request.seed, sensor, request.noise),
+        )
         slow, fast = street.style.speed_m_s
         usual = float(chance(request.seed, "speed").uniform(slow, fast))
         self.driving = Driving(

@@ -14,7 +14,6 @@ from numpy.typing import NDArray
 from processing.laboratory.simulate.scanning.beams import Beams
 from processing.laboratory.simulate.scanning.casting import RaycastScene
 from processing.laboratory.simulate.scanning.return_kernels import (
-    PASSED,
     first_returns,
     mirrored_ways,
 )
@@ -24,10 +23,6 @@ from processing.laboratory.simulate.scene.mesh import Floats, Integers
 
 MIRRORS = (Material.GLASS, Material.MIRROR, Material.WATER)
 """Materials in which other things are seen."""
-
-_MIRRORED = 0.15
-"""Share of the light that the four faces of a double pane send back (Fresnel, index 1.52: 4.3 %
-each, less what the faces before let by)."""
 
 _LEVEL = 0.7  # of a normal's z: water and wet ground rather than windows
 _SAME_M = 1e-3
@@ -72,8 +67,8 @@ def mirrored_echoes(
     ----------
     reaches : (beams,) float64
         How far off each beam met something, m.
-    scanner : (12,) float64
-        `scanner_numbers`.
+    scanner : (13,) float64
+        `scanner_numbers`, with the share of light that the mirror lets by there and back.
     rays : (n,) int64
         Beams that met mirrors, rising.
     key : int
@@ -106,11 +101,9 @@ def mirrored_echoes(
     )
     starts, directions = np.zeros((count, 3)), np.zeros((count, 3))
     starts[rays], directions[rays] = positions - ways * reaches[rays, None], ways
-    dimmed = scanner.copy()
-    dimmed[PASSED] = _MIRRORED**2
     ranges, _, strengths = out = (np.empty(count), np.empty(count), np.empty(count))
     seen = whole, cosines, materials
-    first_returns((beams.first, starts, directions), seen, OPTICS, dimmed, key + _SALT, out)
+    first_returns((beams.first, starts, directions), seen, OPTICS, scanner, key + _SALT, out)
     is_back = ~np.isnan(ranges[rays])
     rays, normals = rays[is_back], normals[is_back]
     return MirroredEchoes(rays, ranges[rays], strengths[rays], np.abs(normals[:, 2]) > _LEVEL)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 from processing.laboratory.simulate.scanning.sensors import Sensor
@@ -38,6 +39,19 @@ class NoiseOptions:
         Patches of ground that a second way of the light shows lower, passed in a second.
     sun : float
         Of pulses that look into the sun.
+    glints_per_s : float
+        Times in a second that the sun shines into the receiver by way of panes, chrome and water.
+    mirrored : float
+        Of pulses on panes, mirrors and water: those that may come back of what is seen there.
+    pane : float
+        Of the light that a pane sends back. Clear double panes: 0.15 (their four faces by Fresnel,
+        index 1.52: 4.3 % each, less what the faces before let by); coatings against heat, made to
+        send back the near infrared, 0.3 to 0.6 and more; metal 0.9.
+    saturated : float
+        Strength of an echo, 1 that of a white surface 10 m away, beyond which the receiver is
+        driven too far and measures as it does on retro-reflecting plates.
+    streak_m : float
+        Standard deviation of ranges that are measured so.
     """
 
     arcs_per_s: float
@@ -49,13 +63,18 @@ class NoiseOptions:
     clouds_per_s: float = 0.0
     patches_per_s: float = 0.0
     sun: float = 0.0
+    glints_per_s: float = 0.0
+    mirrored: float = 0.25
+    pane: float = 0.15
+    saturated: float = math.inf
+    streak_m: float = 0.5
 
     def times(self, often: float) -> NoiseOptions:
         """The same kinds so many times as often; shares of what is bright or far are the same."""
         if often == 1.0:
             return self
         shares = {name: min(1.0, often * getattr(self, name)) for name in ("drops", "late", "lone")}
-        counts = ("arcs_per_s", "clouds_per_s", "patches_per_s")
+        counts = ("arcs_per_s", "clouds_per_s", "patches_per_s", "glints_per_s")
         return replace(self, **shares, **{name: often * getattr(self, name) for name in counts})
 
 
@@ -99,3 +118,36 @@ def noise_options(seed: int, sensor: Sensor, often: float = 1.0) -> NoiseOptions
             sun=float(others.uniform(0.0, 0.02)) if is_sunny else 0.0,
         )
     return found.times(often)
+
+
+def varied_noise(seed: int, sensor: Sensor) -> NoiseOptions:
+    """Noise of which every kind is met in many recordings, its share drawn over powers of ten.
+
+    For learning what noise is: where one kind alone is frequent, the others stay unknown. Which
+    kinds a scanner has at all depends on how it measures, as in `noise_options`.
+    """
+    random = chance(seed, "varied noise")
+    is_phase = sensor.measures_by == "phase"
+
+    def power(low: float, high: float, share: float = 1.0) -> float:
+        drawn, value = random.random(), float(10 ** random.uniform(low, high))
+        return value if drawn < share else 0.0
+
+    # One of pulses waits for an echo that stands out: a fifth of the false ones.
+    fewer = 1.0 if is_phase else 0.2
+    return NoiseOptions(
+        arcs_per_s=power(0.0, 1.5, 0.75) if is_phase else 0.0,
+        folded=float(random.uniform(0.2, 0.95)) if is_phase else 0.0,
+        streaks=fewer * float(random.uniform(0.2, 0.9)),
+        drops=fewer * power(-4.0, -2.0),
+        late=power(-5.5, -3.0),
+        lone=fewer * power(-4.0, -2.0),
+        clouds_per_s=power(-0.7, 0.3, 0.7),
+        patches_per_s=power(-1.0, 1.0, 0.6),
+        sun=fewer * power(-1.0, -0.2, 0.8),
+        glints_per_s=power(0.0, 1.6, 0.8),
+        mirrored=float(random.uniform(0.3, 0.9)),
+        pane=float(10 ** random.uniform(-0.6, 0.0)),
+        saturated=power(-0.6, 0.7),
+        streak_m=power(-0.7, 0.4),
+    )

@@ -22,6 +22,7 @@ from processing.laboratory.simulate.assembly.street import BuiltSection, Street
 from processing.laboratory.simulate.scanning.beams import ScanPattern, beams_of
 from processing.laboratory.simulate.scanning.casting import RaycastScene
 from processing.laboratory.simulate.scanning.moving import MovingScene
+from processing.laboratory.simulate.scanning.noise_options import NoiseOptions
 from processing.laboratory.simulate.scanning.passing_noise import Path
 from processing.laboratory.simulate.scanning.returns import (
     BeamHits,
@@ -55,14 +56,14 @@ class Setup:
     scan_pattern : ScanPattern
         Of all heads; each starts at an angle of its own.
     weather : Weather
-    noise : float
-        How many times as much as is usual.
+    noise : NoiseOptions or None
+        None: what is usual for the seed.
     """
 
     sensor: Sensor
     scan_pattern: ScanPattern
     weather: Weather
-    noise: float = 1.0
+    noise: NoiseOptions | None = None
 
 
 @dataclass(frozen=True)
@@ -100,7 +101,7 @@ class SimulatedRecording:
                 setup.sensor,
                 scan_pattern,
                 Path(driven.time_s, driven.positions),
-                often=setup.noise,
+                options=setup.noise,
             )
             for number, scan_pattern in enumerate(self._spins)
         ]

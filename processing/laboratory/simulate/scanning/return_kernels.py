@@ -32,7 +32,8 @@ REFLECTANCE, SPREAD, ROUGHNESS, GRAIN, SHINE, RETRO, STANDS, OPEN = range(8)
     LENGTH,
     GROWTH,
     PASSED,
-) = range(12)
+    FLATTEST,
+) = range(13)
 
 TRUE, MIXED = 0, 1
 _BASE_M = 10.0
@@ -188,7 +189,7 @@ def first_returns(
             high += surface[STANDS] * (0.25 + 1.5 * grown) * blade**1.5
             high *= scanner[GROWTH]
         # Nearer by what stands up, but never by more than a beam just over the ground would be.
-        truth = reach - high / max(cosine, 0.25)
+        truth = reach - high / max(cosine, scanner[FLATTEST])
         wet = 0.0
         if scanner[WETNESS] > 0.0:
             wet = relief(x / 2.7, y / 2.7, 13) + 0.4 * relief(x / 0.5, y / 0.5, 17)
@@ -273,7 +274,7 @@ def warm_up() -> None:
     """Compile the kernels."""
     one, three = np.ones(1), np.ones((1, 3))
     bytes_, body = np.zeros(1, np.uint8), np.zeros(1, np.int64)
-    surfaces, scanner = np.ones((1, 8)), np.ones(PASSED + 1)
+    surfaces, scanner = np.ones((1, 8)), np.ones(FLATTEST + 1)
     out = np.ones(1), np.ones(1), np.ones(1)
     start, key = 0, 1
     mirrored_ways((three, three), (three, bytes_), surfaces, three.copy())

@@ -64,13 +64,18 @@ class Weather:
     levelled : float
         How far the maker takes out what the range does: 0 not at all, 1 wholly.
     growth : float
-        Height of grass as a share of that of a meadow, 0 to 1: mown lawns have next to none.
+        Height of grass as a share of that of a meadow, 0 to 1: mown lawns have next to none;
+        beyond 1 it is left to grow.
+    flattest : float
+        Sine of the angle to the ground below which beams don't end any farther before the ground
+        for the grass on it: the less, the sooner dense grass ends them.
     """
 
     wetness: float
     damping: float
     levelled: float = 0.0
     growth: float = 1.0
+    flattest: float = 0.25
 
 
 @dataclass(frozen=True)
@@ -171,7 +176,7 @@ def weakest_of(sensor: Sensor) -> float:
 
 
 def scanner_numbers(sensor: Sensor, pulses: int, weather: Weather) -> Floats:
-    """The numbers of a scanner for the kernels: (12,) float64."""
+    """The numbers of a scanner for the kernels: (13,) float64."""
     return np.array(
         [
             sensor.noise_m,
@@ -186,6 +191,7 @@ def scanner_numbers(sensor: Sensor, pulses: int, weather: Weather) -> Floats:
             _PULSE_LENGTH_M,
             weather.growth,
             1.0,
+            weather.flattest,
         ]
     )
 
@@ -199,7 +205,7 @@ def returns_of(
     ----------
     scene : RaycastScene
         What the beams go on into behind leaves and nets.
-    scanner : (12,) float64
+    scanner : (13,) float64
         `scanner_numbers`.
     key : int
         Of the recording's chance.

@@ -19,8 +19,9 @@ from processing.laboratory.simulate.scanning.mirrored_echoes import (
     MirroredEchoes,
     mirrored_echoes,
 )
-from processing.laboratory.simulate.scanning.noise_options import noise_options
+from processing.laboratory.simulate.scanning.noise_options import NoiseOptions, noise_options
 from processing.laboratory.simulate.scanning.passing_noise import PassingNoise, Path
+from processing.laboratory.simulate.scanning.return_kernels import PASSED
 from processing.laboratory.simulate.scanning.returns import (
     HIGH_NOISE,
     LOW_NOISE,
@@ -38,7 +39,7 @@ from processing.laboratory.simulate.scene.mesh import Floats, Integers
 _GROUND_LABELS = (2, 3, 11, 67)
 _SLOT_S = 1.0
 _LEAST_M = 0.6
-_MIRRORED_SHARE = 0.25
+_GLINT_TURNS, _GLINT_SHARES, _GLINT_REACH_M = (0.001, 0.01), (0.05, 0.6), (1.0, 30.0)
 _LONE_M = 40.0  # beyond it a receiver's own noise is as seldom as far things
 _WEAK = 0.02  # of the power that a white surface 10 m away gives
 _JUMPING_SHARE = 0.02
@@ -59,7 +60,7 @@ class PulseHits:
     returns : Returns
         Without this noise.
     scene : RaycastScene
-    scanner : (12,) float64
+    scanner : (13,) float64
         `scanner_numbers`.
     """
 
@@ -79,8 +80,8 @@ class NoiseSource:
         Number of the pass, number of the head.
     path : Path
         Of the pass.
-    often : float
-        How many times as much noise as is usual.
+    options : NoiseOptions or None
+        None: what is usual for the seed.
     """
 
     def __init__(
@@ -91,7 +92,7 @@ class NoiseSource:
         scan_pattern: ScanPattern,
         path: Path,
         *,
-        often: float = 1.0,
+        options: NoiseOptions | None = None,
     ) -> None:
         self._seed, self._position, self._sensor, self._scan_pattern = (
             seed,
@@ -99,7 +100,7 @@ class NoiseSource:
             sensor,
             scan_pattern,
         )
-        options = noise_options(seed, sensor, often)
+        options = options or noise_options(seed, sensor)
         self._request = options
         self._passing = PassingNoise(
             seed,
@@ -118,9 +119,10 @@ class NoiseSource:
         self._passing.measure(beams, met, np.flatnonzero(is_ground), self._key, ranges)
         self._lone(beams, met, ranges)
         self._arcs(beams, ranges)
+        self._glints(beams, met, ranges)
         self._folded(beams, met, ranges)
         self._jumps(recorded, ranges)
-        self._streaks(beams, met, ranges)
+        self._streaks(recorded, ranges)
         self._drops(beams, met, ranges)
         self._late(beams, met, ranges)
         images = self._mirrored(recorded, ranges)
@@ -180,11 +182,35 @@ class NoiseSource:
         waves = np.round(2 * self._normal(recorded.beams, rows, 610))
         ranges[rows] = met.ranges[rows] + waves * self._sensor.most_m / _FINER_WAVES
 
-    def _streaks(self, beams: Beams, met: BeamHits, ranges: Floats) -> None:
-        """Ranges spread along the beam at plates that shine back too strongly."""
-        rows = np.flatnonzero((met.material == Material.SIGN_FACE) & np.isfinite(met.ranges))
-        rows = self._chosen(beams, rows, self._request.streaks, 200)
-        ranges[rows] = met.ranges[rows] + 0.5 * self._normal(beams, rows, 210)
+    def _glints(self, beams: Beams, met: BeamHits, ranges: Floats) -> None:
+        """Ranges of nothing in a narrow part of the turn, for as long as something blinks."""
+        if self._request.glints_per_s <= 0 or beams.time_s.size == 0:
+            return
+        is_phase = self._sensor.measures_by == "phase"
+        first = int(beams.time_s[0] // _SLOT_S)
+        for slot in range(max(0, first - 1), int(beams.time_s[-1] // _SLOT_S) + 1):
+            random = chance(self._seed, "glints", *self._position, slot)
+            for _ in range(random.poisson(self._request.glints_per_s)):
+                start, long_s = (slot + random.random()) * _SLOT_S, 10 ** random.uniform(-2.3, -0.5)
+                middle, half = random.random(), random.uniform(*_GLINT_TURNS)
+                share, salt = random.uniform(*_GLINT_SHARES), int(random.integers(1000, 1 << 30))
+                rows = np.arange(*np.searchsorted(beams.time_s, [start, start + long_s]))
+                turned = (beams.first + rows) / self._scan_pattern.pulses - middle
+                rows = rows[np.abs(turned - np.round(turned)) < half]
+                rows = self._chosen(beams, rows, float(share), salt)
+                low, high = _GLINT_REACH_M
+                away = low + (high - low) * shares_of(beams.first + rows, self._key + salt + 1)
+                # An echo that comes first is taken; a phase is that of all light together.
+                is_taken = is_phase | (away < met.ranges[rows])
+                ranges[rows[is_taken]] = away[is_taken]
+
+    def _streaks(self, recorded: PulseHits, ranges: Floats) -> None:
+        """Ranges spread along the beam where something shines back too strongly."""
+        beams, met, returns = recorded.beams, recorded.met, recorded.returns
+        is_bright = (met.material == Material.SIGN_FACE) & np.isfinite(met.ranges)
+        is_bright[returns.pulse[returns.strength > self._request.saturated] - beams.first] = True
+        rows = self._chosen(beams, np.flatnonzero(is_bright), self._request.streaks, 200)
+        ranges[rows] = met.ranges[rows] + self._request.streak_m * self._normal(beams, rows, 210)
 
     def _drops(self, beams: Beams, met: BeamHits, ranges: Floats) -> None:
         """Rain, dust and insects: single points, most of them near the scanner."""
@@ -211,10 +237,10 @@ class NoiseSource:
         """Glass and water: some beams come back from what they mirror."""
         beams, met = recorded.beams, recorded.met
         rows = np.flatnonzero(np.isin(met.material, MIRRORS) & np.isfinite(met.ranges))
-        rows = self._chosen(beams, rows, _MIRRORED_SHARE, 400)
-        images = mirrored_echoes(
-            beams, met.ranges, recorded.scene, recorded.scanner, rows, key=self._key
-        )
+        rows = self._chosen(beams, rows, self._request.mirrored, 400)
+        scanner = recorded.scanner.copy()
+        scanner[PASSED] = self._request.pane**2  # there and back
+        images = mirrored_echoes(beams, met.ranges, recorded.scene, scanner, rows, key=self._key)
         ranges[images.rays] = images.ranges
         return images
 

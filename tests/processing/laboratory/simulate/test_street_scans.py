@@ -11,6 +11,7 @@ import pytest
 
 from processing.core.monitor import SilentMonitor
 from processing.laboratory.simulate.assembly.street import Street
+from processing.laboratory.simulate.scanning.noise_options import noise_options
 from processing.laboratory.simulate.scanning.returns import Weather
 from processing.laboratory.simulate.scanning.sensors import SENSORS
 from processing.laboratory.simulate.street.styles import style_of
@@ -19,12 +20,13 @@ from processing.methods.noise.beams.standing_scans import standing_scan_of
 from processing.project.importing.importing import ImportRequest, import_drives
 from processing.recording.drive import Drive
 
+_SEED = 3
 _PHASE = replace(SENSORS["zf5016"], most_m=79.0)
 
 
-def _scan(file: Path, noise: float) -> None:
-    street = Street(3, style_of("urban"), 20.0)
-    scan = StreetScan(0, _PHASE, 60_000, 1.0, noise)
+def _scan(file: Path, often: float) -> None:
+    street = Street(_SEED, style_of("urban"), 20.0)
+    scan = StreetScan(0, _PHASE, 60_000, 1.0, noise_options(_SEED, _PHASE, often))
     scan_street(street, scan, Weather(0.0, 0.5), file, SilentMonitor())
 
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from processing.laboratory.simulate.scanning.beams import Beams
 from processing.laboratory.simulate.scanning.casting import RaycastScene
-from processing.laboratory.simulate.scanning.noise_options import noise_options
+from processing.laboratory.simulate.scanning.noise_options import noise_options, varied_noise
 from processing.laboratory.simulate.scanning.passing_noise import PassingNoise, Path, way_through
 from processing.laboratory.simulate.scanning.returns import BeamHits
 from processing.laboratory.simulate.scanning.sensors import SENSORS
@@ -131,3 +131,15 @@ def test_noise_is_so_many_times_as_often_and_never_more_than_all() -> None:
     assert more.folded == usual.folded
     assert noise_options(3, SENSORS["zf9012"], 1e9).lone == 1.0
     assert none.arcs_per_s == none.drops == none.lone == none.clouds_per_s == 0.0
+
+
+def test_varied_noise_has_every_kind_in_many_recordings() -> None:
+    drawn = [varied_noise(seed, SENSORS["zf9012"]) for seed in range(60)]
+    for kind in ("arcs_per_s", "clouds_per_s", "patches_per_s", "sun", "glints_per_s"):
+        share = np.mean([getattr(one, kind) > 0 for one in drawn])
+        assert 0.15 < share < 0.95, kind
+    assert np.ptp(np.log10([one.lone for one in drawn])) > 1.5
+    assert max(one.pane for one in drawn) > 2 * min(one.pane for one in drawn)
+    by_pulses = [varied_noise(seed, SENSORS["vq250"]) for seed in range(60)]
+    assert not any(one.arcs_per_s or one.folded for one in by_pulses)
+    assert np.median([one.lone for one in by_pulses]) < np.median([one.lone for one in drawn])

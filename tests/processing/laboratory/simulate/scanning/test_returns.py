@@ -10,7 +10,9 @@ import pytest
 from processing.laboratory.simulate.scanning.beams import Beams, ScanPattern
 from processing.laboratory.simulate.scanning.casting import RaycastScene
 from processing.laboratory.simulate.scanning.mirrored_echoes import mirrored_echoes
+from processing.laboratory.simulate.scanning.noise_options import NoiseOptions
 from processing.laboratory.simulate.scanning.passing_noise import Path
+from processing.laboratory.simulate.scanning.return_kernels import PASSED
 from processing.laboratory.simulate.scanning.returns import (
     NO_EVIDENCE,
     BeamHits,
@@ -194,6 +196,7 @@ def test_an_image_in_a_window_is_measured_less_exactly_than_its_wall() -> None:
     scene, scanner = RaycastScene(mesh, np.zeros(3)), scanner_numbers(_PULSE, 3000, Weather(0, 1))
     met = BeamHits.of(scene.cast(beams.origins, beams.directions), mesh)
     rays = np.arange(20_000)
+    scanner[PASSED] = 0.15**2
     images = mirrored_echoes(beams, met.ranges, scene, scanner, rays, key=99)
     wall = replace(beams, directions=beams.directions * [-1.0, 1.0, 1.0])
     seen = BeamHits.of(scene.cast(wall.origins, wall.directions), mesh)
@@ -236,3 +239,64 @@ def test_what_a_pane_mirrors_from_the_ground_is_noise_below_the_ground() -> None
     is_low = noisy.xyz[:, 2] < -0.1
     assert is_low.sum() > 20
     assert (noisy.label[is_low] == 7).all()
+
+
+_NOTHING = NoiseOptions(0.0, 0.0, 0.0, 0.0)
+
+
+def _noisy(mesh: Mesh, beams: Beams, sensor: Sensor, options: NoiseOptions) -> Returns:
+    scene = RaycastScene(mesh, np.zeros(3))
+    met = BeamHits.of(scene.cast(beams.origins, beams.directions), mesh)
+    scanner = scanner_numbers(sensor, 3000, Weather(0.0, 0.5))
+    returns = returns_of(beams, met, scene, scanner, 99)[0]
+    source = NoiseSource(3, (0, 0), sensor, ScanPattern(3000, 100.0, 0.0), _STANDS, options=options)
+    return source.added(PulseHits(beams, met, returns, scene, scanner))
+
+
+def test_a_glint_blinds_a_narrow_part_of_the_turn_for_a_moment() -> None:
+    mesh, beams = _floor(Material.CONCRETE).mesh(), _fan(60_000, 30, 60)
+    noisy = _noisy(mesh, beams, _PHASE, replace(_NOTHING, glints_per_s=200.0))
+    pulses = noisy.pulse[noisy.label != 11]
+    assert 50 < pulses.size < 30_000
+    turned = np.unique((pulses % 3000) // 30)
+    assert turned.size < 100
+    assert np.ptp(np.linalg.norm(noisy.xyz[noisy.label != 11] - beams.origins[0], axis=1)) > 10.0
+    none = _noisy(mesh, beams, _PHASE, _NOTHING)
+    assert (none.label == 11).all()
+
+
+def test_what_shines_back_too_strongly_is_measured_along_the_beam() -> None:
+    mesh, beams = _floor(Material.PLASTER).mesh(), _fan(20_000, 10, 80)
+    streaks = replace(_NOTHING, streaks=0.5, streak_m=1.0)
+    assert (_noisy(mesh, beams, _PHASE, streaks).label == 11).all()
+    noisy = _noisy(mesh, beams, _PHASE, replace(streaks, saturated=0.5))
+    strong = np.linalg.norm(noisy.xyz - beams.origins[0], axis=1)[noisy.label != 11]
+    assert strong.size > 500
+    assert np.median(strong) < 6.0
+
+
+def test_a_pane_that_sends_more_light_back_shows_more() -> None:
+    built = MeshBuilder()
+    built.add(box((9.0, -9.0, 0.0), (9.01, 9.0, 9.0)), Material.GLASS, 6, 4)
+    built.add(box((-13.0, -9.0, 0.0), (-12.0, 9.0, 9.0)), Material.BRICK, 6, 5)
+    mesh, beams = built.mesh(), _fan(20_000, 80, 100)
+    shown = [
+        int(
+            (
+                _noisy(mesh, beams, _PULSE, replace(_NOTHING, mirrored=0.5, pane=pane)).label == 18
+            ).sum()
+        )
+        for pane in (0.02, 0.6)
+    ]
+    assert shown[1] > 2 * shown[0]
+
+
+def test_dense_grass_ends_flat_beams_earlier() -> None:
+    mesh, beams = _floor(Material.GRASS).mesh(), _fan(20_000, 84, 86)
+    scene = RaycastScene(mesh, np.zeros(3))
+    met = BeamHits.of(scene.cast(beams.origins, beams.directions), mesh)
+    heights = []
+    for flattest in (0.25, 0.05):
+        scanner = scanner_numbers(_PULSE, 3000, Weather(0.0, 0.5, flattest=flattest))
+        heights.append(float(returns_of(beams, met, scene, scanner, 99)[0].xyz[:, 2].mean()))
+    assert heights[1] > 1.5 * heights[0]
