@@ -8,7 +8,7 @@ others.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -19,11 +19,17 @@ from numpy.typing import NDArray
 from processing.core.arrays import Integers
 from processing.core.monitor import SilentMonitor
 from processing.laboratory.class_training.examples import LabelledCells
-from processing.laboratory.class_training.fitting import ForestSize, fit_forest, in_order_of
+from processing.laboratory.class_training.fitting import (
+    AveragedSize,
+    ForestSize,
+    fit_averaged_trees,
+    fit_forest,
+    in_order_of,
+)
 from processing.laboratory.progress_lines import say
 from processing.methods.classes.class_models import MODELS
 from processing.methods.classes.class_trees import class_shares
-from processing.methods.noise.tree_files import Forest, write_forest
+from processing.methods.noise.tree_files import Forest, write_averaged_trees, write_forest
 from resources import path_of
 
 FOLDS = 2
@@ -90,6 +96,16 @@ def make_two_forests(folds: Sequence[Sequence[SampledCells]], plan: ForestPlan) 
     _write(_fit(again, plan.again_size), plan.again, again[0][0].shape[1])
 
 
+def make_averaged_trees(examples: Iterable[SampledCells], name: str, size: AveragedSize) -> None:
+    """Fit averaged trees to cells alone and write them beside the two forests."""
+    parts = [one.part for one in examples]
+    rows, codes, stands = (np.concatenate(column) for column in zip(*parts, strict=True))
+    say(f"fitting averaged trees to {len(rows):,} rows")
+    path = _path_of(name)
+    write_averaged_trees(fit_averaged_trees(rows, codes, stands, size), path, rows.shape[1])
+    say(f"{path.name}: {path.stat().st_size / 1e3:,.0f} kB")
+
+
 def _fit(parts: Sequence[_Part], size: ForestSize) -> Forest:
     rows, codes, stands = (np.concatenate(column) for column in zip(*parts, strict=True))
     say(f"fitting {len(rows):,} rows of {rows.shape[1]}")
@@ -97,7 +113,12 @@ def _fit(parts: Sequence[_Part], size: ForestSize) -> Forest:
 
 
 def _write(forest: Forest, name: str, columns: int) -> None:
-    path = path_of("models") / Path(MODELS).name / name
-    path.parent.mkdir(exist_ok=True)
+    path = _path_of(name)
     write_forest(forest, path, columns)
     say(f"{path.name}: {path.stat().st_size / 1e3:,.0f} kB")
+
+
+def _path_of(name: str) -> Path:
+    path = path_of("models") / Path(MODELS).name / name
+    path.parent.mkdir(exist_ok=True)
+    return path

@@ -3,17 +3,29 @@
 from __future__ import annotations
 
 import hashlib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 
-from processing.methods.classes.boosting import ClassExamples
+import numpy as np
+from numpy.typing import NDArray
+
+from processing.core.monitor import Monitor
+from processing.methods.classes.boosting import ClassExamples, said_of_classes
+from processing.methods.classes.class_trees import class_shares
 from processing.methods.classes.example_file import read_examples
 from processing.methods.classes.features import FEATURES
-from processing.methods.noise.tree_files import Forest, read_forest
+from processing.methods.noise.tree_files import (
+    AveragedTrees,
+    Forest,
+    read_averaged_trees,
+    read_forest,
+)
 from resources import path_of
 
 MODELS = "models/classes"
 ALONE, AGAIN, SAMPLE = "alone.onnx", "again.onnx", "sample.npz"
+AVERAGED = "averaged.onnx"
+_STREET = (ALONE, AGAIN, AVERAGED)
 AERIAL_ALONE, AERIAL_AGAIN = "aerial_alone.onnx", "aerial_again.onnx"
 WAVE_ALONE, WAVE_AGAIN = "wave_alone.onnx", "wave_again.onnx"
 SCAN_ALONE, SCAN_AGAIN = "scan_alone.onnx", "scan_again.onnx"
@@ -24,6 +36,12 @@ SCAN_CELL_M = 0.2
 head at 10 m are as far apart or farther. Their ground is found as in clouds from the air."""
 
 
+_SHARPENED = 1.6
+"""Power by which shares that averaged trees have a part in become confidences: a mean promises less
+than it keeps. The likeliest on seven streets of the own simulator that weren't learnt from
+(docs/accuracy.md)."""
+
+
 @dataclass(frozen=True)
 class ClassModels:
     """Trees that look at a cell alone, and trees that also see what those said around it.
@@ -31,25 +49,61 @@ class ClassModels:
     Attributes
     ----------
     alone, again : Forest
-    is_own : bool
-        Whether the second trees learnt from somebody's corrections: they may contradict what the
-        first are sure of.
+    averaged : AveragedTrees, optional
+        Of the same classes, in the same order.
+    more : Forest, optional
+        What somebody's corrections add to what the others say; they may contradict what the first
+        are sure of.
     """
 
     alone: Forest
     again: Forest
-    is_own: bool = False
+    averaged: AveragedTrees | None = None
+    more: Forest | None = None
+
+    @property
+    def codes(self) -> NDArray[np.uint8]:
+        """(k,) the classes, in the order of :meth:`say_again`."""
+        return self.again.codes if self.more is None else self.more.codes
+
+    @property
+    def sharpened(self) -> float:
+        """Power by which shares become confidences."""
+        return 1.0 if self.averaged is None else _SHARPENED
 
     @property
     def again_columns(self) -> int:
-        """Features that the second trees are asked about, and three times the first's classes."""
-        return FEATURES + 3 * self.alone.codes.size
+        """Features, three times the first's classes, and what averaged trees say."""
+        blocks = 3 if self.averaged is None else 4
+        return FEATURES + blocks * self.alone.codes.size
+
+    def say_again(self, rows: NDArray[np.float32], monitor: Monitor) -> NDArray[np.float32]:
+        """(n, k) how likely each class is, by all trees.
+
+        Parameters
+        ----------
+        rows : (n, :attr:`again_columns`) float32
+        """
+        shares = self.with_averaged(class_shares(self.again, rows, monitor), rows)
+        if self.more is None:
+            return shares
+        said = said_of_classes(shares, self.again.codes, self.more.codes)
+        return class_shares(self.more, rows, monitor, said)
+
+    def with_averaged(
+        self, shares: NDArray[np.float32], rows: NDArray[np.float32]
+    ) -> NDArray[np.float32]:
+        """The mean of shares, (n, k), and of what averaged trees said, the last columns of rows."""
+        if self.averaged is None:
+            return shares.copy()
+        return np.asarray((shares + rows[:, -shares.shape[1] :]) / 2, np.float32)
 
 
 @cache
 def shipped_models() -> ClassModels:
     """The models that come with the program."""
-    return _read_models(ALONE, AGAIN)
+    averaged = read_averaged_trees(path_of(f"{MODELS}/{AVERAGED}"))
+    return replace(_read_models(ALONE, AGAIN), averaged=averaged)
 
 
 @cache
@@ -86,5 +140,5 @@ def shipped_version() -> str:
 
     A model that was learnt on top of others asks for what these may not say.
     """
-    sums = (hashlib.sha256(path_of(f"{MODELS}/{name}").read_bytes()) for name in (ALONE, AGAIN))
+    sums = (hashlib.sha256(path_of(f"{MODELS}/{name}").read_bytes()) for name in _STREET)
     return "-".join(one.hexdigest()[:16] for one in sums)

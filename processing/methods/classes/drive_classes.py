@@ -2,8 +2,9 @@
 
 1. Points are taken together in cells of 10 cm and described by what lies around them at several
    sizes (:mod:`processing.methods.classes.features`).
-2. Trees say how likely each class is for a cell.
+2. Boosted trees say how likely each class is for a cell.
 3. Trees that see this of the cells around as well say it again: what hangs together is one thing.
+   Averaged trees say it too; the two err differently in a world that neither learnt from.
 4. What tools found along the street tells its points, and makes others of its class less likely
    (:mod:`processing.methods.classes.found_things`).
 """
@@ -26,6 +27,7 @@ from processing.methods.classes.features import CELL_M, REACH, ClassCells, class
 from processing.methods.classes.found_things import (
     CURB,
     POLE_LIKE,
+    ROAD,
     SIGN,
     FoundThings,
     NearThings,
@@ -55,10 +57,11 @@ _ON_GROUND_M = 0.3
 _SAMPLE = 100_000
 """Points that the ground's brightness is taken from."""
 
-_TRUE = {SIGN: 0.99, POLE_LIKE: 0.92, CURB: 0.98}
+_TRUE = {SIGN: 0.99, POLE_LIKE: 0.92, CURB: 0.98, ROAD: 0.91}
 """Share of the points on found things of confidence 1 that are of their class: measured, as what
 follows, on the streets 3100–3103 (3130, 3140 and 3141: by worn heads and any mounting) of the own
-simulator, by ``python -m processing.laboratory.class_training --score-only``."""
+simulator, by ``python -m processing.laboratory.class_training --score-only``; of points before
+curbs, of which all others are ground, on 3100, 3101, 3130 and 3141."""
 
 _OTHER, _OTHER_WEIGHT = 1, 0.25
 """What is none of the classes looks otherwise in every town: a likeness to what was learnt counts a
@@ -267,30 +270,56 @@ def classes_of_cells(
         The classes that were looked for.
     """
     shares = shares_of_cells(cells, models, monitor)
-    codes = models.again.codes
+    codes = models.codes
     shares = np.where(codes == _OTHER, shares * np.float32(_OTHER_WEIGHT), shares)
     shares /= shares.sum(axis=1, keepdims=True)
     missed = np.array([_MISSED[code] if code in sought else 1.0 for code in codes.tolist()])
     beside = shares * missed
     best = beside.argmax(axis=1)
-    sure = np.take_along_axis(beside, best[:, None], axis=1)[:, 0] / beside.sum(axis=1)
+    sure = _shares_at(_sharpened(beside, models.sharpened), best)
     found = FoundClasses(codes[best][cells.cell_of], sure[cells.cell_of].astype(np.float32))
     for code in np.unique(told.codes[told.codes > 0]).tolist():
         own = np.flatnonzero(told.codes == code)
         there = told.chances[own] * _TRUE[code]
-        mixed = shares[cells.cell_of[own]] * (1 - there)[:, None]
-        mixed[:, codes == code] += there[:, None]
-        best = mixed.argmax(axis=1)
+        near = shares[cells.cell_of[own]]
+        best = _with_thing(near, codes == code, there).argmax(axis=1)
+        sharp = _with_thing(_sharpened(near, models.sharpened), codes == code, there)
         found.codes[own] = codes[best]
-        found.confidence[own] = np.take_along_axis(mixed, best[:, None], axis=1)[:, 0]
+        found.confidence[own] = _shares_at(sharp, best)
     return found
+
+
+def _sharpened(shares: NDArray[np.float32], power: float) -> NDArray[np.float32]:
+    powers = shares**power
+    return np.asarray(powers / powers.sum(axis=1, keepdims=True), np.float32)
+
+
+def _with_thing(
+    shares: NDArray[np.float32], is_class: NDArray[np.bool_], there: Floats
+) -> NDArray[np.float32]:
+    """Shares of points on a thing of a class that is there with some chances."""
+    mixed = shares * (1 - there)[:, None]
+    mixed[:, is_class] += there[:, None]
+    return np.asarray(mixed, np.float32)
+
+
+def _shares_at(shares: NDArray[np.float32], which: Integers) -> NDArray[np.float32]:
+    return np.asarray(np.take_along_axis(shares, which[:, None], axis=1)[:, 0], np.float32)
 
 
 def rows_seen_again(
     cells: ClassCells, models: ClassModels, monitor: Monitor
 ) -> NDArray[np.float32]:
-    """(c, f + 3 k) what the second trees are asked: features, and what the first said around."""
-    return cells.with_neighbours(class_shares(models.alone, cells.rows, monitor), monitor)
+    """(c, columns of the models) what is known of cells before the second trees are asked.
+
+    Features, what the first trees said of a cell and around, and the smoothed word of averaged
+    trees where there are such.
+    """
+    rows = cells.with_neighbours(class_shares(models.alone, cells.rows, monitor), monitor)
+    if models.averaged is None:
+        return rows
+    averaged = cells.smoothed(class_shares(models.averaged, cells.rows, monitor), monitor)
+    return np.hstack([rows, averaged])
 
 
 def shares_of_cells(
@@ -298,20 +327,20 @@ def shares_of_cells(
 ) -> NDArray[np.float32]:
     """(c, k) how likely each class of the second trees is in each cell.
 
-    Where the first trees are sure, and say the same around, theirs counts; of a project's own
-    second trees all cells are asked, since they may have been taught otherwise.
+    Where the first trees are sure, and say the same around, theirs count in place of the second; of
+    a project's own trees all cells are asked, since they may have been taught otherwise.
     """
     rows = rows_seen_again(cells, models, monitor)
-    if models.is_own or not np.array_equal(models.alone.codes, models.again.codes):
-        return class_shares(models.again, rows, monitor)
+    if models.more is not None or not np.array_equal(models.alone.codes, models.again.codes):
+        return models.say_again(rows, monitor)
     first, classes = cells.rows.shape[1], models.alone.codes.size
     shares, near = rows[:, first : first + classes], rows[:, first + classes :]
     best = shares.argmax(axis=1)[:, None]
     is_sure = np.take_along_axis(shares, best, axis=1)[:, 0] > _SURE
     is_sure &= np.take_along_axis(near, best, axis=1)[:, 0] > _SURE
     asked = np.flatnonzero(~is_sure)
-    shares = shares.copy()
-    shares[asked] = class_shares(models.again, rows[asked], monitor)
+    shares = models.with_averaged(shares, rows)
+    shares[asked] = models.say_again(rows[asked], monitor)
     return shares
 
 

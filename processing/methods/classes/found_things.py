@@ -3,7 +3,7 @@
 A curb is a few centimetres of a row of points, a sign a few dozen points on a post: how they look
 from near by differs between scanners and worlds, but extraction measures them as what they are. A
 point on the face or top of a found curb, on a plate or on a shaft is told by it: this joins what a
-model says of surroundings to what a tool measured, class by class.
+model says of surroundings to what a tool measured, class by class. Before a curb lies the road.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from scipy.spatial import cKDTree
 
 from processing.core.arrays import Floats, Integers
 
-SIGN, POLE_LIKE, CURB = 65, 66, 67
+ROAD, SIGN, POLE_LIKE, CURB = 11, 65, 66, 67
 
 _EDGE_STEP_M, _PLATE_STEP_M, _SHAFT_STEP_M = 0.1, 0.15, 0.3
 """Between the places of edges, plates and shafts that are looked for near a point."""
@@ -34,6 +34,10 @@ _EDGE_M = 0.01
 
 _LEVEL_M = 0.03
 """Above and below the upper edge: three times the noise of a scanner on a vehicle."""
+
+_ROAD_M, _STEEPEST = 1.5, 0.06
+"""How far before a curb the carriageway surely reaches, half a lane, and how steeply it rises there
+at most, as aprons of gutters do."""
 
 _PLATE_M, _RIM_M = 0.04, 0.03
 """Off a plate's plane and beyond its outline: two passes lie so far apart."""
@@ -148,6 +152,7 @@ class NearThings:
         told = ToldPoints(np.zeros(len(places), np.uint8), np.zeros(len(places)))
         if self._curbs is not None:
             _tell(told, CURB, _chances_on_curbs(self._curbs, places))
+            _tell(told, ROAD, _chances_on_road(self._curbs, places))
         if self._plates is not None:
             _tell(told, SIGN, _chances_on_plates(self._plates, places))
         if self._shafts is not None:
@@ -239,6 +244,17 @@ def _chances_on_curbs(curbs: _CurbSamples, places: Floats) -> Floats:
     is_on_face = (behind_upper < 0) & (behind_lower > -_EDGE_M)
     is_on_face &= (under[:, 2] > 0) & (over[:, 2] < _LEVEL_M)
     is_on = is_on_top | is_on_face
+    chances[near[is_on]] = curbs.confidence[which[is_on]]
+    return chances
+
+
+def _chances_on_road(curbs: _CurbSamples, places: Floats) -> Floats:
+    """(n,) confidence of the curb before which a place lies on the carriageway; 0 elsewhere."""
+    chances = np.zeros(len(places))
+    near, which = _near(curbs.tree, places[:, :2], _ROAD_M)
+    under = places[near] - curbs.lowers[which]
+    before_m = -(under[:, :2] * curbs.normals[which]).sum(axis=1)
+    is_on = (before_m > _EDGE_M) & (np.abs(under[:, 2]) < _LEVEL_M + _STEEPEST * before_m)
     chances[near[is_on]] = curbs.confidence[which[is_on]]
     return chances
 

@@ -8,7 +8,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +17,6 @@ from processing.core.arrays import Integers
 from processing.core.monitor import Monitor, parts_of
 from processing.methods.classes.boosting import BoostingLimits, ClassExamples, boosted_further
 from processing.methods.classes.class_models import ClassModels
-from processing.methods.classes.class_trees import class_shares
 from processing.methods.classes.painted_cells import PaintedCells
 from processing.methods.classes.tree_growing import GrowthLimits
 from processing.methods.noise.tree_files import Forest
@@ -72,7 +71,7 @@ class Gain:
 def learnt_forest(
     cells: PaintedCells, sample: ClassExamples, models: ClassModels, monitor: Monitor
 ) -> Forest:
-    """The second trees with more of them, for what was painted.
+    """More trees after those that come with the program, for what was painted.
 
     Parameters
     ----------
@@ -86,7 +85,8 @@ def learnt_forest(
             sample.weighed(SHIPPED_SHARE).as_said(),
         ]
     )
-    return boosted_further(models.again, examples, LIMITS, monitor)
+    shares = models.say_again(examples.rows, monitor)
+    return boosted_further(shares, models.codes, examples, LIMITS, monitor)
 
 
 def gain_of(
@@ -108,10 +108,10 @@ def gain_of(
             cells.left_places[left != fold],
             cells.classes,
         )
-        forest = learnt_forest(others, sample, models, part)
+        learnt = replace(models, more=learnt_forest(others, sample, models, part))
         asked = painted == fold
-        found[asked] = _said(forest, cells.painted.rows[asked], part)
-    first = _said(models.again, cells.painted.rows, monitor)
+        found[asked] = _said(learnt, cells.painted.rows[asked], part)
+    first = _said(models, cells.painted.rows, monitor)
     true = cells.painted.codes
     before, after = (ConfusionMatrix.of(true, one) for one in (first, found))
     return Gain(before, after, places.size, cells.classes)
@@ -123,6 +123,6 @@ def _folds_of(of: Integers, places: Integers, folds: Integers) -> Integers:
     return np.where(places[found] == of, folds[found], -1)
 
 
-def _said(forest: Forest, rows: NDArray[np.float32], monitor: Monitor) -> NDArray[np.uint8]:
-    codes: NDArray[np.uint8] = forest.codes[class_shares(forest, rows, monitor).argmax(axis=1)]
+def _said(models: ClassModels, rows: NDArray[np.float32], monitor: Monitor) -> NDArray[np.uint8]:
+    codes: NDArray[np.uint8] = models.codes[models.say_again(rows, monitor).argmax(axis=1)]
     return codes

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime
 from pathlib import Path
 from typing import Any
@@ -110,7 +110,7 @@ def read_own_model(folder: Path) -> tuple[ModelFacts, ClassModels]:
     with report_as_user_error(path):
         if _sum_of(path) != table["sum"]:
             raise _damaged(path)
-        return facts, ClassModels(shipped_models().alone, read_forest(path), is_own=True)
+        return facts, replace(shipped_models(), more=read_forest(path))
 
 
 def _read_table(folder: Path) -> dict[str, Any]:

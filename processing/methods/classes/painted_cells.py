@@ -21,7 +21,6 @@ from processing.core.arrays import Integers
 from processing.core.monitor import Monitor
 from processing.methods.classes.boosting import ClassExamples
 from processing.methods.classes.class_models import ClassModels
-from processing.methods.classes.class_trees import class_shares
 from processing.methods.classes.drive_classes import PartCells, cells_of_drive, rows_seen_again
 from processing.recording.drive import Drive
 
@@ -119,10 +118,10 @@ def painted_cells(
     for one in parts:
         rows = rows_seen_again(one.cells, models, monitor)
         codes = _told_codes(one, labels, rng)
-        shares = class_shares(models.again, rows, monitor)
+        shares = models.say_again(rows, monitor)
         is_own = np.zeros(len(rows), np.bool_)
         is_own[one.cells.cell_of[: one.own]] = True
-        said = np.where(shares.max(axis=1) >= _SURE, models.again.codes[shares.argmax(axis=1)], 0)
+        said = np.where(shares.max(axis=1) >= _SURE, models.codes[shares.argmax(axis=1)], 0)
         said[(codes > 0) | ~is_own] = 0
         places = _places_of(one)
         chosen = _some_at_each_place(codes, places, rng)

@@ -64,31 +64,33 @@ def class_score(counts: ConfusionMatrix) -> PointScore:
                 share_of(counts.count - known.count, counts.count),
             ),
         ),
-        (
-            NamedFigure(
-                "mean_f", Text("mean F of the classes", "F値のクラス平均"), known.mean_f_of(judged)
-            ),
-            NamedFigure(
-                "mean_f_ground_joined",
-                Text("mean F, ground and road as one", "F値のクラス平均（地面・路面は1クラス）"),
-                _mean_f_ground_joined(known),
-            ),
-            NamedFigure(
-                "mean_f_as_thesis",
-                Text(
-                    "the same, points that are “other” left out",
-                    "同上、正解が「その他」の点を除く",
-                ),
-                _mean_f_ground_joined(known.without_true((_OTHER,))),
-            ),
-            NamedFigure(
-                "mean_f_balanced",
-                Text("mean F, as many points of each class", "F値のクラス平均（各クラス同数の点）"),
-                balanced_sample(known).mean_f,
-            ),
-            NamedFigure("kappa", Text("kappa", "カッパ係数"), known.kappa),
-        ),
+        _figures(known),
         matrix=known,
+    )
+
+
+def _figures(known: ConfusionMatrix) -> tuple[NamedFigure, ...]:
+    judged = judged_classes(known)
+    return (
+        NamedFigure(
+            "mean_f", Text("mean F of the classes", "F値のクラス平均"), known.mean_f_of(judged)
+        ),
+        NamedFigure(
+            "mean_f_ground_joined",
+            Text("mean F, ground and road as one", "F値のクラス平均（地面・路面は1クラス）"),
+            _mean_f_ground_joined(known),
+        ),
+        NamedFigure(
+            "mean_f_as_thesis",
+            Text("the same, points that are “other” left out", "同上、正解が「その他」の点を除く"),
+            _mean_f_ground_joined(known.without_true((_OTHER,))),
+        ),
+        NamedFigure(
+            "mean_f_balanced",
+            Text("mean F, as many points of each class", "F値のクラス平均（各クラス同数の点）"),
+            balanced_sample(known).mean_f,
+        ),
+        NamedFigure("kappa", Text("kappa", "カッパ係数"), known.kappa),
     )
 
 

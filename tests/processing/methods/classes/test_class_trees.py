@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -10,9 +11,16 @@ import pytest
 from numpy.typing import NDArray
 
 from processing.core.monitor import SilentMonitor
-from processing.methods.classes.class_models import AGAIN, ALONE, MODELS
+from processing.methods.classes.class_models import AGAIN, ALONE, AVERAGED, MODELS
 from processing.methods.classes.class_trees import class_shares
-from processing.methods.noise.tree_files import Forest, read_forest, write_forest
+from processing.methods.noise.tree_files import (
+    AveragedTrees,
+    Forest,
+    read_averaged_trees,
+    read_forest,
+    write_averaged_trees,
+    write_forest,
+)
 from processing.methods.noise.trees import Trees
 from processing.tools.classify import CLASSES
 from resources import path_of
@@ -53,12 +61,17 @@ def test_a_file_gives_the_forest_back(forest: Forest, tmp_path: Path) -> None:
     )
 
 
-@pytest.mark.parametrize("name", [ALONE, AGAIN])
-def test_other_programs_read_the_shipped_models_alike(name: str) -> None:
+@pytest.mark.parametrize(
+    ("name", "read"),
+    [(ALONE, read_forest), (AGAIN, read_forest), (AVERAGED, read_averaged_trees)],
+)
+def test_other_programs_read_the_shipped_models_alike(
+    name: str, read: Callable[[Path], Forest | AveragedTrees]
+) -> None:
     import onnxruntime
 
     path = path_of(f"{MODELS}/{name}")
-    forest = read_forest(path)
+    forest = read(path)
     assert set(forest.codes.tolist()) == {1, *CLASSES}
     session = onnxruntime.InferenceSession(path)
     columns = session.get_inputs()[0].shape[1]
@@ -83,6 +96,43 @@ def test_words_of_rows_give_the_shares_of_a_walk_row_by_row_to_the_last_bit(name
     rows[4, ::2], rows[5, ::2] = np.inf, -np.inf
     ours = class_shares(forest, rows, SilentMonitor())
     np.testing.assert_array_equal(ours, _walked_shares(forest, rows))
+
+
+@pytest.fixture
+def averaged() -> AveragedTrees:
+    """A tree that asks twice, and one that is a leaf."""
+    return AveragedTrees(
+        np.array([0, -1, 1, -1, -1, -1], np.int32),
+        np.array([0.5, 0, 2, 0, 0, 0], np.float32),
+        np.array([2, 1, 4, 3, 4, 5], np.int32),
+        np.array([-1, 0, -1, 1, 2, 3], np.int32),
+        np.array([[1, 0], [0.5, 0.5], [0, 1], [0.25, 0.75]], np.float32),
+        np.array([0, 5], np.int32),
+        np.array([2, 6], np.uint8),
+    )
+
+
+def test_averaged_trees_say_the_mean_of_their_leaves(averaged: AveragedTrees) -> None:
+    rows = np.array([[0.5, 9], [0.6, 2], [0.6, 3], [np.nan, 0]], np.float32)
+    shares = class_shares(averaged, rows, SilentMonitor())
+    expected = [[0.625, 0.375], [0.375, 0.625], [0.125, 0.875], [0.375, 0.625]]
+    np.testing.assert_allclose(shares, expected)
+
+
+def test_a_file_gives_averaged_trees_back(averaged: AveragedTrees, tmp_path: Path) -> None:
+    write_averaged_trees(averaged, tmp_path / "averaged.onnx", 2)
+    again = read_averaged_trees(tmp_path / "averaged.onnx")
+    is_leaf = averaged.features < 0  # what a leaf has on its right means nothing
+    for one, other in zip(averaged, again._replace(rights=averaged.rights), strict=True):
+        np.testing.assert_array_equal(one, other)
+    np.testing.assert_array_equal(again.rights[~is_leaf], averaged.rights[~is_leaf])
+
+
+def test_boosted_trees_add_to_what_others_said(forest: Forest) -> None:
+    rows = np.array([[0.0, 1.0]], np.float32)
+    said = np.log(np.array([[0.2, 0.3, 0.5]]))
+    alone = class_shares(forest._replace(bases=said[0]), rows, SilentMonitor())
+    np.testing.assert_allclose(class_shares(forest, rows, SilentMonitor(), said), alone)
 
 
 def test_nodes_may_stand_in_any_order() -> None:

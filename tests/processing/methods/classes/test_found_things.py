@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from processing.methods.classes.found_things import (
     CURB,
     POLE_LIKE,
+    ROAD,
     SIGN,
     CurbEdges,
     FoundPlate,
@@ -40,12 +41,25 @@ def test_points_on_the_face_and_top_of_a_curb_are_told_and_those_beside_it_are_n
         FoundThings(curbs=(curb,)),
         (5.0, 3.01, 0.07),
         (5.0, 3.10, 0.151),
-        (5.0, 2.90, 0.0),
         (5.0, 3.30, 0.15),
         (5.0, 3.10, 0.3),
         (14.0, 3.10, 0.15),
     )
-    assert told == [(CURB, 0.9), (CURB, 0.9), (0, 0), (0, 0), (0, 0), (0, 0)]
+    assert told == [(CURB, 0.9), (CURB, 0.9), (0, 0), (0, 0), (0, 0)]
+
+
+@pytest.mark.parametrize("turned", [False, True])
+def test_the_carriageway_lies_before_a_curb_and_what_stands_there_is_none(turned: bool) -> None:
+    curb = CurbEdges(line(3.02, 0.15, turned=turned), line(3.0, 0.0), 0.9)
+    told = told_of(
+        FoundThings(curbs=(curb,)),
+        (5.0, 2.90, 0.01),
+        (5.0, 1.70, 0.06),
+        (5.0, 2.00, 0.3),
+        (5.0, 1.00, 0.03),
+        (5.0, 4.00, 0.0),
+    )
+    assert told == [(ROAD, 0.9), (ROAD, 0.9), (0, 0), (0, 0), (0, 0)]
 
 
 def test_points_within_the_outline_of_a_plate_and_in_its_plane_are_told() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -12,7 +13,11 @@ import pytest
 from processing.core.errors import BadFile, Unsuitable
 from processing.core.monitor import SilentMonitor
 from processing.methods.classes.boosting import BoostingLimits, ClassExamples, boosted_further
-from processing.methods.classes.class_models import shipped_models, shipped_sample
+from processing.methods.classes.class_models import (
+    ClassModels,
+    shipped_models,
+    shipped_sample,
+)
 from processing.methods.classes.class_trees import class_shares
 from processing.methods.classes.example_file import read_examples, write_examples
 from processing.methods.classes.learning import gain_of, learnt_forest
@@ -26,8 +31,14 @@ LIMITS = BoostingLimits(8, GrowthLimits(leaves=4, ridge=1.0, least=5, rate=0.5))
 GRASS, BUILDING, OFFICE_CLASS = 3, 6, 70
 
 
-def said(forest: Forest, examples: ClassExamples) -> np.ndarray:
-    return forest.codes[class_shares(forest, examples.rows, M).argmax(axis=1)]
+def said(models: ClassModels, examples: ClassExamples) -> np.ndarray:
+    return models.codes[models.say_again(examples.rows, M).argmax(axis=1)]
+
+
+def boosted(examples: ClassExamples) -> Forest:
+    models = shipped_models()
+    shares = models.say_again(examples.rows, M)
+    return boosted_further(shares, models.codes, examples, LIMITS, M)
 
 
 def some_of_the_sample(count: int = 1500) -> ClassExamples:
@@ -39,7 +50,7 @@ def some_of_the_sample(count: int = 1500) -> ClassExamples:
 
 def corrected(sample: ClassExamples) -> PaintedCells:
     """A world in which what looks like a building, but is rougher than any known, is grass."""
-    is_building = said(shipped_models().again, sample) == BUILDING
+    is_building = said(shipped_models(), sample) == BUILDING
     rows = sample.rows[is_building]
     is_grass = np.arange(len(rows)) % 2 == 1
     rows[is_grass, :4] += 3.0
@@ -52,20 +63,20 @@ def corrected(sample: ClassExamples) -> PaintedCells:
 
 def test_more_trees_learn_a_class_that_the_forest_never_met_and_keep_the_others() -> None:
     sample = some_of_the_sample(600)
-    forest = shipped_models().again
-    before = said(forest, sample)
+    models = shipped_models()
+    before = said(models, sample)
     is_new = sample.rows[:, 1] > np.quantile(sample.rows[:, 1], 0.8)
     taught = ClassExamples.alike(
         sample.rows, np.where(is_new, OFFICE_CLASS, before).astype(np.uint8)
     )
-    after = said(boosted_further(forest, taught, LIMITS, M), taught)
+    after = said(replace(models, more=boosted(taught)), taught)
     assert (after[is_new] == OFFICE_CLASS).mean() > 0.95
     assert (after[~is_new] == before[~is_new]).mean() > 0.95
 
 
 def test_a_forest_with_more_trees_is_written_and_read_like_any_other(tmp_path: Path) -> None:
     sample = some_of_the_sample(300)
-    forest = boosted_further(shipped_models().again, sample, LIMITS, M)
+    forest = boosted(sample)
     write_forest(forest, tmp_path / "more.onnx", sample.rows.shape[1])
     read = read_forest(tmp_path / "more.onnx")
     np.testing.assert_array_equal(
@@ -91,7 +102,8 @@ def test_what_nobody_corrected_is_told_as_well_as_before() -> None:
     models = shipped_models()
     forest = learnt_forest(corrected(sample), sample, models, M)
     others = others.of(others.codes != BUILDING)
-    before, after = (said(one, others) == others.codes for one in (models.again, forest))
+    learnt = replace(models, more=forest)
+    before, after = (said(one, others) == others.codes for one in (models, learnt))
     assert after.mean() > before.mean() - 0.02
 
 
@@ -111,7 +123,7 @@ def written_model(folder: Path) -> ModelFacts:
     gain = gain_of(corrected(sample), sample, shipped_models(), M)
     facts = ModelFacts(folder.name, datetime(2026, 5, 1, 9, 30, tzinfo=UTC), 12_345, gain)
     folder.mkdir()
-    write_own_model(facts, boosted_further(shipped_models().again, sample, LIMITS, M), folder)
+    write_own_model(facts, boosted(sample), folder)
     return facts
 
 
@@ -122,7 +134,7 @@ def test_a_learnt_model_is_read_back_and_refused_when_damaged_or_of_another_vers
     read, models = read_own_model(tmp_path / "m")
     assert (read.id, read.made, read.points) == ("m", facts.made, 12_345)
     assert read.gain.mean_f == facts.gain.mean_f
-    assert models.again.codes.tolist() == shipped_models().again.codes.tolist()
+    assert models.codes.tolist() == shipped_models().codes.tolist()
 
     path = tmp_path / "m" / "model.json"
     table = json.loads(path.read_text(encoding="utf-8"))
