@@ -107,7 +107,7 @@ def _row_of(scene: RoadScene, street: StreetPoints, seed: int) -> str:
             cells += painted_cells(drive, labels, Path(scratch), M, models=shipped)
         start += drive.count
     forest = learnt_forest(PaintedCells.joined(cells), shipped_sample(), shipped, M)
-    learnt = replace(shipped, more=forest)
+    learnt = replace(shipped, again=forest, is_own=True)
     after = np.concatenate([_said_of(drive, learnt, street.things) for drive in scene.drives])
     rest = street.along_m > _APART_M
     before_f, after_f = (_mean_f(street.truth[rest], one[rest]) for one in (street.said, after))

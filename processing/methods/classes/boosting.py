@@ -1,4 +1,4 @@
-"""More trees of classes, from examples: what others said before is where they start."""
+"""More trees for a forest of classes, from examples: what it said before is where they start."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from processing.core.arrays import Floats
 from processing.core.monitor import Monitor
+from processing.methods.classes.class_trees import class_shares
 from processing.methods.classes.tree_growing import (
     CUT,
     FEATURE,
@@ -101,41 +102,23 @@ class ClassExamples:
         )
 
 
-def said_of_classes(
-    shares: NDArray[np.float32], codes: NDArray[np.uint8], wanted: NDArray[np.uint8]
-) -> Floats:
-    """(n, k) logarithms of shares in the order of other classes, which hold all of their own."""
-    ordered = np.zeros((len(shares), wanted.size))
-    ordered[:, np.searchsorted(wanted, codes)] = shares
-    return np.log(np.maximum(ordered, _LEAST_SHARE))
-
-
 def boosted_further(
-    shares: NDArray[np.float32],
-    known: NDArray[np.uint8],
-    examples: ClassExamples,
-    limits: BoostingLimits,
-    monitor: Monitor,
+    forest: Forest, examples: ClassExamples, limits: BoostingLimits, monitor: Monitor
 ) -> Forest:
-    """Trees that correct what others say of examples, to be added to it.
+    """A forest with more trees, which correct what it says of examples.
 
-    Classes that these didn't know are added.
-
-    Parameters
-    ----------
-    shares : (n, k) float32
-        How likely the others say each class is, for each example.
-    known : (k,) uint8
-        Those classes, rising.
+    Classes that it didn't know are added.
 
     Raises
     ------
     Cancelled
     """
-    codes = np.setdiff1d(np.union1d(known, examples.codes), [AS_SAID]).astype(np.uint8)
-    said = said_of_classes(shares, known, codes)
-    likely = np.exp(said)
-    wanted = np.where(examples.codes[:, None] == AS_SAID, likely, examples.codes[:, None] == codes)
+    codes = np.setdiff1d(np.union1d(forest.codes, examples.codes), [AS_SAID]).astype(np.uint8)
+    known = np.searchsorted(codes, forest.codes)
+    shares = np.zeros((len(examples), codes.size))
+    shares[:, known] = class_shares(forest, examples.rows, monitor)
+    said = np.log(np.maximum(shares, _LEAST_SHARE))
+    wanted = np.where(examples.codes[:, None] == AS_SAID, shares, examples.codes[:, None] == codes)
     weights = examples.weights * (len(examples) / examples.weights.sum())
     edges = _edges_of(examples)
     bins = _bins_of(examples.rows, edges)
@@ -143,7 +126,9 @@ def boosted_further(
     for done in range(limits.rounds):
         monitor.report(done / limits.rounds)
         grown += _round(bins, said, wanted, weights, limits.tree, monitor=monitor)
-    return _joined(codes, grown, edges)
+    bases = np.full(codes.size, _base_of_unmet(forest))
+    bases[known] = forest.bases
+    return _with_trees(forest, codes, bases, grown, edges)
 
 
 def _round(
@@ -195,10 +180,20 @@ def _bins_of(rows: NDArray[np.float32], edges: list[NDArray[np.float32]]) -> NDA
     return bins
 
 
-def _joined(
-    codes: NDArray[np.uint8], grown: list[GrownTree], edges: list[NDArray[np.float32]]
+def _base_of_unmet(forest: Forest) -> float:
+    """What a class starts from that the forest never met."""
+    return float(forest.bases.min()) + float(np.log(_LEAST_SHARE))
+
+
+def _with_trees(
+    forest: Forest,
+    codes: NDArray[np.uint8],
+    bases: Floats,
+    grown: list[GrownTree],
+    edges: list[NDArray[np.float32]],
 ) -> Forest:
-    starts = np.cumsum([0, *(one.values.size for one in grown)])[:-1]
+    old = forest.trees
+    starts = np.cumsum([old.features.size, *(one.values.size for one in grown)])[:-1]
     nodes = np.concatenate([one.nodes for one in grown])
     firsts = np.repeat(starts, [one.values.size for one in grown])
     values = np.concatenate([one.values for one in grown])
@@ -210,13 +205,17 @@ def _joined(
         )
     ]
     trees = Trees(
-        nodes[:, FEATURE].astype(np.int32),
+        np.concatenate([old.features, nodes[:, FEATURE]]).astype(np.int32),
         # As the file holds them.
-        np.array(cuts).astype(np.float32).astype(np.float64),
-        np.where(is_leaf, 0, firsts + nodes[:, LEFT]).astype(np.int32),
-        np.where(is_leaf, 0, firsts + nodes[:, RIGHT]).astype(np.int32),
-        starts.astype(np.int32),
-        0.0,
+        np.concatenate([old.thresholds, cuts]).astype(np.float32).astype(np.float64),
+        np.concatenate([old.lefts, np.where(is_leaf, 0, firsts + nodes[:, LEFT])]).astype(np.int32),
+        np.concatenate([old.rights, np.where(is_leaf, 0, firsts + nodes[:, RIGHT])]).astype(
+            np.int32
+        ),
+        np.concatenate([old.roots, starts]).astype(np.int32),
+        old.base,
     )
-    class_of = (np.arange(len(grown)) % codes.size).astype(np.int32)
-    return Forest(trees, class_of, np.zeros(codes.size), codes)
+    places = np.searchsorted(codes, forest.codes)
+    new = np.arange(len(grown)) % codes.size
+    class_of = np.concatenate([places[forest.class_of], new]).astype(np.int32)
+    return Forest(trees, class_of, bases.astype(np.float32).astype(np.float64), codes)

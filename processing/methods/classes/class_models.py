@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.core.monitor import Monitor
-from processing.methods.classes.boosting import ClassExamples, said_of_classes
+from processing.methods.classes.boosting import ClassExamples
 from processing.methods.classes.class_trees import class_shares
 from processing.methods.classes.example_file import read_examples
 from processing.methods.classes.features import FEATURES
@@ -37,8 +37,8 @@ head at 10 m are as far apart or farther. Their ground is found as in clouds fro
 
 
 _SHARPENED = 1.6
-"""Power by which shares that averaged trees have a part in become confidences: a mean promises less
-than it keeps. The likeliest on seven streets of the own simulator that weren't learnt from
+"""Power by which shares that averaged trees have a part in keep what they promise: a mean promises
+less. The likeliest on seven streets of the own simulator that weren't learnt from
 (docs/accuracy.md)."""
 
 
@@ -50,25 +50,25 @@ class ClassModels:
     ----------
     alone, again : Forest
     averaged : AveragedTrees, optional
-        Of the same classes, in the same order.
-    more : Forest, optional
-        What somebody's corrections add to what the others say; they may contradict what the first
-        are sure of.
+        Of the first trees' classes, in the same order.
+    is_own : bool
+        Whether the second trees learnt from somebody's corrections: they may contradict what the
+        first are sure of, and know classes more.
     """
 
     alone: Forest
     again: Forest
     averaged: AveragedTrees | None = None
-    more: Forest | None = None
+    is_own: bool = False
 
     @property
     def codes(self) -> NDArray[np.uint8]:
         """(k,) the classes, in the order of :meth:`say_again`."""
-        return self.again.codes if self.more is None else self.more.codes
+        return self.again.codes
 
     @property
     def sharpened(self) -> float:
-        """Power by which shares become confidences."""
+        """Power of the shares by which they keep what they promise."""
         return 1.0 if self.averaged is None else _SHARPENED
 
     @property
@@ -84,19 +84,23 @@ class ClassModels:
         ----------
         rows : (n, :attr:`again_columns`) float32
         """
-        shares = self.with_averaged(class_shares(self.again, rows, monitor), rows)
-        if self.more is None:
-            return shares
-        said = said_of_classes(shares, self.again.codes, self.more.codes)
-        return class_shares(self.more, rows, monitor, said)
+        return self.with_averaged(class_shares(self.again, rows, monitor), rows)
 
     def with_averaged(
         self, shares: NDArray[np.float32], rows: NDArray[np.float32]
     ) -> NDArray[np.float32]:
-        """The mean of shares, (n, k), and of what averaged trees said, the last columns of rows."""
+        """What shares, (n, k), and the last columns of rows, averaged trees' word, say together.
+
+        Of classes that averaged trees never met the shares alone count.
+        """
         if self.averaged is None:
             return shares.copy()
-        return np.asarray((shares + rows[:, -shares.shape[1] :]) / 2, np.float32)
+        known = np.searchsorted(self.codes, self.averaged.codes)
+        both, own = shares.copy(), shares[:, known]
+        word = rows[:, -known.size :] * own.sum(axis=1, keepdims=True)
+        both[:, known] = (own + word) / 2
+        both **= self.sharpened
+        return np.asarray(both / both.sum(axis=1, keepdims=True), np.float32)
 
 
 @cache

@@ -19,18 +19,9 @@ _ROWS_PER_TREE = 512
 
 
 def class_shares(
-    model: Forest | AveragedTrees,
-    rows: NDArray[np.float32],
-    monitor: Monitor,
-    said: Floats | None = None,
+    model: Forest | AveragedTrees, rows: NDArray[np.float32], monitor: Monitor
 ) -> NDArray[np.float32]:
-    """(n, k) how likely each class is for rows of features, (n, f).
-
-    Parameters
-    ----------
-    said : (n, k) float64, optional
-        Logarithms of shares that boosted trees add to, in place of what they start from.
-    """
+    """(n, k) how likely each class is for rows of features, (n, f)."""
     shares = np.empty((rows.shape[0], model.codes.size), np.float32)
     rows = np.ascontiguousarray(rows)
     if isinstance(model, AveragedTrees):
@@ -44,8 +35,7 @@ def class_shares(
     trees = word_trees(model.trees, rows.shape[1])
 
     def weigh(start: int, stop: int) -> None:
-        bases = np.tile(model.bases, (stop - start, 1))
-        sums = bases if said is None else said[start:stop].copy()
+        sums = np.tile(model.bases, (stop - start, 1))
         sums_kernel(trees, model.class_of, model.class_of.size, rows[start:stop], sums)
         shares_kernel(sums, shares[start:stop])
 

@@ -271,40 +271,23 @@ def classes_of_cells(
     """
     shares = shares_of_cells(cells, models, monitor)
     codes = models.codes
-    shares = np.where(codes == _OTHER, shares * np.float32(_OTHER_WEIGHT), shares)
+    # Both were measured by shares that weren't sharpened.
+    shares *= np.where(codes == _OTHER, _OTHER_WEIGHT, 1.0) ** models.sharpened
     shares /= shares.sum(axis=1, keepdims=True)
     missed = np.array([_MISSED[code] if code in sought else 1.0 for code in codes.tolist()])
-    beside = shares * missed
+    beside = shares * missed**models.sharpened
     best = beside.argmax(axis=1)
-    sure = _shares_at(_sharpened(beside, models.sharpened), best)
+    sure = np.take_along_axis(beside, best[:, None], axis=1)[:, 0] / beside.sum(axis=1)
     found = FoundClasses(codes[best][cells.cell_of], sure[cells.cell_of].astype(np.float32))
     for code in np.unique(told.codes[told.codes > 0]).tolist():
         own = np.flatnonzero(told.codes == code)
         there = told.chances[own] * _TRUE[code]
-        near = shares[cells.cell_of[own]]
-        best = _with_thing(near, codes == code, there).argmax(axis=1)
-        sharp = _with_thing(_sharpened(near, models.sharpened), codes == code, there)
+        mixed = shares[cells.cell_of[own]] * (1 - there)[:, None]
+        mixed[:, codes == code] += there[:, None]
+        best = mixed.argmax(axis=1)
         found.codes[own] = codes[best]
-        found.confidence[own] = _shares_at(sharp, best)
+        found.confidence[own] = np.take_along_axis(mixed, best[:, None], axis=1)[:, 0]
     return found
-
-
-def _sharpened(shares: NDArray[np.float32], power: float) -> NDArray[np.float32]:
-    powers = shares**power
-    return np.asarray(powers / powers.sum(axis=1, keepdims=True), np.float32)
-
-
-def _with_thing(
-    shares: NDArray[np.float32], is_class: NDArray[np.bool_], there: Floats
-) -> NDArray[np.float32]:
-    """Shares of points on a thing of a class that is there with some chances."""
-    mixed = shares * (1 - there)[:, None]
-    mixed[:, is_class] += there[:, None]
-    return np.asarray(mixed, np.float32)
-
-
-def _shares_at(shares: NDArray[np.float32], which: Integers) -> NDArray[np.float32]:
-    return np.asarray(np.take_along_axis(shares, which[:, None], axis=1)[:, 0], np.float32)
 
 
 def rows_seen_again(
@@ -331,7 +314,7 @@ def shares_of_cells(
     a project's own trees all cells are asked, since they may have been taught otherwise.
     """
     rows = rows_seen_again(cells, models, monitor)
-    if models.more is not None or not np.array_equal(models.alone.codes, models.again.codes):
+    if models.is_own or not np.array_equal(models.alone.codes, models.again.codes):
         return models.say_again(rows, monitor)
     first, classes = cells.rows.shape[1], models.alone.codes.size
     shares, near = rows[:, first : first + classes], rows[:, first + classes :]

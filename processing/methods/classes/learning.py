@@ -71,7 +71,7 @@ class Gain:
 def learnt_forest(
     cells: PaintedCells, sample: ClassExamples, models: ClassModels, monitor: Monitor
 ) -> Forest:
-    """More trees after those that come with the program, for what was painted.
+    """The second trees with more of them, for what was painted.
 
     Parameters
     ----------
@@ -85,8 +85,7 @@ def learnt_forest(
             sample.weighed(SHIPPED_SHARE).as_said(),
         ]
     )
-    shares = models.say_again(examples.rows, monitor)
-    return boosted_further(shares, models.codes, examples, LIMITS, monitor)
+    return boosted_further(models.again, examples, LIMITS, monitor)
 
 
 def gain_of(
@@ -108,7 +107,7 @@ def gain_of(
             cells.left_places[left != fold],
             cells.classes,
         )
-        learnt = replace(models, more=learnt_forest(others, sample, models, part))
+        learnt = replace(models, again=learnt_forest(others, sample, models, part), is_own=True)
         asked = painted == fold
         found[asked] = _said(learnt, cells.painted.rows[asked], part)
     first = _said(models, cells.painted.rows, monitor)

@@ -110,7 +110,7 @@ def read_own_model(folder: Path) -> tuple[ModelFacts, ClassModels]:
     with report_as_user_error(path):
         if _sum_of(path) != table["sum"]:
             raise _damaged(path)
-        return facts, replace(shipped_models(), more=read_forest(path))
+        return facts, replace(shipped_models(), again=read_forest(path), is_own=True)
 
 
 def _read_table(folder: Path) -> dict[str, Any]:

@@ -128,13 +128,6 @@ def test_a_file_gives_averaged_trees_back(averaged: AveragedTrees, tmp_path: Pat
     np.testing.assert_array_equal(again.rights[~is_leaf], averaged.rights[~is_leaf])
 
 
-def test_boosted_trees_add_to_what_others_said(forest: Forest) -> None:
-    rows = np.array([[0.0, 1.0]], np.float32)
-    said = np.log(np.array([[0.2, 0.3, 0.5]]))
-    alone = class_shares(forest._replace(bases=said[0]), rows, SilentMonitor())
-    np.testing.assert_allclose(class_shares(forest, rows, SilentMonitor(), said), alone)
-
-
 def test_nodes_may_stand_in_any_order() -> None:
     """The second tree's root is its last node, and a leaf on its left comes after the right."""
     trees = Trees(

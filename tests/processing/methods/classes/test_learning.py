@@ -36,9 +36,11 @@ def said(models: ClassModels, examples: ClassExamples) -> np.ndarray:
 
 
 def boosted(examples: ClassExamples) -> Forest:
-    models = shipped_models()
-    shares = models.say_again(examples.rows, M)
-    return boosted_further(shares, models.codes, examples, LIMITS, M)
+    return boosted_further(shipped_models().again, examples, LIMITS, M)
+
+
+def learnt_models(forest: Forest) -> ClassModels:
+    return replace(shipped_models(), again=forest, is_own=True)
 
 
 def some_of_the_sample(count: int = 1500) -> ClassExamples:
@@ -69,7 +71,7 @@ def test_more_trees_learn_a_class_that_the_forest_never_met_and_keep_the_others(
     taught = ClassExamples.alike(
         sample.rows, np.where(is_new, OFFICE_CLASS, before).astype(np.uint8)
     )
-    after = said(replace(models, more=boosted(taught)), taught)
+    after = said(learnt_models(boosted(taught)), taught)
     assert (after[is_new] == OFFICE_CLASS).mean() > 0.95
     assert (after[~is_new] == before[~is_new]).mean() > 0.95
 
@@ -102,7 +104,7 @@ def test_what_nobody_corrected_is_told_as_well_as_before() -> None:
     models = shipped_models()
     forest = learnt_forest(corrected(sample), sample, models, M)
     others = others.of(others.codes != BUILDING)
-    learnt = replace(models, more=forest)
+    learnt = learnt_models(forest)
     before, after = (said(one, others) == others.codes for one in (models, learnt))
     assert after.mean() > before.mean() - 0.02
 
