@@ -85,7 +85,7 @@ def fit_averaged_trees(
     """Trees that divide by chance, whose mean says how likely each class is.
 
     What one of them takes from the simulated world another doesn't: on streets of another simulator
-    they err less than boosted ones that know their own streets as well (docs/accuracy.md).
+    they err otherwise than boosted ones (docs/accuracy.md).
 
     Parameters
     ----------
@@ -156,7 +156,7 @@ def _averaged_of(model: Any) -> AveragedTrees:
 def _in_order(tree: Any) -> AveragedTrees:
     """One tree with every node before those below it, the left ones first; a leaf's next is itself.
 
-    Its thresholds are single numbers: the largest that a value below scikit-learn's double is.
+    scikit-learn's thresholds are doubles: single numbers are rounded down, which divides alike.
     """
     order, waiting = [], [0]
     while waiting:

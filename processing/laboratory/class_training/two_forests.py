@@ -29,7 +29,12 @@ from processing.laboratory.class_training.fitting import (
 from processing.laboratory.progress_lines import say
 from processing.methods.classes.class_models import MODELS
 from processing.methods.classes.class_trees import class_shares
-from processing.methods.noise.tree_files import Forest, write_averaged_trees, write_forest
+from processing.methods.noise.tree_files import (
+    AveragedTrees,
+    Forest,
+    write_averaged_trees,
+    write_forest,
+)
 from resources import path_of
 
 FOLDS = 2
@@ -98,27 +103,25 @@ def make_two_forests(folds: Sequence[Sequence[SampledCells]], plan: ForestPlan) 
 
 def make_averaged_trees(examples: Iterable[SampledCells], name: str, size: AveragedSize) -> None:
     """Fit averaged trees to cells alone and write them beside the two forests."""
-    parts = [one.part for one in examples]
-    rows, codes, stands = (np.concatenate(column) for column in zip(*parts, strict=True))
-    say(f"fitting averaged trees to {len(rows):,} rows")
-    path = _path_of(name)
-    write_averaged_trees(fit_averaged_trees(rows, codes, stands, size), path, rows.shape[1])
-    say(f"{path.name}: {path.stat().st_size / 1e3:,.0f} kB")
+    rows, codes, stands_for = _joined([one.part for one in examples])
+    _write(fit_averaged_trees(rows, codes, stands_for, size), name, rows.shape[1])
 
 
 def _fit(parts: Sequence[_Part], size: ForestSize) -> Forest:
-    rows, codes, stands = (np.concatenate(column) for column in zip(*parts, strict=True))
+    return fit_forest(*_joined(parts), size)
+
+
+def _joined(parts: Sequence[_Part]) -> _Part:
+    rows, codes, stands_for = (np.concatenate(column) for column in zip(*parts, strict=True))
     say(f"fitting {len(rows):,} rows of {rows.shape[1]}")
-    return fit_forest(rows, codes, stands, size)
+    return rows, codes, stands_for
 
 
-def _write(forest: Forest, name: str, columns: int) -> None:
-    path = _path_of(name)
-    write_forest(forest, path, columns)
-    say(f"{path.name}: {path.stat().st_size / 1e3:,.0f} kB")
-
-
-def _path_of(name: str) -> Path:
+def _write(forest: Forest | AveragedTrees, name: str, columns: int) -> None:
     path = path_of("models") / Path(MODELS).name / name
     path.parent.mkdir(exist_ok=True)
-    return path
+    if isinstance(forest, AveragedTrees):
+        write_averaged_trees(forest, path, columns)
+    else:
+        write_forest(forest, path, columns)
+    say(f"{path.name}: {path.stat().st_size / 1e3:,.0f} kB")

@@ -104,25 +104,14 @@ def write_averaged_trees(trees: AveragedTrees, path: Path, columns: int) -> None
     Its input and outputs are as of :func:`write_forest`.
     """
     nodes = np.arange(trees.features.size)
-    tree_of = np.searchsorted(trees.roots, nodes, "right") - 1
-    starts, is_leaf = trees.roots[tree_of], trees.features < 0
-    nothing = np.zeros(nodes.size, np.int64)
     rows, classes = np.nonzero(trees.shares)
+    is_leaf = trees.features < 0
     leaves = np.flatnonzero(is_leaf)[np.argsort(trees.leaf_of[is_leaf])][rows]
     attributes = {
-        "nodes_treeids": _ints(tree_of),
-        "nodes_nodeids": _ints(nodes - starts),
-        "nodes_featureids": _ints(np.where(is_leaf, 0, trees.features)),
-        "nodes_truenodeids": _ints(np.where(is_leaf, 0, nodes - starts + 1)),
-        "nodes_falsenodeids": _ints(np.where(is_leaf, 0, trees.rights - starts)),
-        "nodes_missing_value_tracks_true": _ints(nothing),
-        "class_treeids": _ints(tree_of[leaves]),
-        "class_nodeids": _ints((nodes - starts)[leaves]),
+        **_node_attributes(trees, nodes + 1, leaves),
         "class_ids": _ints(classes),
         "classlabels_int64s": _ints(trees.codes),
-        "nodes_values": _floats(np.where(is_leaf, 0.0, trees.thresholds)),
         "class_weights": _floats(trees.shares[rows, classes] / trees.roots.size),
-        _MODES: _modes(is_leaf),
         "post_transform": _word(b"NONE"),
     }
     _write_model(attributes, path, columns, trees.codes.size)
@@ -188,30 +177,43 @@ def write_forest(forest: Forest, path: Path, columns: int) -> None:
     likeliest class, and ``shares`` (n, k) float32.
     """
     trees = forest.trees
-    nodes = np.arange(trees.features.size)
-    tree_of = np.searchsorted(trees.roots, nodes, "right") - 1
-    starts = trees.roots[tree_of]
-    is_leaf = trees.features < 0
-    leaves = np.flatnonzero(is_leaf)
-    nothing = np.zeros(nodes.size, np.int64)
+    leaves = np.flatnonzero(trees.features < 0)
+    class_of_leaf = forest.class_of[_trees_of(trees.roots, leaves)]
     attributes = {
-        "nodes_treeids": _ints(tree_of),
-        "nodes_nodeids": _ints(nodes - starts),
-        "nodes_featureids": _ints(np.where(is_leaf, 0, trees.features)),
-        "nodes_truenodeids": _ints(np.where(is_leaf, 0, trees.lefts - starts)),
-        "nodes_falsenodeids": _ints(np.where(is_leaf, 0, trees.rights - starts)),
-        "nodes_missing_value_tracks_true": _ints(nothing),
-        "class_treeids": _ints(tree_of[leaves]),
-        "class_nodeids": _ints((nodes - starts)[leaves]),
-        "class_ids": _ints(forest.class_of[tree_of[leaves]]),
+        **_node_attributes(trees, trees.lefts, leaves),
+        "class_ids": _ints(class_of_leaf),
         "classlabels_int64s": _ints(forest.codes),
-        "nodes_values": _floats(np.where(is_leaf, 0.0, trees.thresholds)),
         "class_weights": _floats(trees.thresholds[leaves]),
         "base_values": _floats(forest.bases),
-        _MODES: _modes(is_leaf),
         "post_transform": _word(b"LOGISTIC" if forest.bases.size == 1 else b"SOFTMAX"),
     }
     _write_model(attributes, path, columns, forest.codes.size)
+
+
+def _node_attributes(
+    trees: Trees | AveragedTrees, lefts: NDArray[np.integer], leaves: NDArray[np.integer]
+) -> dict[str, bytes]:
+    """What nodes ask and lead to, and the leaves, a row each, that give something to a class."""
+    nodes = np.arange(trees.features.size)
+    tree_of = _trees_of(trees.roots, nodes)
+    starts, is_leaf = trees.roots[tree_of], trees.features < 0
+    return {
+        "nodes_treeids": _ints(tree_of),
+        "nodes_nodeids": _ints(nodes - starts),
+        "nodes_featureids": _ints(np.where(is_leaf, 0, trees.features)),
+        "nodes_truenodeids": _ints(np.where(is_leaf, 0, lefts - starts)),
+        "nodes_falsenodeids": _ints(np.where(is_leaf, 0, trees.rights - starts)),
+        "nodes_missing_value_tracks_true": _ints(np.zeros(nodes.size, np.int64)),
+        "class_treeids": _ints(tree_of[leaves]),
+        "class_nodeids": _ints((nodes - starts)[leaves]),
+        "nodes_values": _floats(np.where(is_leaf, 0.0, trees.thresholds)),
+        _MODES: _modes(is_leaf),
+    }
+
+
+def _trees_of(roots: NDArray[np.int32], nodes: NDArray[np.integer]) -> NDArray[np.int64]:
+    """The tree of each node."""
+    return np.asarray(np.searchsorted(roots, nodes, "right") - 1, np.int64)
 
 
 def _attributes_of(path: Path) -> dict[str, bytes]:
