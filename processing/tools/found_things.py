@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections import defaultdict
 from collections.abc import Callable, Iterator, Sequence
 from typing import NamedTuple, TypeVar
@@ -20,13 +21,13 @@ from processing.methods.classes.found_things import (
     FoundShaft,
     FoundThings,
 )
-from processing.methods.road.poles.street_poles import street_poles
+from processing.methods.road.poles.street_poles import StreetPole, street_poles
+from processing.methods.road.poles.trunks_among import EVERY_TRUNK
 from processing.methods.road.signs.road_signs import road_signs
-from processing.methods.road.trees.street_trees import TreeSettings, street_trees
+from processing.methods.road.trees.street_trees import StreetTree, surest_trees, upright_things
 from processing.recording.drive import Drive
 from processing.tools.curbs import CurbParameters, find_curbs
 from processing.tools.tool import Candidate
-from processing.tools.trees import TreeParameters
 
 _Thing = TypeVar("_Thing", CurbEdges, FoundPlate, FoundShaft)
 _Find = Callable[[tuple[Drive, ...], Monitor], Iterator[_Thing]]
@@ -58,7 +59,7 @@ def look_for_things(drives: tuple[Drive, ...], monitor: Monitor) -> LookedFor:
 
     What can't be looked for, for want of rows or of a trajectory, is left out and named.
     """
-    parts = iter(parts_of(monitor, [2, 3, 2, 2]))
+    parts = iter(parts_of(monitor, [2, 3, 4]))
     refusals: list[UserError] = []
     sought: list[int] = []
 
@@ -72,7 +73,7 @@ def look_for_things(drives: tuple[Drive, ...], monitor: Monitor) -> LookedFor:
         return tuple(one for one in found if one.confidence >= _LEAST_CONFIDENCE)
 
     curbs, plates = likely(_curbs, CURB), likely(_plates, SIGN)
-    shafts = (*likely(_poles, POLE_LIKE), *likely(_trunks, POLE_LIKE))
+    shafts = likely(_shafts, POLE_LIKE)
     return LookedFor(FoundThings(curbs, plates, shafts, frozenset(sought)), _note(refusals))
 
 
@@ -102,25 +103,24 @@ def _plates(drives: tuple[Drive, ...], monitor: Monitor) -> Iterator[FoundPlate]
         yield FoundPlate(one.plate.outline - one.plate.centre + one.centre, one.confidence)
 
 
-def _poles(drives: tuple[Drive, ...], monitor: Monitor) -> Iterator[FoundShaft]:
-    for one in street_poles(drives, monitor):
-        shaft = one.shaft
-        yield FoundShaft(
-            one.foot,
-            shaft.lean,
-            shaft.radius_m,
-            shaft.taper,
-            one.height_m,
-            one.confidence,
-        )
+def _shafts(drives: tuple[Drive, ...], monitor: Monitor) -> Iterator[FoundShaft]:
+    """Poles and trunks: what the search for trees finds serves both."""
+    first, second = parts_of(monitor, [1, 1])
+    upright = upright_things(drives, EVERY_TRUNK, first)
+    yield from (_pole(one) for one in street_poles(drives, second, upright=upright))
+    yield from itertools.chain.from_iterable(_trunks(one) for one in surest_trees(upright))
 
 
-def _trunks(drives: tuple[Drive, ...], monitor: Monitor) -> Iterator[FoundShaft]:
-    settings = TreeSettings(TreeParameters().thickest_m)
-    for one in street_trees(drives, settings, monitor):
-        thickest = one.trunk.stems[0]
-        for stem in one.trunk.stems_about_foot:
-            foot = one.foot + np.array([*stem.base, 0.0])
-            radius_m = stem.radius_m + stem.taper * _BREAST_M
-            rises = one.upright.rise.high_m if stem.lean is thickest.lean else stem.high_m
-            yield FoundShaft(foot, stem.slope, radius_m, stem.taper, rises, one.confidence)
+def _pole(one: StreetPole) -> FoundShaft:
+    shaft = one.shaft
+    height_m, sure = one.height_m, one.confidence
+    return FoundShaft(one.foot, shaft.lean, shaft.radius_m, shaft.taper, height_m, sure)
+
+
+def _trunks(one: StreetTree) -> Iterator[FoundShaft]:
+    thickest = one.trunk.stems[0]
+    for stem in one.trunk.stems_about_foot:
+        foot = one.foot + np.array([*stem.base, 0.0])
+        radius_m = stem.radius_m + stem.taper * _BREAST_M
+        rises = one.upright.rise.high_m if stem.lean is thickest.lean else stem.high_m
+        yield FoundShaft(foot, stem.slope, radius_m, stem.taper, rises, one.confidence)

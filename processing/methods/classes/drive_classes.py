@@ -298,11 +298,10 @@ def rows_seen_again(
     Features, what the first trees said of a cell and around, and the smoothed word of averaged
     trees where there are such.
     """
-    rows = cells.with_neighbours(class_shares(models.alone, cells.rows, monitor), monitor)
-    if models.averaged is None:
-        return rows
-    averaged = cells.smoothed(class_shares(models.averaged, cells.rows, monitor), monitor)
-    return np.hstack([rows, averaged])
+    shares, averaged = class_shares(models.alone, cells.rows, monitor), None
+    if models.averaged is not None:
+        averaged = class_shares(models.averaged, cells.rows, monitor)
+    return cells.with_neighbours(shares, monitor, averaged=averaged)
 
 
 def shares_of_cells(

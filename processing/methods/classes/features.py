@@ -96,28 +96,36 @@ class ClassCells:
     levels: tuple[CellLevel, ...]
     held_by: tuple[Integers, ...]
 
-    def with_neighbours(self, shares: NDArray[np.float32], monitor: Monitor) -> NDArray[np.float32]:
+    def with_neighbours(
+        self,
+        shares: NDArray[np.float32],
+        monitor: Monitor,
+        *,
+        averaged: NDArray[np.float32] | None = None,
+    ) -> NDArray[np.float32]:
         """The features, and what the cells around each are likely to be.
 
         Parameters
         ----------
         shares : (c, k) float32
             How likely each class is in each cell.
+        averaged : (c, l) float32, optional
+            What averaged trees say of it.
 
         Returns
         -------
-        (c, f + 3 k) float32
-            Features, the cell's own shares, means of those within 0.6 and 2.4 m.
+        (c, f + 3 k + l) float32
+            Features, the cell's own shares, means of those within 0.6 and 2.4 m; then the mean of
+            what averaged trees say of the cell and within both.
         """
-        near = [self.means_around(shares, number, monitor) for number in _AGREE_LEVELS]
-        return np.hstack([self.rows, shares, *near])
-
-    def smoothed(self, shares: NDArray[np.float32], monitor: Monitor) -> NDArray[np.float32]:
-        """(c, k) the mean of what is said of a cell and of those within 0.6 and 2.4 m."""
-        total = shares.copy()
-        for number in _AGREE_LEVELS:
-            total += self.means_around(shares, number, monitor)
-        return total / np.float32(1 + len(_AGREE_LEVELS))
+        own = shares if averaged is None else np.hstack([shares, averaged])
+        near = [self.means_around(own, number, monitor) for number in _AGREE_LEVELS]
+        count = shares.shape[1]
+        columns = [self.rows, shares, *(one[:, :count] for one in near)]
+        if averaged is not None:
+            smoothed = sum((one[:, count:] for one in near), averaged)
+            columns.append(smoothed / np.float32(1 + len(near)))
+        return np.hstack(columns)
 
     def means_around(
         self, values: NDArray[np.float32], number: int, monitor: Monitor

@@ -50,6 +50,7 @@ from processing.methods.road.poles.shafts import (
 )
 from processing.methods.road.poles.surroundings import Surroundings, surroundings_of
 from processing.methods.road.poles.trunks_among import tree_chances
+from processing.methods.road.trees.street_trees import StreetTree
 from processing.recording.drive import Drive
 
 REACH_M = 5.0
@@ -132,8 +133,15 @@ class _Judged(NamedTuple):
     chance: float
 
 
-def street_poles(drives: Sequence[Drive], monitor: Monitor) -> tuple[StreetPole, ...]:
+def street_poles(
+    drives: Sequence[Drive], monitor: Monitor, *, upright: Sequence[StreetTree] | None = None
+) -> tuple[StreetPole, ...]:
     """All shafts that may be poles; a confidence tells poles from the others.
+
+    Parameters
+    ----------
+    upright : sequence of StreetTree, optional
+        What the search for trees found, as :func:`trunks_among.tree_chances` takes it.
 
     Notes
     -----
@@ -155,7 +163,8 @@ def street_poles(drives: Sequence[Drive], monitor: Monitor) -> tuple[StreetPole,
     feet = feet_of(shafts), feet_of(hidden)
     shafts, around = shafts + hidden, points_about_each(drives, plan, feet, REACH_M, part)
     shafts = with_whole_sides(shafts, around, monitor)
-    judged = _judged(drives, plan, (shafts, around, usual_m), PartMonitor(monitor, 0.9, 0.95))
+    part = PartMonitor(monitor, 0.9, 0.95)
+    judged = _judged(drives, plan, (shafts, around, usual_m), part, upright)
     asked = [one.number for one in judged if one.chance >= _LIKELY]
     images = mirror_images(drives, plan, shafts, asked, PartMonitor(monitor, 0.95, 1.0))
     surest = sorted(judged, key=lambda one: (-one.chance, one.number))
@@ -175,6 +184,7 @@ def _judged(
     plan: SparsePlan,
     found: tuple[list[Shaft], ColumnPoints, float],
     monitor: Monitor,
+    upright: Sequence[StreetTree] | None,
 ) -> list[_Judged]:
     """What may be a pole, and how surely: trees are looked for where one would change that."""
     shafts, _, usual_m = found
@@ -186,7 +196,8 @@ def _judged(
     is_doubtful &= np.array([about.beside.crown is not None for about in known.values()], np.bool_)
     doubtful = [number for number, asked in zip(known, is_doubtful, strict=True) if asked]
     feet = feet_of([shafts[number] for number in doubtful])
-    for number, tree in zip(doubtful, tree_chances(drives, plan, feet, monitor), strict=True):
+    trees = tree_chances(drives, plan, feet, monitor, upright=upright)
+    for number, tree in zip(doubtful, trees, strict=True):
         known[number] = known[number]._replace(tree=float(tree))
     chances = _chances(shafts, known, usual_m)
     return [

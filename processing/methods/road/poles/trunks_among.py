@@ -10,19 +10,24 @@ from scipy.spatial.distance import cdist
 from processing.core.arrays import Floats
 from processing.core.monitor import Monitor
 from processing.methods.road.objects.sparse_plan import SparsePlan
-from processing.methods.road.trees.street_trees import TreeSettings, upright_things
+from processing.methods.road.trees.street_trees import StreetTree, TreeSettings, upright_things
 from processing.recording.drive import Drive
 
-_THICKEST_M = 1.5
-"""Diameter of trunks that share the crowns about a shaft with it: old trees too, whatever the tool
-for trees is asked for."""
+EVERY_TRUNK = TreeSettings(1.5)
+"""Trunks that share the crowns about a shaft with it: old trees too, whatever the tool for trees is
+asked for."""
 
 _ON_M = 0.2
 """An axis nearer to a shaft's is its own: half of the thickest shafts."""
 
 
 def tree_chances(
-    drives: Sequence[Drive], plan: SparsePlan, feet: Floats, monitor: Monitor
+    drives: Sequence[Drive],
+    plan: SparsePlan,
+    feet: Floats,
+    monitor: Monitor,
+    *,
+    upright: Sequence[StreetTree] | None = None,
 ) -> Floats:
     """How sure the search for trees is of each shaft.
 
@@ -30,6 +35,8 @@ def tree_chances(
     ----------
     feet : (n, 2) float64
         Of shafts, m about the plan's origin.
+    upright : sequence of StreetTree, optional
+        What that search found of :data:`EVERY_TRUNK`; else it is asked about the feet.
 
     Returns
     -------
@@ -38,9 +45,10 @@ def tree_chances(
     """
     if not len(feet):
         return np.zeros(0)
-    found = upright_things(drives, TreeSettings(_THICKEST_M), monitor, about=feet)
+    if upright is None:
+        upright = upright_things(drives, EVERY_TRUNK, monitor, about=feet)
     axes, sure = [], []
-    for tree in found:
+    for tree in upright:
         foot = tree.foot[:2] - plan.origin[:2]
         for stem in tree.trunk.stems:
             axes.append(foot + stem.base - tree.trunk.base)

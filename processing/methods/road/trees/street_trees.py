@@ -113,7 +113,12 @@ def street_trees(
     drives: Sequence[Drive], settings: TreeSettings, monitor: Monitor
 ) -> tuple[StreetTree, ...]:
     """The upright things of a survey that may be trees, of those of one tree the surest."""
-    found = sorted(upright_things(drives, settings, monitor), key=lambda one: -one.confidence)
+    return surest_trees(upright_things(drives, settings, monitor))
+
+
+def surest_trees(upright: Sequence[StreetTree]) -> tuple[StreetTree, ...]:
+    """Of upright things that would be one tree the surest, the surest of all first."""
+    found = sorted(upright, key=lambda one: -one.confidence)
     feet = np.array([one.foot[:2] for one in found]).reshape(-1, 2)
     are_kept = stand_apart(feet, _APART_M).tolist()
     return tuple(one for one, is_kept in zip(found, are_kept, strict=True) if is_kept)
