@@ -16,11 +16,11 @@ from processing.methods.classes.found_things import (
     CURB,
     POLE_LIKE,
     SIGN,
-    CurbEdges,
     FoundPlate,
     FoundShaft,
     FoundThings,
 )
+from processing.methods.classes.points_on_curbs import CurbEdges
 from processing.methods.road.poles.street_poles import StreetPole, street_poles
 from processing.methods.road.poles.trunks_among import EVERY_TRUNK
 from processing.methods.road.signs.road_signs import road_signs

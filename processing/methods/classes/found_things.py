@@ -17,48 +17,28 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from processing.core.arrays import Floats, Integers
+from processing.methods.classes.points_on_curbs import (
+    CurbEdges,
+    chances_on_curbs,
+    chances_on_road,
+    curb_samples,
+    moved_to,
+    near_samples,
+)
 
 ROAD, SIGN, POLE_LIKE, CURB = 11, 65, 66, 67
 
-_EDGE_STEP_M, _PLATE_STEP_M, _SHAFT_STEP_M = 0.1, 0.15, 0.3
-"""Between the places of edges, plates and shafts that are looked for near a point."""
+_PLATE_STEP_M, _SHAFT_STEP_M = 0.15, 0.3
+"""Between the places of plates and shafts that are looked for near a point."""
 
-_CURB_REACH_M, _PLATE_REACH_M, _SHAFT_REACH_M = 0.3, 0.35, 1.0
-"""From the middle of an edge's, a plate's or an axis's place; trunks of 1.2 m have their bark."""
-
-_TOP_M = 0.12
-"""Width of the narrowest stone (JIS A 5371, 地先境界ブロック A); what lies beyond may be paving."""
-
-_EDGE_M = 0.01
-"""Before the lower edge: what stays of the tools' own error of an edge."""
-
-_LEVEL_M = 0.03
-"""Above and below the upper edge: three times the noise of a scanner on a vehicle."""
-
-_ROAD_M, _STEEPEST = 1.5, 0.06
-"""How far before a curb the carriageway surely reaches, half a lane, and how steeply it rises there
-at most, as aprons of gutters do."""
+_PLATE_REACH_M, _SHAFT_REACH_M = 0.35, 1.0
+"""From the middle of a plate's or an axis's place; trunks of 1.2 m have their bark."""
 
 _PLATE_M, _RIM_M = 0.04, 0.03
 """Off a plate's plane and beyond its outline: two passes lie so far apart."""
 
 _BARK_M = 0.05
 """Outside a shaft's surface: bands, bolts, and what a cone is not."""
-
-
-class CurbEdges(NamedTuple):
-    """The two edges of a piece of curb.
-
-    Attributes
-    ----------
-    upper, lower : (n, 3) float64
-        m, project CRS.
-    confidence : float
-    """
-
-    upper: Floats
-    lower: Floats
-    confidence: float
 
 
 class FoundPlate(NamedTuple):
@@ -142,17 +122,18 @@ class NearThings:
     def __init__(self, things: FoundThings) -> None:
         origin = _place_of(things)
         self._origin = origin
-        self._curbs = _curbs_of(things.curbs, origin)
+        self._curbs = curb_samples(things.curbs, origin)
         self._plates = _plates_of(things.plates, origin)
         self._shafts = _shafts_of(things.shafts, origin)
 
     def told(self, xyz: Floats) -> ToldPoints:
-        """What things say of points, (n, 3) float64, m, project CRS."""
+        """What things say of points of one recording, (n, 3) float64, m, project CRS."""
         places = xyz - self._origin
         told = ToldPoints(np.zeros(len(places), np.uint8), np.zeros(len(places)))
         if self._curbs is not None:
-            _tell(told, CURB, _chances_on_curbs(self._curbs, places))
-            _tell(told, ROAD, _chances_on_road(self._curbs, places))
+            curbs = moved_to(self._curbs, places)
+            _tell(told, CURB, chances_on_curbs(curbs, places))
+            _tell(told, ROAD, chances_on_road(curbs, places))
         if self._plates is not None:
             _tell(told, SIGN, _chances_on_plates(self._plates, places))
         if self._shafts is not None:
@@ -175,19 +156,6 @@ def _tell(told: ToldPoints, code: int, chances: Floats) -> None:
     told.chances[is_surer] = chances[is_surer]
 
 
-class _CurbSamples(NamedTuple):
-    """Places along curbs: their tree in plan, (k, 3) on both edges, (k, 2) unit normals, (k,) sure.
-
-    Normals point away from the road.
-    """
-
-    tree: cKDTree
-    uppers: Floats
-    lowers: Floats
-    normals: Floats
-    confidence: Floats
-
-
 class _PlateSamples(NamedTuple):
     """Places on plates, the plate of each; normals, corners in the plane, and confidence."""
 
@@ -204,59 +172,6 @@ class _ShaftSamples(NamedTuple):
     shaft_of: Integers
     axes: Floats
     confidence: Floats
-
-
-def _curbs_of(curbs: Sequence[CurbEdges], origin: Floats) -> _CurbSamples | None:
-    if not curbs:
-        return None
-    parts = []
-    for one in curbs:
-        uppers, ways = _along(one.upper - origin, _EDGE_STEP_M)
-        beside, _ = _along(one.lower - origin, _EDGE_STEP_M)
-        lowers = beside[cKDTree(beside[:, :2]).query(uppers[:, :2])[1]]
-        across = np.column_stack([-ways[:, 1], ways[:, 0]])
-        # The edges of an upright face lie over each other in places: most of them tell the side.
-        if np.sum((uppers - lowers)[:, :2] * across) < 0:
-            across = -across
-        parts.append((uppers, lowers, across, np.full(len(uppers), one.confidence)))
-    uppers, lowers, normals, confidence = (np.concatenate(one) for one in zip(*parts, strict=True))
-    return _CurbSamples(cKDTree(uppers[:, :2]), uppers, lowers, normals, confidence)
-
-
-def _along(line: Floats, step_m: float) -> tuple[Floats, Floats]:
-    """Places along a line and the way there in plan, (n, 3) and (n, 2)."""
-    lengths = np.hypot(*np.diff(line[:, :2], axis=0).T)
-    ends = np.concatenate([[0.0], np.cumsum(lengths)])
-    at = np.linspace(0.0, ends[-1], max(2, round(ends[-1] / step_m) + 1))
-    places = np.column_stack([np.interp(at, ends, line[:, axis]) for axis in range(3)])
-    ways = np.gradient(places[:, :2], axis=0)
-    return places, ways / np.maximum(np.hypot(*ways.T), 1e-9)[:, None]
-
-
-def _chances_on_curbs(curbs: _CurbSamples, places: Floats) -> Floats:
-    """(n,) confidence of the curb whose face or top a place lies on; 0 where on none."""
-    chances = np.zeros(len(places))
-    near, which = _near(curbs.tree, places[:, :2], _CURB_REACH_M)
-    over, under = places[near] - curbs.uppers[which], places[near] - curbs.lowers[which]
-    behind_upper = (over[:, :2] * curbs.normals[which]).sum(axis=1)
-    behind_lower = (under[:, :2] * curbs.normals[which]).sum(axis=1)
-    is_on_top = (behind_upper >= 0) & (behind_upper <= _TOP_M) & (np.abs(over[:, 2]) < _LEVEL_M)
-    is_on_face = (behind_upper < 0) & (behind_lower > -_EDGE_M)
-    is_on_face &= (under[:, 2] > 0) & (over[:, 2] < _LEVEL_M)
-    is_on = is_on_top | is_on_face
-    chances[near[is_on]] = curbs.confidence[which[is_on]]
-    return chances
-
-
-def _chances_on_road(curbs: _CurbSamples, places: Floats) -> Floats:
-    """(n,) confidence of the curb before which a place lies on the carriageway; 0 elsewhere."""
-    chances = np.zeros(len(places))
-    near, which = _near(curbs.tree, places[:, :2], _ROAD_M)
-    under = places[near] - curbs.lowers[which]
-    before_m = -(under[:, :2] * curbs.normals[which]).sum(axis=1)
-    is_on = (before_m > _EDGE_M) & (np.abs(under[:, 2]) < _LEVEL_M + _STEEPEST * before_m)
-    chances[near[is_on]] = curbs.confidence[which[is_on]]
-    return chances
 
 
 def _plates_of(plates: Sequence[FoundPlate], origin: Floats) -> _PlateSamples | None:
@@ -288,7 +203,7 @@ def _plates_of(plates: Sequence[FoundPlate], origin: Floats) -> _PlateSamples | 
 def _chances_on_plates(plates: _PlateSamples, places: Floats) -> Floats:
     """(n,) confidence of the plate that a place lies on; 0 where on none."""
     chances = np.zeros(len(places))
-    near, nearest = _near(plates.tree, places, _PLATE_REACH_M)
+    near, nearest = near_samples(plates.tree, places, _PLATE_REACH_M)
     own = plates.plate_of[nearest]
     for number in np.unique(own):
         of_plate = near[own == number]
@@ -321,7 +236,7 @@ def _shafts_of(shafts: Sequence[FoundShaft], origin: Floats) -> _ShaftSamples | 
 def _chances_on_shafts(shafts: _ShaftSamples, places: Floats) -> Floats:
     """(n,) confidence of the shaft whose surface a place lies on; 0 where on none."""
     chances = np.zeros(len(places))
-    near, nearest = _near(shafts.tree, places, _SHAFT_REACH_M)
+    near, nearest = near_samples(shafts.tree, places, _SHAFT_REACH_M)
     own = shafts.shaft_of[nearest]
     axis = shafts.axes[own]
     up = places[near, 2] - axis[:, 2]
@@ -330,10 +245,3 @@ def _chances_on_shafts(shafts: _ShaftSamples, places: Floats) -> Floats:
     is_on = (outside < _BARK_M) & (up > _BARK_M) & (up < axis[:, 7] + _BARK_M)
     chances[near[is_on]] = shafts.confidence[own[is_on]]
     return chances
-
-
-def _near(tree: cKDTree, places: Floats, reach_m: float) -> tuple[Integers, Integers]:
-    """The places with a sample within reach, and which of the samples is nearest to each."""
-    away, nearest = tree.query(places, distance_upper_bound=reach_m, workers=-1)
-    near = np.flatnonzero(np.isfinite(away))
-    return near, np.asarray(nearest, np.int64)[near]

@@ -11,12 +11,12 @@ from processing.methods.classes.found_things import (
     POLE_LIKE,
     ROAD,
     SIGN,
-    CurbEdges,
     FoundPlate,
     FoundShaft,
     FoundThings,
     NearThings,
 )
+from processing.methods.classes.points_on_curbs import CurbEdges
 
 ORIGIN = np.array([-8_000.0, -33_000.0, 20.0])
 

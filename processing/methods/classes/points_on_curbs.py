@@ -1,0 +1,205 @@
+"""Which points lie on found curbs, and which on the carriageway before them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from processing.core.arrays import Floats, Integers
+
+_EDGE_STEP_M = 0.1
+"""Between the places of edges that are looked for near a point."""
+
+_CURB_REACH_M = 0.3
+"""From the middle of an edge's place."""
+
+_TOP_M = 0.12
+"""Width of the narrowest stone (JIS A 5371, 地先境界ブロック A); what lies beyond may be paving."""
+
+_EDGE_M = 0.01
+"""Before the lower edge and behind the upper one, on the face: what stays of the tools' own error of
+an edge."""
+
+_LEVEL_M = 0.03
+"""Above and below the upper edge: three times the noise of a scanner on a vehicle."""
+
+_ROAD_M, _STEEPEST = 1.5, 0.06
+"""How far before a curb the carriageway surely reaches, half a lane, and how steeply it rises there
+at most, as aprons of gutters do."""
+
+_PIECE_M = 5.0
+"""Of a curb, that moves as one: passes drift by a centimetre in some seconds."""
+
+_APART_M = 0.08
+"""How far passes of one survey lie apart at most before they are registered."""
+
+_LEAST_FACE_M, _OF_A_FACE = 0.04, 0.6
+"""Height of a face that can be told from the road, and how much of it about its middle is asked:
+rounded edges and the corner below lie elsewhere."""
+
+_LEAST_POINTS = 20
+
+
+class CurbEdges(NamedTuple):
+    """The two edges of a piece of curb.
+
+    Attributes
+    ----------
+    upper, lower : (n, 3) float64
+        m, project CRS.
+    confidence : float
+    """
+
+    upper: Floats
+    lower: Floats
+    confidence: float
+
+
+class CurbSamples(NamedTuple):
+    """Places along curbs.
+
+    ``tree``: of them in plan; ``uppers``, ``lowers`` (k, 3): on both edges, m about an origin near
+    by; ``normals`` (k, 2): unit vectors away from the road; ``confidence`` (k,); ``pieces`` (k,)
+    int64: the piece of :data:`PIECE_M` that each is of.
+    """
+
+    tree: cKDTree
+    uppers: Floats
+    lowers: Floats
+    normals: Floats
+    confidence: Floats
+    pieces: Integers
+
+
+def curb_samples(curbs: Sequence[CurbEdges], origin: Floats) -> CurbSamples | None:
+    """Places along curbs, None without any; ``origin`` (3,) m, project CRS."""
+    if not curbs:
+        return None
+    parts, pieces = [], 0
+    for one in curbs:
+        uppers, ways = _along(one.upper - origin, _EDGE_STEP_M)
+        beside, _ = _along(one.lower - origin, _EDGE_STEP_M)
+        lowers = beside[cKDTree(beside[:, :2]).query(uppers[:, :2])[1]]
+        across = np.column_stack([-ways[:, 1], ways[:, 0]])
+        # The edges of an upright face lie over each other in places: most of them tell the side.
+        if np.sum((uppers - lowers)[:, :2] * across) < 0:
+            across = -across
+        own = pieces + (np.arange(len(uppers)) * _EDGE_STEP_M // _PIECE_M).astype(np.int64)
+        pieces = int(own[-1]) + 1
+        parts.append((uppers, lowers, across, np.full(len(uppers), one.confidence), own))
+    columns = (np.concatenate(one) for one in zip(*parts, strict=True))
+    uppers, lowers, normals, confidence, of_pieces = columns
+    return CurbSamples(cKDTree(uppers[:, :2]), uppers, lowers, normals, confidence, of_pieces)
+
+
+def _along(line: Floats, step_m: float) -> tuple[Floats, Floats]:
+    """Places along a line and the way there in plan, (n, 3) and (n, 2)."""
+    lengths = np.hypot(*np.diff(line[:, :2], axis=0).T)
+    ends = np.concatenate([[0.0], np.cumsum(lengths)])
+    at = np.linspace(0.0, ends[-1], max(2, round(ends[-1] / step_m) + 1))
+    places = np.column_stack([np.interp(at, ends, line[:, axis]) for axis in range(3)])
+    ways = np.gradient(places[:, :2], axis=0)
+    return places, ways / np.maximum(np.hypot(*ways.T), 1e-9)[:, None]
+
+
+def moved_to(curbs: CurbSamples, places: Floats) -> CurbSamples:
+    """Curbs where a recording itself sees them.
+
+    An edge is measured once for all passes, which lie centimetres apart until they are registered:
+    a piece's height moves to the middle of what lies flat on the stone behind its edge, its face to
+    the middle of what lies on it. Pieces of which there is too little, or no surface, stay.
+
+    Parameters
+    ----------
+    places : (n, 3) float64
+        Of one recording, about the origin of the samples.
+    """
+    near, which = near_samples(curbs.tree, places[:, :2], _CURB_REACH_M)
+    off = _Offsets.of(curbs, places[near], which)
+    is_top = (off.behind > _EDGE_M) & (off.behind < _TOP_M) & (np.abs(off.above) < _APART_M)
+    up = _middles(curbs.pieces, which[is_top], off.above[is_top])
+    height = (curbs.uppers - curbs.lowers)[which, 2]
+    share = 1 + (off.above - up[which]) / np.maximum(height, _LEAST_FACE_M)
+    is_face = (np.abs(share - 0.5) < _OF_A_FACE / 2) & (height > _LEAST_FACE_M)
+    behind_face = off.behind + (1 - share) * off.face
+    is_face &= np.abs(behind_face) < _APART_M
+    back = _middles(curbs.pieces, which[is_face], behind_face[is_face])
+    shift = np.column_stack([back[:, None] * curbs.normals, up])
+    uppers = curbs.uppers + shift
+    return curbs._replace(tree=cKDTree(uppers[:, :2]), uppers=uppers, lowers=curbs.lowers + shift)
+
+
+class _Offsets(NamedTuple):
+    """Of points from the samples of curbs that are nearest to them, m.
+
+    ``behind`` (n,): the upper edge; ``above`` (n,): it; ``face`` (n,): how far the lower edge lies
+    before the upper one.
+    """
+
+    behind: Floats
+    above: Floats
+    face: Floats
+
+    @classmethod
+    def of(cls, curbs: CurbSamples, places: Floats, which: Integers) -> _Offsets:
+        """Offsets of places, (n, 3), from the samples of numbers ``which``, (n,)."""
+        over, normals = places - curbs.uppers[which], curbs.normals[which]
+        face = (curbs.uppers - curbs.lowers)[which, :2]
+        return cls((over[:, :2] * normals).sum(axis=1), over[:, 2], (face * normals).sum(axis=1))
+
+
+def _middles(pieces: Integers, which: Integers, values: Floats) -> Floats:
+    """(k,) for each sample the median of its piece's values; 0 where they tell no surface.
+
+    Parameters
+    ----------
+    pieces : (k,) int64
+        Of samples.
+    which : (n,) int64
+        The sample of each value.
+    """
+    own = pieces[which]
+    order = np.argsort(own, kind="stable")
+    found = np.zeros(int(pieces.max()) + 1)
+    starts = np.flatnonzero(np.diff(own[order], prepend=-1))
+    for part in np.split(order, starts[1:]):
+        if part.size >= _LEAST_POINTS:
+            low, middle, high = np.percentile(values[part], (25, 50, 75))
+            found[own[part[0]]] = middle if high - low < _LEVEL_M else 0.0
+    return found[pieces]
+
+
+def chances_on_curbs(curbs: CurbSamples, places: Floats) -> Floats:
+    """(n,) confidence of the curb whose face or top a place lies on; 0 where on none."""
+    chances = np.zeros(len(places))
+    near, which = near_samples(curbs.tree, places[:, :2], _CURB_REACH_M)
+    over, under = places[near] - curbs.uppers[which], places[near] - curbs.lowers[which]
+    behind_upper = (over[:, :2] * curbs.normals[which]).sum(axis=1)
+    behind_lower = (under[:, :2] * curbs.normals[which]).sum(axis=1)
+    is_on_top = (behind_upper >= 0) & (behind_upper <= _TOP_M) & (np.abs(over[:, 2]) < _LEVEL_M)
+    is_on_face = (behind_upper < _EDGE_M) & (behind_lower > -_EDGE_M)
+    is_on_face &= (under[:, 2] > 0) & (over[:, 2] < _LEVEL_M)
+    is_on = is_on_top | is_on_face
+    chances[near[is_on]] = curbs.confidence[which[is_on]]
+    return chances
+
+
+def chances_on_road(curbs: CurbSamples, places: Floats) -> Floats:
+    """(n,) confidence of the curb before which a place lies on the carriageway; 0 elsewhere."""
+    chances = np.zeros(len(places))
+    near, which = near_samples(curbs.tree, places[:, :2], _ROAD_M)
+    under = places[near] - curbs.lowers[which]
+    before_m = -(under[:, :2] * curbs.normals[which]).sum(axis=1)
+    is_on = (before_m > _EDGE_M) & (np.abs(under[:, 2]) < _LEVEL_M + _STEEPEST * before_m)
+    chances[near[is_on]] = curbs.confidence[which[is_on]]
+    return chances
+
+
+def near_samples(tree: cKDTree, places: Floats, reach_m: float) -> tuple[Integers, Integers]:
+    """The places with a sample within reach, and which of the samples is nearest to each."""
+    away, nearest = tree.query(places, distance_upper_bound=reach_m, workers=-1)
+    near = np.flatnonzero(np.isfinite(away))
+    return near, np.asarray(nearest, np.int64)[near]
