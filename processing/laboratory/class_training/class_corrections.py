@@ -118,7 +118,7 @@ def _row_of(scene: RoadScene, street: StreetPoints, seed: int) -> str:
 
 def painted_codes(street: StreetPoints, rng: Generator) -> NDArray[np.uint8]:
     """(n,) what somebody paints on the first half of a street; 0 elsewhere."""
-    is_seen = (street.along_m < -_APART_M) & (street.truth > 1) & ~np.isin(street.truth, NOISE)
+    is_seen = (street.along_m < -_APART_M) & (street.truth > 0) & ~np.isin(street.truth, NOISE)
     painted = np.zeros(street.truth.size, np.uint8)
     for number in range(_STROKES):
         is_right = street.said == street.truth

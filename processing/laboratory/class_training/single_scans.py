@@ -36,18 +36,25 @@ from processing.laboratory.class_training.examples import (
     points_above_ground,
     rows_and_places,
 )
-from processing.laboratory.class_training.fitting import ForestSize
+from processing.laboratory.class_training.fitting import AveragedSize, ForestSize
 from processing.laboratory.class_training.two_forests import (
     FOLDS,
     ForestPlan,
     SampledCells,
+    make_averaged_trees,
     make_two_forests,
 )
 from processing.laboratory.progress_lines import say
 from processing.laboratory.seed_ranges import seeds_of
 from processing.laboratory.simulate.spinning_head import SCANS, scanned_streets
 from processing.methods.classes.aerial_cells import aerial_cells
-from processing.methods.classes.class_models import SCAN_AGAIN, SCAN_ALONE, SCAN_CELL_M, scan_models
+from processing.methods.classes.class_models import (
+    SCAN_AGAIN,
+    SCAN_ALONE,
+    SCAN_AVERAGED,
+    SCAN_CELL_M,
+    scan_models,
+)
 from processing.methods.classes.drive_classes import shares_of_cells
 from processing.recording.density import points_a_place
 from processing.recording.drive import Drive
@@ -60,6 +67,8 @@ _PLAN = ForestPlan(
     SCAN_AGAIN,
     ForestSize(rounds=30, leaves=20, rate=0.2),
 )
+
+_AVERAGED = AveragedSize(trees=30, leaves=3000, asked=0.13)
 
 _CELLS = 250
 """Of each class and cloud that are learnt from."""
@@ -110,6 +119,7 @@ def _make(options: argparse.Namespace) -> None:
     for number, cells in enumerate(clouds):
         folds[number // SCANS % FOLDS].append(SampledCells.of(cells, _CELLS, rng))
     make_two_forests(folds, _PLAN)
+    make_averaged_trees(itertools.chain(*folds), SCAN_AVERAGED, _AVERAGED)
     scan_models.cache_clear()
 
 

@@ -29,6 +29,7 @@ _STREET = (ALONE, AGAIN, AVERAGED)
 AERIAL_ALONE, AERIAL_AGAIN = "aerial_alone.onnx", "aerial_again.onnx"
 WAVE_ALONE, WAVE_AGAIN = "wave_alone.onnx", "wave_again.onnx"
 SCAN_ALONE, SCAN_AGAIN = "scan_alone.onnx", "scan_again.onnx"
+SCAN_AVERAGED = "scan_averaged.onnx"
 BARE_ALONE, BARE_AGAIN = "bare_alone.onnx", "bare_again.onnx"
 
 SCAN_CELL_M = 0.2
@@ -106,8 +107,7 @@ class ClassModels:
 @cache
 def shipped_models() -> ClassModels:
     """The models that come with the program."""
-    averaged = read_averaged_trees(path_of(f"{MODELS}/{AVERAGED}"))
-    return replace(_read_models(ALONE, AGAIN), averaged=averaged)
+    return _with_averaged(_read_models(ALONE, AGAIN), AVERAGED)
 
 
 @cache
@@ -119,7 +119,7 @@ def aerial_models() -> ClassModels:
 @cache
 def scan_models() -> ClassModels:
     """The models for single scans of spinning heads on streets."""
-    return _read_models(SCAN_ALONE, SCAN_AGAIN)
+    return _with_averaged(_read_models(SCAN_ALONE, SCAN_AGAIN), SCAN_AVERAGED)
 
 
 @cache
@@ -131,6 +131,10 @@ def flight_models(*, with_waveforms: bool) -> ClassModels:
 def _read_models(*names: str) -> ClassModels:
     alone, again = (read_forest(path_of(f"{MODELS}/{name}")) for name in names)
     return ClassModels(alone, again)
+
+
+def _with_averaged(models: ClassModels, name: str) -> ClassModels:
+    return replace(models, averaged=read_averaged_trees(path_of(f"{MODELS}/{name}")))
 
 
 def shipped_sample() -> ClassExamples:
