@@ -20,7 +20,7 @@ _TOP_M = 0.12
 """Width of the narrowest stone (JIS A 5371, 地先境界ブロック A); what lies beyond may be paving."""
 
 _EDGE_M = 0.01
-"""Before the lower edge and behind the upper one, on the face: what stays of the tools' own error of
+"""Before the lower edge and behind the upper one on the face: what stays of the tools' own error of
 an edge."""
 
 _LEVEL_M = 0.03
