@@ -155,6 +155,10 @@
 <context>
     <name>ClassChips</name>
     <message>
+        <source>More classes</source>
+        <translation>他のクラス</translation>
+    </message>
+    <message>
         <source>Paint this class</source>
         <translation>このクラスで塗ります</translation>
     </message>

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from PySide6.QtCore import QSize, Qt
-from PySide6.QtWidgets import QHBoxLayout, QToolButton, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QMenu, QToolButton, QWidget
 
 from processing.core.text import Language
 from processing.labels.rules import PaintRule
@@ -16,7 +18,7 @@ INTERACTIVE = (2, 1, 7, 18)
 
 
 class ClassChips(QWidget):
-    """A button for each class at hand, and one for the class on the brush where it is another.
+    """A button for each class at hand, a list of the others, and one for the class on the brush.
 
     Parameters
     ----------
@@ -39,8 +41,10 @@ class ClassChips(QWidget):
                 self._chips[one.code] = self._chip(
                     one.code, one.colour, one.name.in_language(language)
                 )
-        for code in (*INTERACTIVE, *(code for code in self._chips if code not in INTERACTIVE)):
+        others = [code for code in self._chips if code not in INTERACTIVE]
+        for code in (*INTERACTIVE, *others):
             layout.addWidget(self._chips[code])
+        layout.addWidget(self._list_of(others))
         palette.rule_changed.connect(self._on_palette_rule_changed)
         self._on_palette_rule_changed(palette.rule)
 
@@ -63,6 +67,21 @@ class ClassChips(QWidget):
         chip.setToolTip(f"{words} ({key})" if key else words)
         chip.clicked.connect(lambda: self._choose(code))
         return chip
+
+    def _list_of(self, codes: Sequence[int]) -> QToolButton:
+        """The button that opens a list of classes; streets have many that have no key."""
+        button = QToolButton(self)
+        button.setAutoRaise(True)
+        button.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        button.setText(self.tr("More classes"))
+        button.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
+        menu = QMenu(button)
+        for code in codes:
+            chip = self._chips[code]
+            action = menu.addAction(chip.icon(), chip.text())
+            action.triggered.connect(chip.click)
+        button.setMenu(menu)
+        return button
 
     def _choose(self, code: int) -> None:
         self._palette.choose(code)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QToolButton
 from pytestqt.qtbot import QtBot
 
 from processing.core.text import Text
@@ -43,6 +44,20 @@ def test_another_class_is_shown_as_long_as_it_is_on_the_brush(qtbot: QtBot) -> N
     palette.choose(0)
     assert not chips.chip(6).isVisible()
     assert not any(chips.chip(code).isChecked() for code in INTERACTIVE)
+
+
+def test_classes_without_a_chip_are_in_a_list_that_puts_them_on_the_brush(qtbot: QtBot) -> None:
+    palette = LabelPalette()
+    chips = ClassChips(palette, "ja")
+    qtbot.addWidget(chips)
+    (button,) = (one for one in chips.findChildren(QToolButton) if one.menu() is not None)
+    listed = {action.text(): action for action in button.menu().actions()}
+    known = {one.code: one.name.ja for one in point_classes() if one.code}
+    assert list(listed) == [name for code, name in known.items() if code not in INTERACTIVE]
+    for code in (65, 67):
+        listed[known[code]].trigger()
+        assert palette.rule.code == code
+        assert chips.chip(code).isVisibleTo(chips)
 
 
 def test_every_class_at_hand_has_a_key_and_no_key_two_classes(qtbot: QtBot) -> None:
