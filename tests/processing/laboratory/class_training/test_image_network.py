@@ -21,6 +21,7 @@ from processing.laboratory.class_training.image_network.comparison import (
 )
 from processing.laboratory.class_training.image_network.kept_streets import (
     KeptStreet,
+    StreetFolder,
     seen_colours,
 )
 from processing.laboratory.class_training.image_network.network_training import (
@@ -48,10 +49,11 @@ from processing.laboratory.class_training.image_network.tiles import (
     tiles_of,
 )
 from processing.laboratory.class_training.point_samples import NAMES, PointSample
+from processing.laboratory.simulate.cameras.photographs import write_image_list
 from processing.recording.camera_images.image_list import ImageList
 from processing.recording.camera_images.image_store import write_images
 from processing.recording.drive import Drive
-from tests.builders import simulated_drive
+from tests.builders import simulated_drive, write_laz, write_trajectory_csv
 from tests.camera_scene import SURFACE_COLOURS, looking, photograph
 from tests.processing.image.recordings import drive_of, small_drive
 
@@ -227,6 +229,30 @@ def test_points_and_pixels_get_the_colours_of_camera_images(tmp_path: Path) -> N
     assert pixels.shape == (4, *kept.filled.shape)
     assert not pixels[:, ~kept.filled].any()
     assert kept.with_colours(pixels).is_seen.any()
+
+
+def test_a_deliverys_colours_come_later_than_all_else(tmp_path: Path) -> None:
+    street = simulated_drive(3, pulses_per_revolution=600.0, lost_share=0.0)
+    delivery, work = tmp_path / "street", tmp_path / "work"
+    (delivery / "truth").mkdir(parents=True)
+    work.mkdir()
+    write_laz(street, delivery / "left.laz")
+    write_trajectory_csv(street, delivery / "trajectory.csv")
+    codes = np.where(street.surface == 0, 11, 6).astype(np.uint8)
+    np.save(delivery / "truth" / "left.labels.npy", codes)
+    image = looking(delivery / "1.png", (-0.5, 1.0, 2.0), (0.0, 1.0, -0.3), size=(600, 450))
+    photograph(image)
+    write_image_list(delivery / "images.csv", [image])
+    (plain,) = StreetFolder(work, 10.0, asks_colours=False).delivered([delivery], 200)
+    assert not plain.colours_path.exists()
+    before = plain.raster_path.stat().st_mtime_ns
+    (coloured,) = StreetFolder(work, 10.0, asks_colours=True).delivered([delivery], 200)
+    assert coloured.raster_path.stat().st_mtime_ns == before
+    is_road = (coloured.sample.codes == 11) & (coloured.colours[:, 0] >= 0)
+    assert is_road.any()
+    right = (coloured.colours[is_road] == SURFACE_COLOURS[0]).all(axis=1)
+    assert right.mean() > 0.9
+    assert coloured.coloured_raster.is_seen.any()
 
 
 def test_a_kept_streets_points_have_their_colours_or_none(tmp_path: Path) -> None:
