@@ -29,7 +29,7 @@ from processing.tools.tool import Candidate, CandidateResult
 LENGTH_M = 120.0
 BOTH = "both"
 _CRS = "EPSG:6677"
-_TIMES = "time_s,"
+_TIMES, _IMAGES = "time_s,", "path,time_s,"
 _STYLES = ("urban", "rural", "urban", "rural", "urban", "highway")
 _COUNTRY_STYLES = ("rural", "rural", "highway")
 _SENSORS = ("vq250", "vq450", "zf9012", "vmx2ha", "lynx")
@@ -178,12 +178,14 @@ def avenue_scenes(seeds: Sequence[int], length_m: float = LENGTH_M) -> Iterator[
     return simulated_scenes(seeds, length_m, avenue_options_of)
 
 
-def mounted_scenes(seeds: Sequence[int], length_m: float = LENGTH_M) -> Iterator[RoadScene]:
+def mounted_scenes(
+    seeds: Sequence[int], length_m: float = LENGTH_M, *, images: bool = False
+) -> Iterator[RoadScene]:
     """Streets of seeds that are recorded by heads of any height, tilt, rate and noise each."""
     for seed in seeds:
         sensor = any_sensor(seed)
         style = "rural" if seed % _URBAN_OF else "urban"
-        request = StreetRequest(seed=seed, length_m=length_m, style=style, images=False)
+        request = StreetRequest(seed=seed, length_m=length_m, style=style, images=images)
         heads = "one head" if len(sensor.heads) == 1 else "two heads"
         name = f"{style}, {heads}, {sensor.turns_per_s:.0f}/s × {sensor.pulses} {seed}"
         with recorded_scene(request, sensor, name) as scene:
@@ -208,7 +210,7 @@ def recorded_scene(
 
 
 def given_scenes(folders: Sequence[Path]) -> Iterator[RoadScene]:
-    """Deliveries: a folder with LAZ files, their trajectories as CSV, and ``truth/``."""
+    """Deliveries: LAZ files, trajectories and lists of images as CSV, and ``truth/``."""
     for folder in folders:
         with opened_scene(folder.name, folder) as scene:
             yield scene
@@ -226,6 +228,7 @@ def opened_scene(name: str, delivery: Path) -> Iterator[RoadScene]:
     request = ImportRequest(
         tuple(sorted(delivery.glob("*.laz"))),
         trajectories_in(delivery),
+        _lists_in(delivery, _IMAGES),
         crs=_CRS,
     )
     with TemporaryDirectory(prefix="zuka-") as position:
@@ -235,10 +238,15 @@ def opened_scene(name: str, delivery: Path) -> Iterator[RoadScene]:
 
 def trajectories_in(delivery: Path) -> tuple[Path, ...]:
     """The CSV files of a delivery that begin with a column of times, whatever their names."""
+    return _lists_in(delivery, _TIMES)
+
+
+def _lists_in(delivery: Path, beginning: str) -> tuple[Path, ...]:
+    """Its CSV files whose header begins so."""
     found = []
     for path in sorted(delivery.glob("*.csv")):
         with path.open(encoding="utf-8") as lines:
-            if lines.readline().startswith(_TIMES):
+            if lines.readline().startswith(beginning):
                 found.append(path)
     return tuple(found)
 

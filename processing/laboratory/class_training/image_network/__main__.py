@@ -4,11 +4,12 @@
 
 Needs the extra ``train``. Networks learn from streets of ``--seeds`` and ``--mounted``, from the
 street ``--street`` alone, and from it after the others (pre-training); of the first kind one learns
-with empty pixels left as they are. Forests learn from the points of the same streets with the
-network's intermediate features; the streets of ``--validation`` choose features (importance,
-Boruta) and the kind of forest for each class; those of ``--check`` and ``--samples`` are scored.
-All are the middle of the first head's recording. What takes long stays in ``--folder`` and is made
-once: rasters, samples, networks.
+with empty pixels left as they are, and one with the colours of camera images, which its forests are
+given too. Forests learn from the points of the same streets with the network's intermediate
+features; the streets of ``--validation`` choose features (importance, Boruta) and the kind of
+forest for each class; those of ``--check`` and ``--samples`` are scored. All are the middle of the
+first head's recording. What takes long stays in ``--folder`` and is made once: rasters, samples,
+colours, networks.
 
 References
 ----------
@@ -47,8 +48,7 @@ from processing.laboratory.class_training.image_network.kept_streets import (
     LEARNT_OF_A_CLASS,
     SCORED_OF_A_CLASS,
     KeptStreet,
-    delivered_streets,
-    simulated_streets,
+    StreetFolder,
 )
 from processing.laboratory.class_training.image_network.network_training import (
     ChannelScale,
@@ -57,6 +57,7 @@ from processing.laboratory.class_training.image_network.network_training import 
     train_network,
     write_network,
 )
+from processing.laboratory.class_training.image_network.street_rasters import StreetRaster
 from processing.laboratory.class_training.point_samples import ABSOLUTE, MMS, NAMES, PointSample
 from processing.laboratory.progress_lines import say
 from processing.laboratory.seed_ranges import seeds_of
@@ -91,17 +92,26 @@ class Recipe:
     start : str
         The name of the network that it goes on from; empty: it knows nothing.
     fills_holes : bool
+    sees_colours : bool
+        Whether network and forests are given the colours of camera images.
     """
 
     name: str
     learns_from_many: bool
     start: str = ""
     fills_holes: bool = True
+    sees_colours: bool = False
+
+    @property
+    def points(self) -> tuple[bool, bool]:
+        """The same where forests without the network's features are the same."""
+        return self.learns_from_many, self.sees_colours
 
 
 _RECIPES = (
     Recipe("many streets", learns_from_many=True),
     Recipe("many streets, holes left", learns_from_many=True, fills_holes=False),
+    Recipe("many streets, with colours", learns_from_many=True, sees_colours=True),
     Recipe("one street", learns_from_many=False),
     Recipe("one street, pre-trained", learns_from_many=False, start="many streets"),
 )
@@ -113,14 +123,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options.folder.mkdir(parents=True, exist_ok=True)
     streets = _streets(options)
     columns = _columns(PointSample.joined([one.sample for one in streets.validation]))
-    known: dict[bool, Forests] = {}
+    known: dict[tuple[bool, bool], Forests] = {}
     for recipe in _RECIPES:
         if recipe.name in options.networks:
             say(f"\nnetwork: {recipe.name}")
             network, scale = _network(recipe, streets, options)
             comparison = _Comparison(recipe, streets, columns, network, scale)
-            before = known.get(recipe.learns_from_many)
-            known[recipe.learns_from_many] = comparison.say(before).without(_MAI)
+            before = known.get(recipe.points)
+            known[recipe.points] = comparison.say(before).without(_MAI)
     return 0
 
 
@@ -143,19 +153,23 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _streets(options: argparse.Namespace) -> Streets:
-    folder, length = options.folder, options.length
-    (alone,) = simulated_streets(folder, [options.street], length, LEARNT_OF_A_CLASS)
-    others = simulated_streets(folder, seeds_of(options.seeds), length, LEARNT_OF_A_CLASS)
-    mounted = seeds_of(options.mounted)
-    others += simulated_streets(folder, mounted, length, LEARNT_OF_A_CLASS, is_mounted=True)
-    valid = simulated_streets(folder, seeds_of(options.validation), length, SCORED_OF_A_CLASS)
-    scored = simulated_streets(folder, seeds_of(options.check), length, SCORED_OF_A_CLASS)
-    scored += delivered_streets(folder, options.samples, SCORED_OF_A_CLASS)
+    asks_colours = any(one.sees_colours for one in _RECIPES if one.name in options.networks)
+    kept = StreetFolder(options.folder, options.length, asks_colours)
+    (alone,) = kept.simulated([options.street], LEARNT_OF_A_CLASS)
+    others = kept.simulated(seeds_of(options.seeds), LEARNT_OF_A_CLASS)
+    others += kept.simulated(seeds_of(options.mounted), LEARNT_OF_A_CLASS, is_mounted=True)
+    valid = kept.simulated(seeds_of(options.validation), SCORED_OF_A_CLASS)
+    scored = kept.simulated(seeds_of(options.check), SCORED_OF_A_CLASS)
+    scored += kept.delivered(options.samples, SCORED_OF_A_CLASS)
     return Streets(alone, [alone, *others], valid, scored)
 
 
 def _learnt(recipe: Recipe, streets: Streets) -> Sequence[KeptStreet]:
     return streets.many if recipe.learns_from_many else [streets.alone]
+
+
+def _raster(recipe: Recipe, street: KeptStreet) -> StreetRaster:
+    return street.coloured_raster if recipe.sees_colours else street.raster
 
 
 # torch is an extra: what it gives has no types where it is missing.
@@ -166,7 +180,7 @@ def _network(
     path = options.folder / f"{recipe.name.replace(',', '').replace(' ', '_')}.pt"
     if path.exists():
         return read_network(path)
-    rasters = [one.raster for one in _learnt(recipe, streets)]
+    rasters = [_raster(recipe, one) for one in _learnt(recipe, streets)]
     if recipe.fills_holes:
         rasters = [one.without_holes(by_labels=True) for one in rasters]
     start, scale, steps = None, ChannelScale.of(rasters), options.steps
@@ -192,17 +206,17 @@ class _Comparison:
 
     def say(self, known: Forests | None) -> Forests:
         """Print the table of the streets; forests that are known aren't grown again."""
-        valid = [(one.sample, self._seen(one)) for one in self.streets.validation]
+        valid = [(one, self._seen(one)) for one in self.streets.validation]
         rows = np.concatenate([seen for _, seen in valid])
-        codes = np.concatenate([sample.codes for sample, _ in valid])
+        codes = np.concatenate([one.sample.codes for one, _ in valid])
         kept = boruta(rows, codes, np.random.default_rng(0))
         say(f"Boruta keeps {kept.size} of {rows.shape[1]} intermediate features")
         learnt = [
-            self._described(one.sample, self._seen(one), kept)
+            self._described(one, self._seen(one), kept)
             for one in _learnt(self.recipe, self.streets)
         ]
         forests = Forests.of(learnt, known)
-        asked = _as_one([self._described(sample, seen, kept) for sample, seen in valid])
+        asked = _as_one([self._described(one, seen, kept) for one, seen in valid])
         shares = forests.shares(asked)
         scores = {kind: score_of(asked.sample, forests.codes, shares[kind]) for kind in _KINDS}
         chosen = best_kinds(scores, forests.codes.tolist(), _KINDS)
@@ -212,7 +226,7 @@ class _Comparison:
         say(f"| street | features | mean F | {' | '.join(numbers)} |")
         say("|---" * (len(numbers) + 3) + "|")
         for street in self.streets.scored:
-            shares = forests.shares(self._described(street.sample, self._seen(street), kept))
+            shares = forests.shares(self._described(street, self._seen(street), kept))
             shares[_CHOICE] = chosen_shares(shares, chosen)
             for kind, own in shares.items():
                 score = score_of(street.sample, forests.codes, own)
@@ -221,18 +235,20 @@ class _Comparison:
 
     def _seen(self, street: KeptStreet) -> NDArray[np.float32]:
         """(k, 256) the network's intermediate features at the street's points."""
-        raster = street.raster
+        raster = _raster(self.recipe, street)
         if self.recipe.fills_holes:
             raster = raster.without_holes(by_labels=False)
         pixels = raster.pixels_of(street.sample.points)
         return intermediate_features(self.network, self.scale.image_of(raster), *pixels)
 
     def _described(
-        self, sample: PointSample, seen: NDArray[np.float32], kept: Integers
+        self, street: KeptStreet, seen: NDArray[np.float32], kept: Integers
     ) -> Described:
-        rows = {kind: sample.values(self.columns[kind]) for kind in _KINDS}
+        rows = {kind: street.sample.values(self.columns[kind]) for kind in _KINDS}
+        if self.recipe.sees_colours:
+            rows = {kind: np.hstack([own, street.colours]) for kind, own in rows.items()}
         rows[_MAI] = np.hstack([rows[_MAI], seen[:, kept]])
-        return Described(sample, rows)
+        return Described(street.sample, rows)
 
 
 def _as_one(parts: Sequence[Described]) -> Described:

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.core.arrays import Integers
+from processing.core.arrays import Floats, Integers
 from processing.laboratory.class_training.image_network.augmenting import LearntImage, random_crop
 from processing.laboratory.class_training.image_network.street_rasters import (
     CHANNELS,
@@ -49,10 +49,16 @@ _RATE, _DECAY, _POWER = 1e-3, 1e-4, 0.9
 
 _BATCH = 4
 
+_FIRST_LAYER = "low.0.weight"
+"""Of `DeepLab`: its second axis are the channels of the image."""
+
 
 @dataclass(frozen=True)
 class ChannelScale:
-    """Middle and spread of each channel of `IMAGE_CHANNELS`, (channels,) float32."""
+    """Middle and spread of each channel, (channels,) float32.
+
+    Channels are `IMAGE_CHANNELS`, and red, green and blue where rasters have them.
+    """
 
     middle: NDArray[np.float32]
     spread: NDArray[np.float32]
@@ -65,20 +71,38 @@ class ChannelScale:
         for one in rasters:
             rows, columns = np.nonzero(one.filled)
             some = rng.integers(rows.size, size=_SAMPLE)
-            parts.append(one.values[:, rows[some], columns[some]][list(IMAGE_CHANNELS)])
-        quarters = np.percentile(np.concatenate(parts, axis=1), (25, 50, 75), axis=1)
+            at = rows[some], columns[some]
+            own = one.values[:, *at][list(_channels_of(one))]
+            if one.is_coloured:
+                own[len(IMAGE_CHANNELS) :, ~one.is_seen[at]] = np.nan
+            parts.append(own)
+        quarters = np.stack([_quarters(one) for one in np.concatenate(parts, axis=1)], axis=1)
         spread = np.maximum((quarters[2] - quarters[0]) / _NORMAL_QUARTERS, 1e-3)
         return ChannelScale(quarters[1].astype(np.float32), spread.astype(np.float32))
 
     def image_of(self, raster: StreetRaster) -> LearntImage:
-        """A street with its channels scaled, and a mask of filled pixels as the last one."""
-        values = np.zeros((len(IMAGE_CHANNELS) + 1, *raster.filled.shape), np.float16)
-        for at, channel in enumerate(IMAGE_CHANNELS):
+        """A street with its channels scaled, and masks: of colours, and last of filled pixels."""
+        channels = _channels_of(raster)
+        masks = [raster.is_seen, raster.filled] if raster.is_coloured else [raster.filled]
+        values = np.zeros((len(channels) + len(masks), *raster.filled.shape), np.float16)
+        for at, channel in enumerate(channels):
             own = raster.values[channel].astype(np.float32)
             scaled = np.clip((own - self.middle[at]) / self.spread[at], -_FARTHEST, _FARTHEST)
-            values[at] = np.where(raster.filled, scaled, 0)
-        values[-1] = raster.filled
+            values[at] = np.where(masks[-1] if at < len(IMAGE_CHANNELS) else masks[0], scaled, 0)
+        values[len(channels) :] = masks
         return LearntImage(values, targets_of(raster.codes))
+
+
+def _channels_of(raster: StreetRaster) -> tuple[int, ...]:
+    """Those that are scaled."""
+    colours = range(len(CHANNELS), raster.values.shape[0])
+    return (*IMAGE_CHANNELS, *colours[:-1])  # the last one is a mask
+
+
+def _quarters(values: NDArray[np.float16]) -> Floats:
+    """(3,) a quarter, the half and three quarters of a channel; 0 where nothing is known."""
+    known = values[~np.isnan(values)]
+    return np.percentile(known, (25, 50, 75)) if known.size else np.zeros(3)
 
 
 def targets_of(codes: NDArray[np.uint8]) -> NDArray[np.int16]:
@@ -113,7 +137,7 @@ def train_network(
 
     torch.manual_seed(0)
     rng = np.random.default_rng(0)
-    network = DeepLab(len(IMAGE_CHANNELS) + 1, len(CLASSES)) if start is None else start
+    network = DeepLab(images[0].values.shape[0], len(CLASSES)) if start is None else start
     network.to(memory_format=torch.channels_last).train()
     weights = torch.from_numpy(_weights(images))
     optimizer = torch.optim.AdamW(network.parameters(), _RATE, weight_decay=_DECAY)
@@ -190,6 +214,7 @@ def read_network(path: Path) -> tuple[Any, ChannelScale]:
     from processing.laboratory.class_training.image_network.deeplab import DeepLab
 
     kept = torch.load(path, weights_only=True)
-    network = DeepLab(len(IMAGE_CHANNELS) + 1, len(CLASSES))
+    channels = kept["network"][_FIRST_LAYER].shape[1]
+    network = DeepLab(channels, len(CLASSES))
     network.load_state_dict(kept["network"])
     return network, ChannelScale(kept["middle"].numpy(), kept["spread"].numpy())

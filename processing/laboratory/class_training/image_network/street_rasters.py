@@ -26,6 +26,9 @@ from processing.recording.drive import Drive
 CHANNELS = (*SELECTED, "height", BRIGHTNESS)
 """The thesis' 17 (table 4-1)."""
 
+COLOUR_CHANNELS = ("red", "green", "blue", "is_seen")
+"""Further ones, where asked for: 0 to 255, and 1 where a camera sees the point."""
+
 WIRE = 14
 
 _MOST_PIXELS = 1_000_000
@@ -75,7 +78,7 @@ class StreetRaster:
     Attributes
     ----------
     values : (channels, rows, columns) float16
-        By `CHANNELS`; 0 where empty.
+        By `CHANNELS`, and by `COLOUR_CHANNELS` where colours were asked for; 0 where empty.
     codes : (rows, columns) uint8
         True classes; 0 where empty or unknown.
     filled : (rows, columns) bool
@@ -94,6 +97,21 @@ class StreetRaster:
     first_point: int
     rows_of_points: NDArray[np.int32]
     columns_of_points: NDArray[np.int32]
+
+    @property
+    def is_coloured(self) -> bool:
+        """Whether it has `COLOUR_CHANNELS`."""
+        return len(self.values) > len(CHANNELS)
+
+    @property
+    def is_seen(self) -> Flags:
+        """(rows, columns): pixels with a colour; filled ones only where both ends have one."""
+        seen: Flags = self.values[-1] >= 1
+        return seen
+
+    def with_colours(self, colours: NDArray[np.uint8]) -> StreetRaster:
+        """The same with `COLOUR_CHANNELS`, (4, rows, columns)."""
+        return replace(self, values=np.concatenate([self.values, colours.astype(np.float16)]))
 
     def without_holes(self, *, by_labels: bool) -> StreetRaster:
         """The same with its short holes filled.
@@ -204,6 +222,21 @@ def raster_of(drive: Drive, labels: NDArray[np.uint8], rows: range) -> StreetRas
         fixed.row_of_point.astype(np.int32),
         fixed.column_of_point.astype(np.int32),
     )
+
+
+def pixel_colours(drive: Drive, points: NDArray[np.uint8], rows: range) -> NDArray[np.uint8]:
+    """(4, rows, columns) colours of the points that are shown; 0 where empty.
+
+    Parameters
+    ----------
+    points : (n, 4) uint8
+        By `COLOUR_CHANNELS`.
+    rows : range
+        Of its image, as :func:`raster_of`.
+    """
+    shown = image_of(drive, drive.pixel_kind).fixed_raster(rows).points
+    own = np.where((shown >= 0)[..., None], points[np.maximum(shown, 0)], 0)
+    return np.ascontiguousarray(np.moveaxis(own, -1, 0), np.uint8)
 
 
 def _feature_columns(drive: Drive, xyz: Floats, own: slice) -> dict[str, NDArray[np.float32]]:

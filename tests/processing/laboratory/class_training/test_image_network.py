@@ -19,6 +19,11 @@ from processing.laboratory.class_training.image_network.comparison import (
     chosen_shares,
     score_of,
 )
+from processing.laboratory.class_training.image_network.kept_streets import (
+    KeptStreet,
+    StreetFolder,
+    seen_colours,
+)
 from processing.laboratory.class_training.image_network.network_training import (
     CLASSES,
     IMAGE_CHANNELS,
@@ -33,6 +38,7 @@ from processing.laboratory.class_training.image_network.street_rasters import (
     CHANNELS,
     StreetRaster,
     holes_of,
+    pixel_colours,
     raster_of,
     some_of_lines,
 )
@@ -43,7 +49,13 @@ from processing.laboratory.class_training.image_network.tiles import (
     tiles_of,
 )
 from processing.laboratory.class_training.point_samples import NAMES, PointSample
-from tests.processing.image.recordings import small_drive
+from processing.laboratory.simulate.cameras.photographs import write_image_list
+from processing.recording.camera_images.image_list import ImageList
+from processing.recording.camera_images.image_store import write_images
+from processing.recording.drive import Drive
+from tests.builders import simulated_drive, write_laz, write_trajectory_csv
+from tests.camera_scene import SURFACE_COLOURS, looking, photograph
+from tests.processing.image.recordings import drive_of, small_drive
 
 
 def raster(filled: np.ndarray, codes: np.ndarray, far: np.ndarray | None = None) -> StreetRaster:
@@ -166,6 +178,91 @@ def test_channels_are_scaled_by_what_is_usual_and_empty_pixels_are_nothing() -> 
     assert abs(np.median(image.values[0][filled])) < 0.1
     assert (image.targets[filled] == CLASSES.index(11)).all()
     assert (image.targets[:, 7] == -1).all()
+
+
+def test_colours_are_further_channels_and_nothing_where_no_camera_sees() -> None:
+    filled = np.ones((30, 40), bool)
+    filled[:, 7] = False
+    colours = np.zeros((4, 30, 40), np.uint8)
+    colours[:, :, 20:] = np.array([200, 120, 40, 1])[:, None, None]
+    colours[0, :, 20:] += np.arange(20, dtype=np.uint8)
+    plain = raster(filled, np.full((30, 40), 11))
+    street = plain.with_colours(colours)
+    scale, known = ChannelScale.of([street]), ChannelScale.of([plain])
+    # What isn't seen says nothing of what is usual; the other channels are as without colours.
+    assert scale.middle[-3:] == pytest.approx([209.5, 120, 40], abs=1.5)
+    np.testing.assert_array_equal(scale.middle[:-3], known.middle)
+    image = scale.image_of(street)
+    assert image.values.shape == (len(IMAGE_CHANNELS) + 5, 30, 40)
+    assert not image.values[-5:-1, :, :20].any()
+    assert image.values[-5, 0, 20] < 0 < image.values[-5, 0, 39]
+    assert (image.values[-2] == (np.arange(40) >= 20)).all()
+    assert (image.values[-1] == filled).all()
+
+
+def test_a_hole_has_a_colour_only_where_both_ends_have_one() -> None:
+    filled = np.array([[1, 0, 1, 0, 1]], bool)
+    colours = np.zeros((4, 1, 5), np.uint8)
+    colours[:, 0, 0], colours[:, 0, 2] = (100, 90, 80, 1), (120, 90, 80, 1)
+    street = raster(filled, np.full((1, 5), 11)).with_colours(colours)
+    found = street.without_holes(by_labels=True)
+    assert found.filled.all()
+    assert found.is_seen[0].tolist() == [True, True, True, False, False]
+    assert found.values[-4, 0, 1] == 110
+
+
+def test_points_and_pixels_get_the_colours_of_camera_images(tmp_path: Path) -> None:
+    street = simulated_drive(3, pulses_per_revolution=600.0, lost_share=0.0)
+    drive = drive_of(street, tmp_path / "d")
+    assert not seen_colours([drive]).any()
+    image = looking(tmp_path / "1.png", (-0.5, 1.0, 2.0), (0.0, 1.0, -0.3), size=(600, 450))
+    photograph(image)
+    write_images(drive.folder, ImageList([image]))
+    drive = Drive(drive.folder)
+    found = seen_colours([drive])
+    is_road = (street.surface == 0) & (found[:, 3] > 0)
+    assert is_road.sum() > 50
+    assert (found[is_road, :3] == SURFACE_COLOURS[0]).all(axis=1).mean() > 0.95
+    rows = range(2, 9)
+    pixels = pixel_colours(drive, found, rows)
+    kept = raster_of(drive, np.full(drive.count, 11, np.uint8), rows)
+    assert pixels.shape == (4, *kept.filled.shape)
+    assert not pixels[:, ~kept.filled].any()
+    assert kept.with_colours(pixels).is_seen.any()
+
+
+def test_a_deliverys_colours_come_later_than_all_else(tmp_path: Path) -> None:
+    street = simulated_drive(3, pulses_per_revolution=600.0, lost_share=0.0)
+    delivery, work = tmp_path / "street", tmp_path / "work"
+    (delivery / "truth").mkdir(parents=True)
+    work.mkdir()
+    write_laz(street, delivery / "left.laz")
+    write_trajectory_csv(street, delivery / "trajectory.csv")
+    codes = np.where(street.surface == 0, 11, 6).astype(np.uint8)
+    np.save(delivery / "truth" / "left.labels.npy", codes)
+    image = looking(delivery / "1.png", (-0.5, 1.0, 2.0), (0.0, 1.0, -0.3), size=(600, 450))
+    photograph(image)
+    write_image_list(delivery / "images.csv", [image])
+    (plain,) = StreetFolder(work, 10.0, asks_colours=False).delivered([delivery], 200)
+    assert not plain.colours_path.exists()
+    before = plain.raster_path.stat().st_mtime_ns
+    (coloured,) = StreetFolder(work, 10.0, asks_colours=True).delivered([delivery], 200)
+    assert coloured.raster_path.stat().st_mtime_ns == before
+    is_road = (coloured.sample.codes == 11) & (coloured.colours[:, 0] >= 0)
+    assert is_road.any()
+    right = (coloured.colours[is_road] == SURFACE_COLOURS[0]).all(axis=1)
+    assert right.mean() > 0.9
+    assert coloured.coloured_raster.is_seen.any()
+
+
+def test_a_kept_streets_points_have_their_colours_or_none(tmp_path: Path) -> None:
+    path = tmp_path / "colours.npz"
+    points = np.array([[0, 0, 0, 0], [9, 8, 7, 1], [1, 2, 3, 1]], np.uint8)
+    np.savez(path, points=points)
+    rows = np.zeros((2, len(NAMES)), np.float32)
+    sample = PointSample(rows, np.full(2, 11, np.uint8), np.array([2, 0]), {11: 2})
+    street = KeptStreet("street", sample, tmp_path / "raster.npz", path)
+    assert street.colours.tolist() == [[1, 2, 3], [-1, -1, -1]]
 
 
 def test_crops_meet_a_rare_class_and_keep_values_with_their_targets() -> None:
