@@ -141,13 +141,13 @@ class LabelledCloud:
         The first has no columns in space.
         """
         if self.space is not None:
-            rows, points = self._candidates(None).features, self.space.points
-            cheap = np.zeros((points.size, 0), np.float32)
-        else:
-            search = self._search()
-            points, cheap = search.points, search.cheap_features(SilentMonitor())
-            rows = self._with_beams(cheap, np.ones(points.size, np.bool_)).features
-        return self._some(cheap, points), self._some(rows, points)
+            points = self.space.points
+            none = np.zeros((points.size, 0), np.float32)
+            return self._some(none, points), self._some(self._candidates(None).features, points)
+        points, cheap = self._search().points, self._search().cheap_features(SilentMonitor())
+        chosen, what = self._picked(points)
+        rows = self._with_beams(cheap, chosen).features
+        return Examples(cheap[chosen], *what), Examples(rows, *what)
 
     def again(self, first: Trees | None, own: Trees) -> Examples:
         """Examples of points with what ``own`` said of them and of others."""
@@ -213,7 +213,14 @@ class LabelledCloud:
             light += np.where(kinds < 0, 0.0, random.normal(-0.7, 1.3, 12)[kinds])
 
     def _some(self, rows: FeatureVectors, points: NDArray[np.int64]) -> Examples:
-        """Some of the rows, thin things twice as often as others, and noise as is wanted."""
+        chosen, what = self._picked(points)
+        return Examples(rows[chosen], *what)
+
+    def _picked(self, points: NDArray[np.int64]) -> tuple[Flags, tuple[Flags, NDArray[np.float64]]]:
+        """Which are examples, what those are and how much each counts.
+
+        Thin things are taken twice as often as others, and noise as is wanted.
+        """
         random = np.random.default_rng(self.seed + 1)
         is_thin, is_noise = np.isin(self.kinds[points], _THIN), self.noise[points] > 0
         usual = self.points_wanted / max(1, points.size)
@@ -225,7 +232,7 @@ class LabelledCloud:
         weights = np.where(is_noise, of_noise, _TRUE_WEIGHT)
         weights[is_thin] = _THIN_WEIGHT
         weights[np.isin(self.kinds[points], _EASILY_LOST)] = _LOST_WEIGHT
-        return Examples(rows[chosen], is_noise[chosen], weights[chosen])
+        return chosen, (is_noise[chosen], weights[chosen])
 
 
 def recording_with_beams(scene: RecordedScene, seed: int) -> LabelledCloud:

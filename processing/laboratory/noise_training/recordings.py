@@ -55,8 +55,8 @@ _STYLES, _SITE_STYLES = (
     ("levee", "cutting", "pad", "hillside"),
 )
 _LENGTH_M, _MOST_POINTS = 14.0, 250_000
-_PHASE_SHARE = 0.55
-"""Of the sensors: they have kinds of noise that pulses have not."""
+_PHASE_SHARE, _VARIED_PHASE_SHARE = 0.55, 0.75
+"""Of the sensors: they have kinds of noise that pulses have not, all of which are to be learned."""
 
 _AMBIGUITIES_M = (53.5, 79.0, 119.0)
 """Of phase-based scanners of the last twenty years (Z+F 5003, 5006 and 9012)."""
@@ -190,9 +190,9 @@ def _varied_sensor(seed: int, sensor: Sensor) -> Sensor:
     )
 
 
-def _of_any_kind(random: Generator, sensor: Sensor) -> Sensor:
+def _of_any_kind(random: Generator, sensor: Sensor, noise: str) -> Sensor:
     """The same scanner, measuring by phase or by pulses."""
-    if random.random() < _PHASE_SHARE:
+    if random.random() < (_VARIED_PHASE_SHARE if noise == VARIED else _PHASE_SHARE):
         most_m = float(random.choice(_AMBIGUITIES_M))
         return replace(sensor, measures_by="phase", most_m=most_m, returns=1)
     return replace(sensor, measures_by="pulse", most_m=max(sensor.most_m, 150.0))
@@ -201,9 +201,10 @@ def _of_any_kind(random: Generator, sensor: Sensor) -> Sensor:
 def _mobile(seed: int, noise: str) -> RecordedScene:
     """Some seconds of one head, or all that a surveyor cut out of them."""
     random = chance(seed, "training", MOBILE)
-    sensor = _of_any_kind(random, any_sensor(seed))
+    sensor = _of_any_kind(random, any_sensor(seed), noise)
     is_varied = noise == VARIED
     sensor = _varied_sensor(seed, sensor) if is_varied else sensor
+    sensor = replace(sensor, heads=sensor.heads[:1])
     with TemporaryDirectory(prefix="zuka-") as at:
         delivery, own = Path(at) / "street", Path(at) / "sensor.toml"
         write_sensor(sensor, own)
@@ -268,7 +269,7 @@ def _drive_scene(drive: Drive, labels: NDArray[np.uint8]) -> RecordedScene:
 def _standing(seed: int, noise: str) -> RecordedScene:
     """One scan with its sweeps; now and then two or three as one cloud, of places alone."""
     random = chance(seed, "training", STANDING)
-    sensor = _of_any_kind(random, SENSORS[str(random.choice(_ON_TRIPODS))])
+    sensor = _of_any_kind(random, SENSORS[str(random.choice(_ON_TRIPODS))], noise)
     sensor = _varied_sensor(seed, sensor) if noise == VARIED else sensor
     street = Street(seed, style_of(str(random.choice(_STYLES))), 20.0)
     options = _noise_of(random, seed, sensor, noise)

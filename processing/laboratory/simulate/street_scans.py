@@ -23,7 +23,6 @@ from processing.laboratory.simulate.scanning.noise_options import NoiseOptions
 from processing.laboratory.simulate.scanning.passing_noise import Path
 from processing.laboratory.simulate.scanning.return_kernels import intensities
 from processing.laboratory.simulate.scanning.returns import (
-    BeamHits,
     Returns,
     Weather,
     returns_of,
@@ -160,6 +159,6 @@ def _stretches(
     for first in range(0, wanted, per_stretch):
         columns = range(first, min(first + per_stretch, wanted))
         beams = tripod_beams(pattern, (position, start_rad), columns, rows, (0, 0.0))
-        met = BeamHits.of(scene.cast(beams.origins, beams.directions), scene.mesh)
+        met = source.first_met(beams, scene.cast(beams.origins, beams.directions), scene)
         returns, _ = returns_of(beams, met, scene, scanner, key)
         yield source.added(PulseHits(beams, met, returns, scene, scanner))

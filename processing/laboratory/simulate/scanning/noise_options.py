@@ -52,6 +52,18 @@ class NoiseOptions:
         driven too far and measures as it does on retro-reflecting plates.
     streak_m : float
         Standard deviation of ranges that are measured so.
+    lasting : float
+        How many times as long as usual arcs and glints last: a scanner on a tripod turns so slowly
+        that what shines into it does so for a good part of a scan.
+    arc_turn : float
+        Half of the widest arc, of a turn.
+    aside_m : float
+        How far from the carrier's way clouds lie, at most.
+    lone_anywhere : bool
+        Whether ranges of nothing may lie behind what the beam met, too: where no echo is waited
+        for, weak light is measured anywhere.
+    glazed : float
+        Of upright walls: shop windows, glazed halls, panes of glass where walls would stand.
     """
 
     arcs_per_s: float
@@ -68,6 +80,11 @@ class NoiseOptions:
     pane: float = 0.15
     saturated: float = math.inf
     streak_m: float = 0.5
+    lasting: float = 1.0
+    arc_turn: float = 0.2
+    aside_m: float = 8.0
+    lone_anywhere: bool = False
+    glazed: float = 0.0
 
     def times(self, often: float) -> NoiseOptions:
         """The same kinds so many times as often; shares of what is bright or far are the same."""
@@ -135,19 +152,25 @@ def varied_noise(seed: int, sensor: Sensor) -> NoiseOptions:
 
     # One of pulses waits for an echo that stands out: a fifth of the false ones.
     fewer = 1.0 if is_phase else 0.2
+    lasting = power(0.0, 1.0)
     return NoiseOptions(
-        arcs_per_s=power(0.0, 1.5, 0.75) if is_phase else 0.0,
+        arcs_per_s=power(0.3, 1.5, 0.9) / math.sqrt(lasting) if is_phase else 0.0,
         folded=float(random.uniform(0.2, 0.95)) if is_phase else 0.0,
         streaks=fewer * float(random.uniform(0.2, 0.9)),
         drops=fewer * power(-4.0, -2.0),
         late=power(-5.5, -3.0),
         lone=fewer * power(-4.0, -2.0),
-        clouds_per_s=power(-0.7, 0.3, 0.7),
-        patches_per_s=power(-1.0, 1.0, 0.6),
+        clouds_per_s=power(-0.7, 0.6, 0.8),
+        patches_per_s=power(-0.7, 1.0, 0.8),
         sun=fewer * power(-1.0, -0.2, 0.8),
         glints_per_s=power(0.0, 1.6, 0.8),
         mirrored=float(random.uniform(0.3, 0.9)),
-        pane=float(10 ** random.uniform(-0.6, 0.0)),
+        pane=float(10 ** random.uniform(-0.25, 0.0)),
         saturated=power(-0.6, 0.7),
         streak_m=power(-0.7, 0.4),
+        lasting=lasting,
+        arc_turn=float(random.uniform(0.1, 0.35)),
+        aside_m=power(0.5, 1.3),
+        lone_anywhere=is_phase,
+        glazed=power(-1.0, -0.15, 0.7),
     )

@@ -21,7 +21,7 @@ _SEEN_S = 2.0
 """How long before and behind itself a scanner on a vehicle sees a place, at most."""
 
 _ASIDE_M = 8.0
-"""Of clouds and patches from the vehicle's way: a road's width and a half."""
+"""Of clouds and patches from the vehicle's way, usually: a road's width and a half."""
 
 _CLOUD_M, _CLOUD_ABOVE_M = (0.3, 1.5), (-1.5, 1.0)
 """Half width, and height over the trajectory's reference point, of what a wheel throws up."""
@@ -103,15 +103,23 @@ class PassingNoise:
 
     Parameters
     ----------
-    clouds_per_s, patches_per_s, sun : float
+    clouds_per_s, patches_per_s, sun, aside_m : float
         As `NoiseOptions` has them.
     """
 
     def __init__(
-        self, seed: int, path: Path, *, clouds_per_s: float, patches_per_s: float, sun: float
+        self,
+        seed: int,
+        path: Path,
+        *,
+        clouds_per_s: float,
+        patches_per_s: float,
+        sun: float,
+        aside_m: float = _ASIDE_M,
     ) -> None:
         self._seed, self._path = seed, path
         self._clouds_per_s, self._patches_per_s, self._share = clouds_per_s, patches_per_s, sun
+        self._aside_m = aside_m
         random = chance(seed, "sun")
         high, around = np.radians(random.uniform(*_SUN_HIGH_DEG)), random.uniform(-np.pi, np.pi)
         flat = np.cos(high)
@@ -135,12 +143,12 @@ class PassingNoise:
         if beams.time_s.size == 0:
             return
         self._into_the_sun(beams, met, key, ranges)
-        for one in self._things(beams, "patches", self._patches_per_s):
+        for one in self._things(beams, "patches", self._patches_per_s, _ASIDE_M):
             _measure_patch(one, (beams, met, is_ground), key, ranges)
-        for one in self._things(beams, "clouds", self._clouds_per_s):
+        for one in self._things(beams, "clouds", self._clouds_per_s, self._aside_m):
             _measure_cloud(one, beams, met, key, ranges)
 
-    def _things(self, beams: Beams, what: str, per_s: float) -> Iterator[_Thing]:
+    def _things(self, beams: Beams, what: str, per_s: float, aside_m: float) -> Iterator[_Thing]:
         """What the vehicle passes about the time of some beams."""
         if per_s <= 0:
             return
@@ -150,7 +158,7 @@ class PassingNoise:
             random = chance(self._seed, what, slot)
             for number in range(int(random.poisson(per_s * _SLOT_S))):
                 middle = self._path.at((slot + random.random()) * _SLOT_S)
-                middle[:2] += random.uniform(-_ASIDE_M, _ASIDE_M, 2)
+                middle[:2] += random.uniform(-aside_m, aside_m, 2)
                 salt = _STREAM[what] + _SALTS_A_THING * (_MOST_IN_A_SLOT * slot + number)
                 yield _Thing(middle, random, salt)
 

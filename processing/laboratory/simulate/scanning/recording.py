@@ -25,7 +25,6 @@ from processing.laboratory.simulate.scanning.moving import MovingScene
 from processing.laboratory.simulate.scanning.noise_options import NoiseOptions
 from processing.laboratory.simulate.scanning.passing_noise import Path
 from processing.laboratory.simulate.scanning.returns import (
-    BeamHits,
     Returns,
     Weather,
     returns_of,
@@ -194,7 +193,8 @@ class SimulatedRecording:
     def _record(self, scene: RaycastScene, number: int, pulses: range) -> HeadChunk:
         head = self._setup.sensor.heads[number]
         beams = beams_of(self._driven, head, self._spins[number], pulses)
-        met = BeamHits.of(scene.cast(beams.origins, beams.directions), scene.mesh)
+        hits = scene.cast(beams.origins, beams.directions)
+        met = self._noise[number].first_met(beams, hits, scene)
         self._moving.meet(beams, met)
         returns, _ = returns_of(beams, met, scene, self._scanner, self._keys[number])
         noisy = self._noise[number].added(PulseHits(beams, met, returns, scene, self._scanner))

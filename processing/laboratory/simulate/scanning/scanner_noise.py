@@ -13,11 +13,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from processing.laboratory.simulate.scanning.beams import Beams, ScanPattern
-from processing.laboratory.simulate.scanning.casting import NOWHERE, RaycastScene
+from processing.laboratory.simulate.scanning.casting import NOWHERE, CastHits, RaycastScene
 from processing.laboratory.simulate.scanning.mirrored_echoes import (
     MIRRORS,
     MirroredEchoes,
     mirrored_echoes,
+    panes_in_walls,
 )
 from processing.laboratory.simulate.scanning.noise_options import NoiseOptions, noise_options
 from processing.laboratory.simulate.scanning.passing_noise import PassingNoise, Path
@@ -40,6 +41,9 @@ _GROUND_LABELS = (2, 3, 11, 67)
 _SLOT_S = 1.0
 _LEAST_M = 0.6
 _GLINT_TURNS, _GLINT_SHARES, _GLINT_REACH_M = (0.001, 0.01), (0.05, 0.6), (1.0, 30.0)
+_PANES_M = (1.0, 8.0), (1.0, 4.0)
+"""From a door's width to a shop's, and from a low window's height to a hall's."""
+
 _LONE_M = 40.0  # beyond it a receiver's own noise is as seldom as far things
 _WEAK = 0.02  # of the power that a white surface 10 m away gives
 _JUMPING_SHARE = 0.02
@@ -108,8 +112,19 @@ class NoiseSource:
             clouds_per_s=options.clouds_per_s,
             patches_per_s=options.patches_per_s,
             sun=options.sun,
+            aside_m=options.aside_m,
         )
+        self._pane_m = tuple(chance(seed, "panes").uniform(*np.transpose(_PANES_M)).tolist())
         self._key = int(chance(seed, "noise key", *position).integers(1 << 40))
+
+    def first_met(self, beams: Beams, hits: CastHits, scene: RaycastScene) -> BeamHits:
+        """What beams meet first of a scene, some of whose walls are glass."""
+        met = BeamHits.of(hits, scene.mesh)
+        if self._request.glazed > 0:
+            share, pane = self._request.glazed, self._pane_m
+            is_pane = panes_in_walls(beams, hits, scene.mesh, (share, *pane), self._seed)
+            met.material[is_pane] = Material.GLASS
+        return met
 
     def added(self, recorded: PulseHits) -> Returns:
         """The returns with some replaced by noise, and noise where nothing came back."""
@@ -140,18 +155,23 @@ class NoiseSource:
             total += shares_of(beams.first + rows, self._key + salt + one)
         return total * math.sqrt(3.0)
 
+    def _slots(self, beams: Beams) -> range:
+        """Seconds in which may have begun what lasts into the time of some beams."""
+        first, last = (int(beams.time_s[end] // _SLOT_S) for end in (0, -1))
+        return range(max(0, first - math.ceil(self._request.lasting)), last + 1)
+
     def _arcs(self, beams: Beams, ranges: Floats) -> None:
         """One range over a part of the turn, for some turns: begun in slots of a second."""
         if self._request.arcs_per_s <= 0 or beams.time_s.size == 0:
             return
-        first = int(beams.time_s[0] // _SLOT_S)
-        for slot in range(max(0, first - 1), int(beams.time_s[-1] // _SLOT_S) + 1):
+        lasting = self._request.lasting
+        for slot in self._slots(beams):
             random = chance(self._seed, "arcs", *self._position, slot)
             for _ in range(random.poisson(self._request.arcs_per_s)):
                 start = (slot + random.random()) * _SLOT_S
-                long_s = float(np.exp(random.uniform(np.log(0.01), np.log(_SLOT_S))))
+                long_s = float(np.exp(random.uniform(np.log(0.01), np.log(_SLOT_S)))) * lasting
                 reach, drift = random.uniform(1.5, 18.0), random.normal(0, 0.3)
-                middle, half = random.random(), random.uniform(0.01, 0.2)
+                middle, half = random.random(), random.uniform(0.01, self._request.arc_turn)
                 share = float(random.choice([0.02, 0.06, 0.15, 0.4]))
                 salt = int(random.integers(1000, 1 << 30))
                 low, high = np.searchsorted(beams.time_s, [start, start + long_s])
@@ -187,11 +207,12 @@ class NoiseSource:
         if self._request.glints_per_s <= 0 or beams.time_s.size == 0:
             return
         is_phase = self._sensor.measures_by == "phase"
-        first = int(beams.time_s[0] // _SLOT_S)
-        for slot in range(max(0, first - 1), int(beams.time_s[-1] // _SLOT_S) + 1):
+        lasting = self._request.lasting
+        for slot in self._slots(beams):
             random = chance(self._seed, "glints", *self._position, slot)
             for _ in range(random.poisson(self._request.glints_per_s)):
-                start, long_s = (slot + random.random()) * _SLOT_S, 10 ** random.uniform(-2.3, -0.5)
+                start = (slot + random.random()) * _SLOT_S
+                long_s = lasting * 10 ** random.uniform(-2.3, -0.5)
                 middle, half = random.random(), random.uniform(*_GLINT_TURNS)
                 share, salt = random.uniform(*_GLINT_SHARES), int(random.integers(1000, 1 << 30))
                 rows = np.arange(*np.searchsorted(beams.time_s, [start, start + long_s]))
@@ -220,10 +241,10 @@ class NoiseSource:
         ranges[rows[is_free]] = away[is_free]
 
     def _lone(self, beams: Beams, met: BeamHits, ranges: Floats) -> None:
-        """Ranges of nothing, before what the beam met: the receiver's own noise."""
+        """Ranges of nothing, most before what the beam met: the receiver's own noise."""
         rows = self._chosen(beams, np.arange(met.ranges.size), self._request.lone, 800)
         away = _LEAST_M + (_LONE_M - _LEAST_M) * shares_of(beams.first + rows, self._key + 801)
-        is_free = away < met.ranges[rows]
+        is_free = self._request.lone_anywhere | (away < met.ranges[rows])
         ranges[rows[is_free]] = away[is_free]
 
     def _late(self, beams: Beams, met: BeamHits, ranges: Floats) -> None:
@@ -240,7 +261,7 @@ class NoiseSource:
         rows = self._chosen(beams, rows, self._request.mirrored, 400)
         scanner = recorded.scanner.copy()
         scanner[PASSED] = self._request.pane**2  # there and back
-        images = mirrored_echoes(beams, met.ranges, recorded.scene, scanner, rows, key=self._key)
+        images = mirrored_echoes(beams, met, recorded.scene, scanner, rows, key=self._key)
         ranges[images.rays] = images.ranges
         return images
 

@@ -197,7 +197,7 @@ def test_an_image_in_a_window_is_measured_less_exactly_than_its_wall() -> None:
     met = BeamHits.of(scene.cast(beams.origins, beams.directions), mesh)
     rays = np.arange(20_000)
     scanner[PASSED] = 0.15**2
-    images = mirrored_echoes(beams, met.ranges, scene, scanner, rays, key=99)
+    images = mirrored_echoes(beams, met, scene, scanner, rays, key=99)
     wall = replace(beams, directions=beams.directions * [-1.0, 1.0, 1.0])
     seen = BeamHits.of(scene.cast(wall.origins, wall.directions), mesh)
     whole = 13.0 / beams.directions[images.rays, 0]
@@ -289,6 +289,61 @@ def test_a_pane_that_sends_more_light_back_shows_more() -> None:
         for pane in (0.02, 0.6)
     ]
     assert shown[1] > 2 * shown[0]
+
+
+def test_a_share_of_upright_walls_is_glass_at_the_same_places_for_all_beams() -> None:
+    built = _floor(Material.PLASTER)
+    built.add(box((9.0, -9.0, 0.0), (9.5, 9.0, 9.0)), Material.PLASTER, 6, 4)
+    mesh, beams = built.mesh(), _fan(20_000, 60, 100)
+    scene = RaycastScene(mesh, np.zeros(3))
+    pattern = ScanPattern(3000, 100.0, 0.0)
+    wall, glazed = (
+        NoiseSource(
+            3, (0, 0), _PHASE, pattern, _STANDS, options=replace(_NOTHING, glazed=share)
+        ).first_met
+        for share in (0.0, 1.0)
+    )
+    hits = scene.cast(beams.origins, beams.directions)
+    assert (wall(beams, hits, scene).material == Material.PLASTER).all()
+    is_pane = glazed(beams, hits, scene).material == Material.GLASS
+    is_wall = (hits.triangles >= 0) & (mesh.label[hits.triangles] == 6)
+    assert not is_pane[~is_wall].any()
+    assert 0.4 < is_pane[is_wall].mean() < 1.0
+    rest = Beams(
+        beams.first + 9000, beams.time_s[9000:], beams.origins[9000:], beams.directions[9000:]
+    )
+    part = glazed(rest, scene.cast(rest.origins, rest.directions), scene).material
+    np.testing.assert_array_equal(part == Material.GLASS, is_pane[9000:])
+
+
+def test_what_lasts_longer_blinds_more_and_stretches_agree_on_it() -> None:
+    mesh, beams = _floor(Material.CONCRETE).mesh(), _fan(60_000, 30, 60)
+    beams = replace(beams, time_s=np.arange(60_000) / 2e4)
+    usual = replace(_NOTHING, arcs_per_s=5.0)
+    short, long = (
+        _noisy(mesh, beams, _PHASE, replace(usual, lasting=times)) for times in (1.0, 8.0)
+    )
+    assert (long.label != 11).sum() > 1.5 * (short.label != 11).sum()
+    late = Beams(
+        beams.first + 50_000,
+        beams.time_s[50_000:],
+        beams.origins[50_000:],
+        beams.directions[50_000:],
+    )
+    part = _noisy(mesh, late, _PHASE, replace(usual, lasting=8.0))
+    whole = long.chosen(long.pulse >= late.first)
+    np.testing.assert_array_equal(part.label, whole.label)
+
+
+def test_ranges_of_nothing_may_lie_behind_what_the_beam_met() -> None:
+    mesh, beams = _floor(Material.CONCRETE).mesh(), _fan(20_000, 10, 60)
+    behind = []
+    for anywhere in (False, True):
+        options = replace(_NOTHING, lone=0.1, lone_anywhere=anywhere)
+        noisy = _noisy(mesh, beams, _PHASE, options)
+        behind.append(int((noisy.xyz[:, 2] < -0.1).sum()))
+    assert behind[0] == 0
+    assert behind[1] > 500
 
 
 def test_dense_grass_ends_flat_beams_earlier() -> None:
