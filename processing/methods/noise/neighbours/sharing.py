@@ -6,6 +6,7 @@ import os
 import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor, wait
+from functools import cache
 
 from processing.core.monitor import Monitor
 
@@ -33,37 +34,53 @@ def share_out(work: Callable[[int, int], None], count: int, at_once: int, monito
     """
     starts = iter(range(0, count, at_once))
     workers = min(_free_cores(), -(-count // at_once))
-    if workers <= 1:
-        for start in starts:
-            monitor.check()
-            work(start, min(start + at_once, count))
-        return
     taking = threading.Lock()
 
     def take() -> None:
-        with _Share():
-            while True:
-                with taking:
-                    start = next(starts, None)
-                if start is None:
-                    return
-                monitor.check()
-                work(start, min(start + at_once, count))
+        while True:
+            with taking:
+                start = next(starts, None)
+            if start is None:
+                return
+            monitor.check()
+            work(start, min(start + at_once, count))
 
-    with ThreadPoolExecutor(max_workers=workers) as pool:
-        done = [pool.submit(take) for _ in range(workers)]
-        wait(done)
-    for future in done:
-        future.result()
+    def help_out() -> None:
+        with _Share():
+            take()
+
+    helpers = [_helpers().submit(help_out) for _ in range(workers - 1)]
+    try:
+        if _has_share():
+            take()
+        else:
+            help_out()
+    finally:
+        for one in helpers:
+            one.cancel()  # of whom no thread was free is not needed any more
+        wait(helpers)
+    for one in helpers:
+        if not one.cancelled():
+            one.result()
+
+
+@cache
+def _helpers() -> ThreadPoolExecutor:
+    """Threads that stay: to start one anew for each call takes longer than many calls."""
+    return ThreadPoolExecutor(max_workers=os.cpu_count() or 1, thread_name_prefix="share")
 
 
 def _free_cores() -> int:
     """How many threads may work here: all cores, or, within a share, it and those left over."""
     cores = os.cpu_count() or 1
-    if not getattr(_here, "has_share", False):
+    if not _has_share():
         return cores
     with _counting:
         return max(1, cores - _at_work + 1)
+
+
+def _has_share() -> bool:
+    return bool(getattr(_here, "has_share", False))
 
 
 class _Share:
