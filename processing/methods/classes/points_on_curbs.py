@@ -63,7 +63,7 @@ class CurbSamples(NamedTuple):
 
     ``tree``: of them in plan; ``uppers``, ``lowers`` (k, 3): on both edges, m about an origin near
     by; ``normals`` (k, 2): unit vectors away from the road; ``confidence`` (k,); ``pieces`` (k,)
-    int64: the piece of :data:`PIECE_M` that each is of.
+    int64: the piece of 5 m that each is of.
     """
 
     tree: cKDTree
@@ -121,9 +121,8 @@ def moved_to(curbs: CurbSamples, places: Floats) -> CurbSamples:
     off = _Offsets.of(curbs, places[near], which)
     is_top = (off.behind > _EDGE_M) & (off.behind < _TOP_M) & (np.abs(off.above) < _APART_M)
     up = _middles(curbs.pieces, which[is_top], off.above[is_top])
-    height = (curbs.uppers - curbs.lowers)[which, 2]
-    share = 1 + (off.above - up[which]) / np.maximum(height, _LEAST_FACE_M)
-    is_face = (np.abs(share - 0.5) < _OF_A_FACE / 2) & (height > _LEAST_FACE_M)
+    share = 1 + (off.above - up[which]) / np.maximum(off.high, _LEAST_FACE_M)
+    is_face = (np.abs(share - 0.5) < _OF_A_FACE / 2) & (off.high > _LEAST_FACE_M)
     behind_face = off.behind + (1 - share) * off.face
     is_face &= np.abs(behind_face) < _APART_M
     back = _middles(curbs.pieces, which[is_face], behind_face[is_face])
@@ -135,20 +134,22 @@ def moved_to(curbs: CurbSamples, places: Floats) -> CurbSamples:
 class _Offsets(NamedTuple):
     """Of points from the samples of curbs that are nearest to them, m.
 
-    ``behind`` (n,): the upper edge; ``above`` (n,): it; ``face`` (n,): how far the lower edge lies
-    before the upper one.
+    ``behind`` (n,): the upper edge; ``above`` (n,): it; ``face``, ``high`` (n,): how far the lower
+    edge lies before and below the upper one.
     """
 
     behind: Floats
     above: Floats
     face: Floats
+    high: Floats
 
     @classmethod
     def of(cls, curbs: CurbSamples, places: Floats, which: Integers) -> _Offsets:
         """Offsets of places, (n, 3), from the samples of numbers ``which``, (n,)."""
         over, normals = places - curbs.uppers[which], curbs.normals[which]
-        face = (curbs.uppers - curbs.lowers)[which, :2]
-        return cls((over[:, :2] * normals).sum(axis=1), over[:, 2], (face * normals).sum(axis=1))
+        face = (curbs.uppers - curbs.lowers)[which]
+        behind, before = ((one[:, :2] * normals).sum(axis=1) for one in (over, face))
+        return cls(behind, over[:, 2], before, face[:, 2])
 
 
 def _middles(pieces: Integers, which: Integers, values: Floats) -> Floats:
@@ -176,12 +177,10 @@ def chances_on_curbs(curbs: CurbSamples, places: Floats) -> Floats:
     """(n,) confidence of the curb whose face or top a place lies on; 0 where on none."""
     chances = np.zeros(len(places))
     near, which = near_samples(curbs.tree, places[:, :2], _CURB_REACH_M)
-    over, under = places[near] - curbs.uppers[which], places[near] - curbs.lowers[which]
-    behind_upper = (over[:, :2] * curbs.normals[which]).sum(axis=1)
-    behind_lower = (under[:, :2] * curbs.normals[which]).sum(axis=1)
-    is_on_top = (behind_upper >= 0) & (behind_upper <= _TOP_M) & (np.abs(over[:, 2]) < _LEVEL_M)
-    is_on_face = (behind_upper < _EDGE_M) & (behind_lower > -_EDGE_M)
-    is_on_face &= (under[:, 2] > 0) & (over[:, 2] < _LEVEL_M)
+    off = _Offsets.of(curbs, places[near], which)
+    is_on_top = (off.behind >= 0) & (off.behind <= _TOP_M) & (np.abs(off.above) < _LEVEL_M)
+    is_on_face = (off.behind < _EDGE_M) & (off.behind + off.face > -_EDGE_M)
+    is_on_face &= (off.above + off.high > 0) & (off.above < _LEVEL_M)
     is_on = is_on_top | is_on_face
     chances[near[is_on]] = curbs.confidence[which[is_on]]
     return chances
