@@ -71,6 +71,10 @@ and F of “other” itself on six of seven."""
 _MISSED = {SIGN: 0.11, POLE_LIKE: 0.24, CURB: 0.21}
 """Share of a class's points that are on no found thing though it was looked for."""
 
+_OFF_ROAD = 0.999
+"""Share of the points behind curbs of confidence 1 that are not of the road: measured as is told in
+`points_on_curbs`."""
+
 _SURE = 0.9
 """Where the first trees are so sure of a cell, and in the mean of those within 0.6 m, the second
 aren't asked: half of the cells; 0.3 to 0.6 % of the sample streets' would be of another class."""
@@ -260,7 +264,7 @@ def classes_of_cells(
 
     A thing is there with its confidence, and nearly all points on it are of its class then; else
     its surroundings tell. Points on nothing are of a class that was looked for only where the tool
-    missed it (Bayes).
+    missed it (Bayes). Behind a curb, level with its top, none is of the road.
 
     Parameters
     ----------
@@ -279,6 +283,7 @@ def classes_of_cells(
     best = beside.argmax(axis=1)
     sure = np.take_along_axis(beside, best[:, None], axis=1)[:, 0] / beside.sum(axis=1)
     found = FoundClasses(codes[best][cells.cell_of], sure[cells.cell_of].astype(np.float32))
+    _without_road(found, beside, cells.cell_of, codes, told)
     for code in np.unique(told.codes[told.codes > 0]).tolist():
         own = np.flatnonzero(told.codes == code)
         there = told.chances[own] * _TRUE[code]
@@ -288,6 +293,24 @@ def classes_of_cells(
         found.codes[own] = codes[best]
         found.confidence[own] = np.take_along_axis(mixed, best[:, None], axis=1)[:, 0]
     return found
+
+
+def _without_road(
+    found: FoundClasses,
+    shares: Floats,
+    cell_of: NDArray[np.int32],
+    codes: NDArray[np.uint8],
+    told: ToldPoints,
+) -> None:
+    """Take the road from points behind curbs that were called so; changes what was found."""
+    count = told.codes.size
+    own = np.flatnonzero((told.off_road > 0) & (found.codes[:count] == ROAD))
+    mixed = shares[cell_of[own]]
+    mixed[:, codes == ROAD] *= (1 - told.off_road[own] * _OFF_ROAD)[:, None]
+    best = mixed.argmax(axis=1)
+    found.codes[own] = codes[best]
+    sure = np.take_along_axis(mixed, best[:, None], axis=1)[:, 0] / mixed.sum(axis=1)
+    found.confidence[own] = sure
 
 
 def rows_seen_again(

@@ -3,7 +3,8 @@
 A curb is a few centimetres of a row of points, a sign a few dozen points on a post: how they look
 from near by differs between scanners and worlds, but extraction measures them as what they are. A
 point on the face or top of a found curb, on a plate or on a shaft is told by it: this joins what a
-model says of surroundings to what a tool measured, class by class. Before a curb lies the road.
+model says of surroundings to what a tool measured, class by class. Before a curb lies the road, and
+none behind it.
 """
 
 from __future__ import annotations
@@ -19,6 +20,7 @@ from scipy.spatial import cKDTree
 from processing.core.arrays import Floats, Integers
 from processing.methods.classes.points_on_curbs import (
     CurbEdges,
+    chances_behind,
     chances_on_curbs,
     chances_on_road,
     curb_samples,
@@ -105,10 +107,13 @@ class ToldPoints(NamedTuple):
         The class of the thing that a point belongs to; 0: to none.
     chances : (n,) float64
         Confidence of that thing, 0 to 1.
+    off_road : (n,) float64
+        Confidence of the curb behind which a point lies, 0 to 1.
     """
 
     codes: NDArray[np.uint8]
     chances: Floats
+    off_road: Floats
 
 
 class NearThings:
@@ -129,11 +134,13 @@ class NearThings:
     def told(self, xyz: Floats) -> ToldPoints:
         """What things say of points of one recording, (n, 3) float64, m, project CRS."""
         places = xyz - self._origin
-        told = ToldPoints(np.zeros(len(places), np.uint8), np.zeros(len(places)))
+        nothing = np.zeros((2, len(places)))
+        told = ToldPoints(np.zeros(len(places), np.uint8), *nothing)
         if self._curbs is not None:
             curbs = moved_to(self._curbs, places)
             _tell(told, CURB, chances_on_curbs(curbs, places))
             _tell(told, ROAD, chances_on_road(curbs, places))
+            told.off_road[:] = chances_behind(curbs, places)
         if self._plates is not None:
             _tell(told, SIGN, _chances_on_plates(self._plates, places))
         if self._shafts is not None:

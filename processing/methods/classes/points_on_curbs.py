@@ -1,4 +1,4 @@
-"""Which points lie on found curbs, and which on the carriageway before them."""
+"""Which points lie on found curbs, on the carriageway before them, and level behind them."""
 
 from __future__ import annotations
 
@@ -29,6 +29,10 @@ _LEVEL_M = 0.03
 _ROAD_M, _STEEPEST = 1.5, 0.06
 """How far before a curb the carriageway surely reaches, half a lane, and how steeply it rises there
 at most, as aprons of gutters do."""
+
+_BEHIND_M = 3.0
+"""How far behind a curb no carriageway is, where the ground is level with its top: of 115,000 to
+205,000 such points of two streets by another simulator and one by the own, one in a thousand."""
 
 _PIECE_M = 5.0
 """Of a curb, that moves as one: passes drift by a centimetre in some seconds."""
@@ -193,6 +197,20 @@ def chances_on_road(curbs: CurbSamples, places: Floats) -> Floats:
     under = places[near] - curbs.lowers[which]
     before_m = -(under[:, :2] * curbs.normals[which]).sum(axis=1)
     is_on = (before_m > _EDGE_M) & (np.abs(under[:, 2]) < _LEVEL_M + _STEEPEST * before_m)
+    chances[near[is_on]] = curbs.confidence[which[is_on]]
+    return chances
+
+
+def chances_behind(curbs: CurbSamples, places: Floats) -> Floats:
+    """(n,) confidence of the curb behind which a place lies, level with its top; 0 elsewhere.
+
+    Stone, footway, verge or median: whatever it is, no carriageway.
+    """
+    chances = np.zeros(len(places))
+    near, which = near_samples(curbs.tree, places[:, :2], _BEHIND_M)
+    off = _Offsets.of(curbs, places[near], which)
+    is_on = (off.behind > _EDGE_M) & (np.abs(off.above) < _LEVEL_M + _STEEPEST * off.behind)
+    is_on &= off.high > _LEAST_FACE_M
     chances[near[is_on]] = curbs.confidence[which[is_on]]
     return chances
 

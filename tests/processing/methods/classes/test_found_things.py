@@ -62,6 +62,29 @@ def test_the_carriageway_lies_before_a_curb_and_what_stands_there_is_none(turned
     assert told == [(ROAD, 0.9), (ROAD, 0.9), (0, 0), (0, 0), (0, 0)]
 
 
+@pytest.mark.parametrize("turned", [False, True])
+def test_behind_a_curb_and_level_with_its_top_there_is_no_road(turned: bool) -> None:
+    curb = CurbEdges(line(3.02, 0.15, turned=turned), line(3.0, 0.0), 0.9)
+    places = np.array(
+        [
+            [5.0, 3.2, 0.15],  # the stone
+            [5.0, 5.0, 0.2],  # a footway that falls towards the road
+            [5.0, 5.0, 0.6],  # above it
+            [5.0, 6.5, 0.15],  # too far off
+            [5.0, 3.6, 0.0],  # another carriageway behind a narrow median
+            [5.0, 2.0, 0.0],
+        ]
+    )
+    off_road = NearThings(FoundThings(curbs=(curb,))).told(places + ORIGIN).off_road
+    assert off_road.tolist() == [0.9, 0.9, 0, 0, 0, 0]
+
+
+def test_behind_a_curb_of_no_height_there_may_be_road() -> None:
+    flush = CurbEdges(line(3.0, 0.02), line(3.0, 0.0), 0.9)
+    told = NearThings(FoundThings(curbs=(flush,))).told(np.array([[5.0, 3.5, 0.02]]) + ORIGIN)
+    assert told.off_road.tolist() == [0]
+
+
 def test_points_within_the_outline_of_a_plate_and_in_its_plane_are_told() -> None:
     corners = np.array([[0, 0, 2.0], [0.6, 0, 2.0], [0.6, 0, 2.6], [0, 0, 2.6]]) + ORIGIN
     told = told_of(
