@@ -280,19 +280,24 @@ def classes_of_cells(
     shares /= shares.sum(axis=1, keepdims=True)
     missed = np.array([_MISSED[code] if code in sought else 1.0 for code in codes.tolist()])
     beside = shares * missed**models.sharpened
-    best = beside.argmax(axis=1)
-    sure = np.take_along_axis(beside, best[:, None], axis=1)[:, 0] / beside.sum(axis=1)
-    found = FoundClasses(codes[best][cells.cell_of], sure[cells.cell_of].astype(np.float32))
+    best, share = _likeliest(beside)
+    sure = (share / beside.sum(axis=1)).astype(np.float32)
+    found = FoundClasses(codes[best][cells.cell_of], sure[cells.cell_of])
     _without_road(found, beside, cells.cell_of, codes, told)
     for code in np.unique(told.codes[told.codes > 0]).tolist():
         own = np.flatnonzero(told.codes == code)
         there = told.chances[own] * _TRUE[code]
         mixed = shares[cells.cell_of[own]] * (1 - there)[:, None]
         mixed[:, codes == code] += there[:, None]
-        best = mixed.argmax(axis=1)
+        best, found.confidence[own] = _likeliest(mixed)
         found.codes[own] = codes[best]
-        found.confidence[own] = np.take_along_axis(mixed, best[:, None], axis=1)[:, 0]
     return found
+
+
+def _likeliest(shares: Floats) -> tuple[Integers, Floats]:
+    """(n,) which class has the largest share of each row, and that share."""
+    best = shares.argmax(axis=1)
+    return best, np.take_along_axis(shares, best[:, None], axis=1)[:, 0]
 
 
 def _without_road(
@@ -307,10 +312,9 @@ def _without_road(
     own = np.flatnonzero((told.off_road > 0) & (found.codes[:count] == ROAD))
     mixed = shares[cell_of[own]]
     mixed[:, codes == ROAD] *= (1 - told.off_road[own] * _OFF_ROAD)[:, None]
-    best = mixed.argmax(axis=1)
+    best, share = _likeliest(mixed)
     found.codes[own] = codes[best]
-    sure = np.take_along_axis(mixed, best[:, None], axis=1)[:, 0] / mixed.sum(axis=1)
-    found.confidence[own] = sure
+    found.confidence[own] = share / mixed.sum(axis=1)
 
 
 def rows_seen_again(

@@ -20,9 +20,7 @@ from scipy.spatial import cKDTree
 from processing.core.arrays import Floats, Integers
 from processing.methods.classes.points_on_curbs import (
     CurbEdges,
-    chances_behind,
-    chances_on_curbs,
-    chances_on_road,
+    NearCurbs,
     curb_samples,
     moved_to,
     near_samples,
@@ -137,10 +135,10 @@ class NearThings:
         nothing = np.zeros((2, len(places)))
         told = ToldPoints(np.zeros(len(places), np.uint8), *nothing)
         if self._curbs is not None:
-            curbs = moved_to(self._curbs, places)
-            _tell(told, CURB, chances_on_curbs(curbs, places))
-            _tell(told, ROAD, chances_on_road(curbs, places))
-            told.off_road[:] = chances_behind(curbs, places)
+            near = NearCurbs(moved_to(self._curbs, places), places)
+            _tell(told, CURB, near.chances_on_curbs())
+            _tell(told, ROAD, near.chances_on_road())
+            told.off_road[:] = near.chances_behind()
         if self._plates is not None:
             _tell(told, SIGN, _chances_on_plates(self._plates, places))
         if self._shafts is not None:

@@ -8,8 +8,7 @@ from numpy.typing import NDArray
 
 from processing.methods.classes.points_on_curbs import (
     CurbEdges,
-    chances_on_curbs,
-    chances_on_road,
+    NearCurbs,
     curb_samples,
     moved_to,
 )
@@ -41,7 +40,7 @@ def test_a_pass_that_lies_centimetres_away_has_its_points_on_the_curb_all_the_sa
     places = stone(2_000) + apart
     samples = curb_samples([CURB], ORIGIN)
     assert samples is not None
-    assert (chances_on_curbs(moved_to(samples, places), places) > 0).mean() > 0.95
+    assert (NearCurbs(moved_to(samples, places), places).chances_on_curbs() > 0).mean() > 0.95
 
 
 def test_the_road_before_a_curb_moves_with_it() -> None:
@@ -50,8 +49,8 @@ def test_the_road_before_a_curb_moves_with_it() -> None:
     assert samples is not None
     road = np.array([[5.0, 2.9, -0.06], [6.0, 2.5, -0.05]])
     places = np.vstack([stone(2_000) + apart, road])
-    assert (chances_on_road(samples, road) > 0).tolist() == [False, True]
-    assert (chances_on_road(moved_to(samples, places), road) > 0).all()
+    assert (NearCurbs(samples, road).chances_on_road() > 0).tolist() == [False, True]
+    assert (NearCurbs(moved_to(samples, places), road).chances_on_road() > 0).all()
 
 
 def test_a_curb_stays_where_too_little_is_seen_or_leaves_lie_over_it() -> None:
