@@ -31,7 +31,7 @@ from processing.laboratory.simulate.scanning.noise_options import (
     noise_options,
     varied_noise,
 )
-from processing.laboratory.simulate.scanning.returns import Weather
+from processing.laboratory.simulate.scanning.returns import Weather, weakest_of
 from processing.laboratory.simulate.scanning.sensors import SENSORS, Sensor
 from processing.laboratory.simulate.scene.chance import chance
 from processing.laboratory.simulate.site import DATES, simulate_site
@@ -47,7 +47,7 @@ from processing.project.importing.importing import ImportRequest, import_drives
 from processing.recording.drive import Drive
 
 MOBILE, STANDING, SITE, AIRBORNE = "mobile", "standing", "site", "airborne"
-MEADOW = "meadow"
+MEADOW, SCANS = "meadow", "scans"
 MUCH, VARIED, QUIET = "much", "varied", "quiet"
 NOISE_CODES, LOW_PLANT = (7, 18), 3
 _STYLES, _SITE_STYLES = (
@@ -71,6 +71,9 @@ _MORE_AMBIGUITIES_M = (25.2, *_AMBIGUITIES_M)
 _EXIT_M, _DIVERGENCE_RAD = (0.003, 0.015), (0.0003, 0.002)
 """Of beams: the wider, the more of them meet an edge and what is behind it."""
 
+_SENSITIVE = (-2.0, 0.0)
+"""Powers of ten of the weakest echo that the reach tells: what panes show is seldom brighter."""
+
 _GROWTH, _FLATTEST = (0.03, 3.0), (0.06, 0.3)
 """From lawns to meadows of half a metre; thin blades let a flat beam by, dense ones end it."""
 
@@ -78,6 +81,7 @@ _MEADOW_STEPS_M = (0.022, 0.06)
 _STRIP_SHARE, _STRIP_M = 0.5, (15.0, 30.0)
 _WET_SHARE = 0.35
 _ON_TRIPODS = ("p40", "vz400i", "zf5016")
+_SCANS = (2, 4)
 _SECTORS, _PULSES = (1.0, 1.0, 0.4, 0.15), (200_000, 500_000)
 _SITE_LENGTH_M, _SITE_SPACINGS_M = (20.0, 45.0), (0.03, 0.09)
 _FLIGHT_SPACINGS_M, _FLIGHT_POINTS = (0.25, 2.0), 60_000
@@ -128,8 +132,9 @@ def recorded_scene(how: str, seed: int, folder: Path, noise: str = MUCH) -> Reco
 
     Parameters
     ----------
-    how : {"mobile", "standing", "site", "meadow", "airborne"}
-        A meadow is a site scanned from one place, with its sweeps.
+    how : {"mobile", "standing", "scans", "site", "meadow", "airborne"}
+        Scans are several of a street as one cloud. A meadow is a site scanned from one place, with
+        its sweeps.
     noise : {"much", "varied", "quiet"}
         The usual kinds many times as often; all kinds (and grass of any height); next to none.
     """
@@ -179,11 +184,13 @@ def _weather_of(seed: int) -> Weather:
 
 
 def _varied_sensor(seed: int, sensor: Sensor) -> Sensor:
-    """The same scanner with a beam of any width, and any range of unambiguity."""
+    """The same scanner with a beam of any width, any range of unambiguity, and as sensitive."""
     random = chance(seed, "training", "beam")
     is_phase = sensor.measures_by == "phase"
+    finer = float(10 ** chance(seed, "training", "echo").uniform(*_SENSITIVE))
     return replace(
         sensor,
+        least_echo=weakest_of(sensor) * finer,
         exit_m=round(float(np.exp(random.uniform(*np.log(_EXIT_M)))), 4),
         divergence_rad=round(float(np.exp(random.uniform(*np.log(_DIVERGENCE_RAD)))), 6),
         most_m=float(random.choice(_MORE_AMBIGUITIES_M)) if is_phase else sensor.most_m,
@@ -267,7 +274,7 @@ def _drive_scene(drive: Drive, labels: NDArray[np.uint8]) -> RecordedScene:
 
 
 def _standing(seed: int, noise: str) -> RecordedScene:
-    """One scan with its sweeps; now and then two or three as one cloud, of places alone."""
+    """One scan with its sweeps."""
     random = chance(seed, "training", STANDING)
     sensor = _of_any_kind(random, SENSORS[str(random.choice(_ON_TRIPODS))], noise)
     sensor = _varied_sensor(seed, sensor) if noise == VARIED else sensor
@@ -282,6 +289,34 @@ def _standing(seed: int, noise: str) -> RecordedScene:
         scan_street(street, scan, weather, file, SilentMonitor())
         drive, labels = _imported(file, (), file.with_suffix(".labels.npy"))
         return _swept_scene(drive, labels)
+
+
+def _scans(seed: int, noise: str) -> RecordedScene:
+    """Some scans of a street as one cloud, of places alone."""
+    import laspy
+
+    random = chance(seed, "training", SCANS)
+    sensor = _of_any_kind(random, SENSORS[str(random.choice(_ON_TRIPODS))], noise)
+    sensor = _varied_sensor(seed, sensor)
+    street = Street(seed, style_of(str(random.choice(_STYLES))), 30.0)
+    options, weather = _noise_of(random, seed, sensor, noise), _weather_of(seed)
+    count = int(random.integers(_SCANS[0], _SCANS[1] + 1))
+    pulses = int(random.integers(*_PULSES)) // count
+    xyz, labels, intensities = [], [], []
+    with TemporaryDirectory(prefix="zuka-") as at:
+        for number in range(count):
+            file = Path(at) / f"scan{number}.laz"
+            scan = StreetScan(number, sensor, pulses, 1.0, options)
+            scan_street(street, scan, weather, file, SilentMonitor())
+            points = laspy.read(file)
+            xyz.append(np.asarray(points.xyz))
+            labels.append(np.load(file.with_suffix(".labels.npy")))
+            intensities.append(np.asarray(points.intensity))
+    places = np.concatenate(xyz)
+    scene = RecordedScene(
+        places - places.mean(axis=0), np.concatenate(labels), np.concatenate(intensities)
+    )
+    return _piece_of_many(random, scene)
 
 
 def _swept_scene(drive: Drive, labels: NDArray[np.uint8]) -> RecordedScene:
@@ -371,10 +406,22 @@ def _piece_of_many(random: Generator, scene: RecordedScene) -> RecordedScene:
 _MAKERS: Mapping[str, Callable[[int, str], RecordedScene]] = {
     MOBILE: _mobile,
     STANDING: _standing,
+    SCANS: _scans,
     SITE: _site,
     MEADOW: _meadow,
     AIRBORNE: _airborne,
 }
+
+
+def quietened(scene: RecordedScene, seed: int) -> RecordedScene:
+    """A scene without most of its noise: a tripod on a meadow sees mostly blades of grass."""
+    random = np.random.default_rng(seed * 7 + 6)
+    share = 2 ** random.uniform(*_KEPT_NOISE)
+    return scene.chosen(~scene.is_noise | (random.random(scene.labels.size) < share))
+
+
+_KEPT_NOISE = (-7.0, -1.0)
+"""Powers of two of its share."""
 
 
 def thin_scene(scene: RecordedScene, seed: int) -> RecordedScene:
