@@ -59,9 +59,12 @@ from resources import path_of
 
 _FEWEST = 100
 _FIRST_SHAPE = TreesSize(trees=30, leaves=12, rate=0.25)
-_BEAMS_SHAPE = TreesSize(trees=80, leaves=24, rate=0.18)
+_BEAMS_SHAPE = TreesSize(trees=100, leaves=31, rate=0.15)
 _SPACE_SHAPE = TreesSize(trees=100, leaves=31, rate=0.15)
-_AGAIN_SHAPE = TreesSize(trees=150, leaves=31, rate=0.12)
+_AGAIN_SHAPE = {
+    "beams": TreesSize(trees=300, leaves=31, rate=0.12),
+    "space": TreesSize(trees=150, leaves=31, rate=0.12),
+}
 # Log-odds: with beams noise must be four and a half times as likely as not; in space the second
 # trees are careful by themselves.
 _DOUBT = {"beams": 1.5, "space": 0.0}
@@ -75,7 +78,7 @@ _FOLDS = 3
 _KEPT_SEED = 100_000
 _LOST_AT_FIRST = 0.003
 _RECORDED = (MOBILE, MOBILE, MOBILE, STANDING, STANDING, MEADOW)
-_CLOUDS = (SCANS, SITE, AIRBORNE)
+_CLOUDS = (SCANS, SITE, SITE, AIRBORNE)
 _LIFTED_SHARE, _RELIEF_STREAM = 0.5, 9
 """Of recordings in space: streets are level, sites and hillsides are not."""
 
@@ -113,7 +116,7 @@ def _parser() -> argparse.ArgumentParser:
         help="likewise, with the usual kinds of noise many times as often, where beams are known",
     )
     parser.add_argument(
-        "--clouds", default="301-372", help="likewise, of clouds of which only places are known"
+        "--clouds", default="301-420", help="likewise, of clouds of which only places are known"
     )
     parser.add_argument(
         "--quiet-recordings",
@@ -160,7 +163,7 @@ def _make(what: str, options: argparse.Namespace) -> None:
     if first is not None:
         columns = looks[0][0].rows.shape[1]
         _write(FIRST_LOOK, first._replace(base=first.base - _NARROWER), columns)
-    last = fit_trees(again, _AGAIN_SHAPE)
+    last = fit_trees(again, _AGAIN_SHAPE[what])
     _write(names[1], last._replace(base=last.base - _DOUBT[what]), again.rows.shape[1])
 
 

@@ -6,7 +6,7 @@ usual; those that are learned from have all kinds side by side, and grass of any
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -31,7 +31,7 @@ from processing.laboratory.simulate.scanning.noise_options import (
     noise_options,
     varied_noise,
 )
-from processing.laboratory.simulate.scanning.returns import Weather, weakest_of
+from processing.laboratory.simulate.scanning.returns import Weather
 from processing.laboratory.simulate.scanning.sensors import SENSORS, Sensor
 from processing.laboratory.simulate.scene.chance import chance
 from processing.laboratory.simulate.site import DATES, simulate_site
@@ -49,7 +49,23 @@ from processing.recording.drive import Drive
 MOBILE, STANDING, SITE, AIRBORNE = "mobile", "standing", "site", "airborne"
 MEADOW, SCANS = "meadow", "scans"
 MUCH, VARIED, QUIET = "much", "varied", "quiet"
-NOISE_CODES, LOW_PLANT = (7, 18), 3
+NOISE_CODES = (7, 18)
+_LOW_PLANT, _CROWN, _POLE = 3, 5, 66
+_SITE_CODES = {
+    SiteKind.GRASS: _LOW_PLANT,
+    SiteKind.BRUSH: _CROWN,
+    **dict.fromkeys(
+        (
+            SiteKind.FENCE,
+            SiteKind.SCAFFOLD,
+            SiteKind.NET,
+            SiteKind.BATTER_BOARD,
+            SiteKind.SURVEY_POLE,
+        ),
+        _POLE,
+    ),
+}
+"""Thin things of sites, as streets have them: where only places are known, they are easily lost."""
 _STYLES, _SITE_STYLES = (
     ("urban", "urban", "rural", "highway"),
     ("levee", "cutting", "pad", "hillside"),
@@ -70,9 +86,6 @@ _MORE_AMBIGUITIES_M = (25.2, *_AMBIGUITIES_M)
 
 _EXIT_M, _DIVERGENCE_RAD = (0.003, 0.015), (0.0003, 0.002)
 """Of beams: the wider, the more of them meet an edge and what is behind it."""
-
-_SENSITIVE = (-2.0, 0.0)
-"""Powers of ten of the weakest echo that the reach tells: what panes show is seldom brighter."""
 
 _GROWTH, _FLATTEST = (0.03, 3.0), (0.06, 0.3)
 """From lawns to meadows of half a metre; thin blades let a flat beam by, dense ones end it."""
@@ -184,13 +197,11 @@ def _weather_of(seed: int) -> Weather:
 
 
 def _varied_sensor(seed: int, sensor: Sensor) -> Sensor:
-    """The same scanner with a beam of any width, any range of unambiguity, and as sensitive."""
+    """The same scanner with a beam of any width, and any range of unambiguity."""
     random = chance(seed, "training", "beam")
     is_phase = sensor.measures_by == "phase"
-    finer = float(10 ** chance(seed, "training", "echo").uniform(*_SENSITIVE))
     return replace(
         sensor,
-        least_echo=weakest_of(sensor) * finer,
         exit_m=round(float(np.exp(random.uniform(*np.log(_EXIT_M)))), 4),
         divergence_rad=round(float(np.exp(random.uniform(*np.log(_DIVERGENCE_RAD)))), 6),
         most_m=float(random.choice(_MORE_AMBIGUITIES_M)) if is_phase else sensor.most_m,
@@ -350,10 +361,16 @@ def _meadow(seed: int, _: str) -> RecordedScene:
         simulate_site(request, folder, SilentMonitor(), weather=_weather_of(seed))
         date = str(random.choice(DATES))
         labels = folder / "truth" / f"labels_{date}.npy"
-        coded = np.load(labels)  # grass is but "other" there
-        coded[np.load(folder / "truth" / f"kinds_{date}.npy") == SiteKind.GRASS] = LOW_PLANT
-        np.save(labels, coded)
+        np.save(labels, _site_labels(folder / "truth", date, (SiteKind.GRASS,)))
         return _swept_scene(*_imported(folder / "in" / f"{date}.laz", (), labels))
+
+
+def _site_labels(truth: Path, date: str, told: Iterable[SiteKind]) -> NDArray[np.uint8]:
+    """Codes of a site's points: some kinds are told that are but "other" in its truth."""
+    codes, kinds = np.load(truth / f"labels_{date}.npy"), np.load(truth / f"kinds_{date}.npy")
+    for kind in told:
+        codes[(kinds == kind) & ~np.isin(codes, NOISE_CODES)] = _SITE_CODES[kind]
+    return np.asarray(codes, np.uint8)
 
 
 def _site(seed: int, noise: str) -> RecordedScene:
@@ -375,7 +392,7 @@ def _site(seed: int, noise: str) -> RecordedScene:
         simulate_site(request, folder, SilentMonitor(), weather=weather)
         date = str(random.choice(DATES))
         points = laspy.read(folder / "in" / f"{date}.laz")
-        xyz, labels = np.asarray(points.xyz), np.load(folder / "truth" / f"labels_{date}.npy")
+        xyz, labels = np.asarray(points.xyz), _site_labels(folder / "truth", date, _SITE_CODES)
         intensity = np.asarray(points.intensity)
     scene = RecordedScene(xyz - xyz.mean(axis=0), labels, intensity)
     return _piece_of_many(random, scene)

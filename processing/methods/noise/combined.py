@@ -13,8 +13,9 @@
 5. Where beams are known, a point without company is noise, too
    (:mod:`processing.methods.noise.beams.lone_points`), however little noise there is around.
 
-All trees learned from simulated scenes with other shapes and shares of noise than any sample, and
-from real recordings as examples of what must be kept (:mod:`processing.laboratory.noise_training`).
+All trees learned from recordings of the program's simulator with every kind of noise side by side,
+and from real recordings as examples of what must be kept
+(:mod:`processing.laboratory.noise_training`).
 """
 
 from __future__ import annotations

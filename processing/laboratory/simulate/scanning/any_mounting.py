@@ -81,18 +81,6 @@ def _two_heads(random: Generator, up_m: float) -> tuple[Head, ...]:
     return tuple(heads)
 
 
-_NUMBERS = (
-    "turns_per_s",
-    "pulses",
-    "most_m",
-    "noise_m",
-    "exit_m",
-    "divergence_rad",
-    "returns",
-    "least_echo",
-)
-
-
 def write_sensor(sensor: Sensor, path: Path) -> None:
     """Write a sensor as an own file for a request (`StreetRequest.own_sensor`)."""
     lines = []
@@ -108,5 +96,6 @@ def write_sensor(sensor: Sensor, path: Path) -> None:
         ]
     lines += ["[[sensor]]", f'name = "{sensor.name.en}"', 'mount = "own"']
     lines += [f'{name} = "{getattr(sensor, name)}"' for name in ("id", "kind", "measures_by")]
-    lines += [f"{name} = {getattr(sensor, name)}" for name in _NUMBERS]
+    numbers = ("turns_per_s", "pulses", "most_m", "noise_m", "exit_m", "divergence_rad", "returns")
+    lines += [f"{name} = {getattr(sensor, name)}" for name in numbers]
     path.write_text("\n".join(lines) + "\n", "utf-8")

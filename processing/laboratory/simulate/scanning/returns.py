@@ -172,7 +172,7 @@ class BeamHits:
 
 def weakest_of(sensor: Sensor) -> float:
     """The weakest echo that a scanner takes for one; 1 is that of a white surface 10 m away."""
-    return sensor.least_echo or _WEAKEST_SHARE * (10.0 / (0.25 * sensor.most_m)) ** 2
+    return _WEAKEST_SHARE * (10.0 / (0.25 * sensor.most_m)) ** 2
 
 
 def scanner_numbers(sensor: Sensor, pulses: int, weather: Weather) -> Floats:

@@ -20,7 +20,6 @@ _LIMITS = {
     "exit_m": (0.0, 1.0),
     "divergence_rad": (1e-6, 0.1),
     "returns": (1, 15),  # as many as LAS 1.4 can count
-    "least_echo": (0.0, 1.0),
 }
 """What any scanner lies within, by far: own files are refused beyond."""
 
@@ -72,9 +71,6 @@ class Sensor:
         Most returns of one pulse.
     heads : tuple of Head
         As usually mounted; empty for one on a tripod.
-    least_echo : float
-        The weakest echo that it takes for one; 1 is that of a white surface 10 m away. 0: as its
-        reach tells. A phase-based scanner's range of unambiguity tells little of it.
     """
 
     id: str
@@ -89,7 +85,6 @@ class Sensor:
     divergence_rad: float
     returns: int
     heads: tuple[Head, ...] = ()
-    least_echo: float = 0.0
 
     @property
     def rate_hz(self) -> float:
