@@ -59,12 +59,9 @@ from resources import path_of
 
 _FEWEST = 100
 _FIRST_SHAPE = TreesSize(trees=30, leaves=12, rate=0.25)
-_BEAMS_SHAPE = TreesSize(trees=100, leaves=31, rate=0.15)
+_BEAMS_SHAPE = TreesSize(trees=80, leaves=24, rate=0.18)
 _SPACE_SHAPE = TreesSize(trees=100, leaves=31, rate=0.15)
-_AGAIN_SHAPE = {
-    "beams": TreesSize(trees=300, leaves=31, rate=0.12),
-    "space": TreesSize(trees=150, leaves=31, rate=0.12),
-}
+_AGAIN_SHAPE = TreesSize(trees=150, leaves=31, rate=0.12)
 # Log-odds: with beams noise must be four and a half times as likely as not; in space the second
 # trees are careful by themselves.
 _DOUBT = {"beams": 1.5, "space": 0.0}
@@ -107,7 +104,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--what", nargs="+", choices=("beams", "space"), default=["beams", "space"])
     parser.add_argument(
         "--recordings",
-        default="1-96,157-252",
+        default="1-96,157-190",
         help="seeds of the recordings with all kinds of noise that are learned from",
     )
     parser.add_argument(
@@ -163,7 +160,7 @@ def _make(what: str, options: argparse.Namespace) -> None:
     if first is not None:
         columns = looks[0][0].rows.shape[1]
         _write(FIRST_LOOK, first._replace(base=first.base - _NARROWER), columns)
-    last = fit_trees(again, _AGAIN_SHAPE[what])
+    last = fit_trees(again, _AGAIN_SHAPE)
     _write(names[1], last._replace(base=last.base - _DOUBT[what]), again.rows.shape[1])
 
 

@@ -14,10 +14,6 @@ _DUSTY_SHARE = 0.25
 _SUNNY_SHARE = 0.5
 """Of recordings: where a head may look towards the sun."""
 
-_SPOTLESS_SHARE, _SPOTLESS = 0.6, (0.5, 1.0)
-_FAINT = (-2.0, 0.0)
-"""Powers of ten."""
-
 
 @dataclass(frozen=True)
 class NoiseOptions:
@@ -51,12 +47,6 @@ class NoiseOptions:
         Of the light that a pane sends back. Clear double panes: 0.15 (their four faces by Fresnel,
         index 1.52: 4.3 % each, less what the faces before let by); coatings against heat, made to
         send back the near infrared, 0.3 to 0.6 and more; metal 0.9.
-    spotless : float
-        Of pulses on panes, mirrors and water: those of which the surface itself, clean or still,
-        sends nothing back.
-    faint : float
-        Of the weakest echo that is taken from a surface: what an image needs. A phase is compared
-        all the time, of whatever light there is.
     saturated : float
         Strength of an echo, 1 that of a white surface 10 m away, beyond which the receiver is
         driven too far and measures as it does on retro-reflecting plates.
@@ -88,8 +78,6 @@ class NoiseOptions:
     glints_per_s: float = 0.0
     mirrored: float = 0.25
     pane: float = 0.15
-    spotless: float = 0.0
-    faint: float = 1.0
     saturated: float = math.inf
     streak_m: float = 0.5
     lasting: float = 1.0
@@ -162,7 +150,6 @@ def varied_noise(seed: int, sensor: Sensor) -> NoiseOptions:
         drawn, value = random.random(), float(10 ** random.uniform(low, high))
         return value if drawn < share else 0.0
 
-    panes = chance(seed, "varied panes")
     # One of pulses waits for an echo that stands out: a fifth of the false ones.
     fewer = 1.0 if is_phase else 0.2
     lasting = power(0.0, 1.0)
@@ -179,8 +166,6 @@ def varied_noise(seed: int, sensor: Sensor) -> NoiseOptions:
         glints_per_s=power(0.0, 1.6, 0.8),
         mirrored=float(random.uniform(0.3, 0.9)),
         pane=float(10 ** random.uniform(-0.25, 0.0)),
-        spotless=float(panes.uniform(*_SPOTLESS)) if panes.random() < _SPOTLESS_SHARE else 0.0,
-        faint=float(10 ** panes.uniform(*_FAINT)) if is_phase else 1.0,
         saturated=power(-0.6, 0.7),
         streak_m=power(-0.7, 0.4),
         lasting=lasting,
