@@ -1,6 +1,6 @@
 """Examples for the trees: features of points that are known to be noise or to be true.
 
-They come of scenes, of recordings by the simulator, and of true recordings, all of which is kept.
+They come of recordings by the simulator, and of true recordings, all of which is kept.
 """
 
 from __future__ import annotations
@@ -16,19 +16,6 @@ from processing.core.arrays import Flags
 from processing.core.monitor import SilentMonitor
 from processing.image.images_of_drives import image_of
 from processing.laboratory.noise_training.recordings import RecordedScene
-from processing.laboratory.noise_training.scenes import TrainingScene
-from processing.laboratory.noise_training.streets import (
-    CAR,
-    CURB,
-    FACADE,
-    FAR,
-    GRASS,
-    POST,
-    RAIL,
-    ROAD,
-    TREE,
-    WIRE,
-)
 from processing.methods.noise.beams.beam_origins import beam_origins
 from processing.methods.noise.beams.beams_of_drives import beams_of
 from processing.methods.noise.combined import OPEN_IN_SPACE
@@ -40,31 +27,24 @@ from processing.recording.drive import Drive
 
 FeatureVectors = NDArray[np.float32]
 
-_POINTS_PER_SCENE, _POINTS_PER_RECORDING = 8_000, 3_000
+_POINTS_PER_RECORDING, _POINTS_KEPT = 5_000, 8_000
 _NOISE_OFTEN = 3.0
-"""Of recordings: their noise is so much likelier to be an example, and counts so much less."""
+"""Noise of a simulated recording is so much likelier to be an example, and counts so much less."""
 
 _ON_SURFACE_M = 0.04
 """Noise so near to a true point harms nobody and tells nothing: it is no example."""
 
-_KIND_OF_CODE = {
-    **dict.fromkeys((2, 11), ROAD),
-    **dict.fromkeys((3, 4), GRASS),
-    **dict.fromkeys((65, 66), POST),
-    **dict.fromkeys((1, 6, 15), FACADE),
-    5: TREE,
-    14: WIRE,
-    64: CAR,
-    67: CURB,
-}
+_CROWN, _WIRE = 5, 14
+_THIN = (_WIRE, _CROWN, 3, 4, 65, 66)
+_EASILY_LOST = (_WIRE, _CROWN)
+"""Codes: low plants, signs and poles are thin, too."""
+
 _MOST_POINTS = 200_000
 _CHUNKS = 4
 _FEWEST_ROWS = 50
 _KEPT_SHARES = (0.3, 0.1)
 _KEPT_PIECES = 4
 _FEWEST_POINTS = 100
-_THIN = (WIRE, POST, RAIL, GRASS, TREE, FAR)
-_EASILY_LOST = (WIRE, TREE)
 _LOST_WEIGHT, _THIN_WEIGHT, _TRUE_WEIGHT = 4.0, 2.2, 0.9
 _REST_WEIGHT, _MOST_WEIGHT = 0.5, 5.0
 _UNKNOWN_LIGHT_SHARE, _SHIFTED_LIGHT_SHARE = 0.4, 0.4
@@ -107,9 +87,10 @@ class LabelledCloud:
 
     Attributes
     ----------
-    noise, kinds : (n,) int64
-        Of every point, as the search counts them: kind of noise, 0 none; what was met, −1 for
-        noise.
+    is_noise : (n,) bool
+        Of every point, as the search counts them.
+    labels : (n,) uint8
+        Codes of what was met.
     search : BeamSearch or None
         Where its beams are known.
     intensity : (n,) uint16
@@ -125,14 +106,14 @@ class LabelledCloud:
         How many times as often as others noise is an example. It counts as much less.
     """
 
-    noise: NDArray[np.int64]
-    kinds: NDArray[np.int64]
+    is_noise: Flags
+    labels: NDArray[np.uint8]
     seed: int
     search: BeamSearch | None = None
     intensity: NDArray[np.uint16] | None = None
     space: SpaceSearch | None = None
     is_clear: Flags | None = None
-    points_wanted: int = _POINTS_PER_SCENE
+    points_wanted: int = _POINTS_PER_RECORDING
     noise_often: float = 1.0
 
     def alone(self) -> tuple[Examples, Examples]:
@@ -172,7 +153,7 @@ class LabelledCloud:
         is_said = np.zeros(odds.size, np.bool_)
         is_said[is_open] = log_odds(again, rows, monitor) > 0
         often = np.array(
-            [_POINTS_PER_SCENE / max(1, int(one.sum())) for one in (~is_said, is_said)]
+            [self.points_wanted / max(1, int(one.sum())) for one in (~is_said, is_said)]
         )
         chosen = np.random.default_rng(self.seed + 1).random(odds.size) < often[is_said.astype(int)]
         of_rest = float(np.clip(1 / often[0], 1.0, _MOST_WEIGHT)) * _REST_WEIGHT
@@ -205,12 +186,13 @@ class LabelledCloud:
     def _change_light(self, candidates: Candidates) -> None:
         """Make intensity unknown or other than simulated, so that the trees don't lean on it."""
         random, light = np.random.default_rng(self.seed), candidates.features[:, -1]
-        way, kinds = random.random(), self.kinds[candidates.points]
-        shifted_share = _SHIFTED_LIGHT_SHARE if self.noise.any() else 0.0
+        way, labels = random.random(), self.labels[candidates.points]
+        is_noise = self.is_noise[candidates.points]
+        shifted_share = _SHIFTED_LIGHT_SHARE if self.is_noise.any() else 0.0
         if way < _UNKNOWN_LIGHT_SHARE:
             light[:] = random.normal(0, 0.3, light.size)
         elif way < _UNKNOWN_LIGHT_SHARE + shifted_share:
-            light += np.where(kinds < 0, 0.0, random.normal(-0.7, 1.3, 12)[kinds])
+            light += np.where(is_noise, 0.0, random.normal(-0.7, 1.3, 256)[labels])
 
     def _some(self, rows: FeatureVectors, points: NDArray[np.int64]) -> Examples:
         chosen, what = self._picked(points)
@@ -222,7 +204,7 @@ class LabelledCloud:
         Thin things are taken twice as often as others, and noise as is wanted.
         """
         random = np.random.default_rng(self.seed + 1)
-        is_thin, is_noise = np.isin(self.kinds[points], _THIN), self.noise[points] > 0
+        is_thin, is_noise = np.isin(self.labels[points], _THIN), self.is_noise[points]
         usual = self.points_wanted / max(1, points.size)
         often = np.where(is_thin, 2.0, np.where(is_noise, self.noise_often, 1.0)) * usual
         chosen = random.random(points.size) < often
@@ -231,7 +213,7 @@ class LabelledCloud:
         of_noise = min(1.0, usual) / min(1.0, self.noise_often * usual)
         weights = np.where(is_noise, of_noise, _TRUE_WEIGHT)
         weights[is_thin] = _THIN_WEIGHT
-        weights[np.isin(self.kinds[points], _EASILY_LOST)] = _LOST_WEIGHT
+        weights[np.isin(self.labels[points], _EASILY_LOST)] = _LOST_WEIGHT
         return chosen, (is_noise[chosen], weights[chosen])
 
 
@@ -245,16 +227,27 @@ def recording_with_beams(scene: RecordedScene, seed: int) -> LabelledCloud:
     """
     if scene.beams is None:
         raise ValueError("no beams are known of this recording")
-    kind_of_code = np.full(256, -1)
-    kind_of_code[list(_KIND_OF_CODE)] = list(_KIND_OF_CODE.values())
     return LabelledCloud(
-        scene.is_noise.astype(np.int64),
-        kind_of_code[scene.labels],
+        scene.is_noise,
+        scene.labels,
         seed,
         search_with_beams(scene.beams, SilentMonitor()),
         scene.intensity,
         is_clear=_clear_of_surfaces(scene),
-        points_wanted=_POINTS_PER_RECORDING,
+        noise_often=_NOISE_OFTEN,
+    )
+
+
+def recording_in_space(scene: RecordedScene, seed: int) -> LabelledCloud:
+    """A recording by the simulator of which only places are known."""
+    xyz = scene.xyz - scene.xyz.mean(axis=0)
+    space = search_in_space(xyz, SilentMonitor())
+    return LabelledCloud(
+        scene.is_noise[space.order],
+        scene.labels[space.order],
+        seed,
+        space=space,
+        is_clear=_clear_of_surfaces(scene)[space.order],
         noise_often=_NOISE_OFTEN,
     )
 
@@ -271,19 +264,6 @@ def _clear_of_surfaces(scene: RecordedScene) -> Flags:
     return is_clear
 
 
-def case_with_beams(scene: TrainingScene, turn: float, seed: int) -> LabelledCloud:
-    """A scene whose beams are known."""
-    search = search_with_beams(scene.beams(turn), SilentMonitor())
-    return LabelledCloud(scene.noise, scene.kinds, seed, search, scene.intensity)
-
-
-def case_in_space(scene: TrainingScene, seed: int) -> LabelledCloud:
-    """A scene of which only places are known."""
-    xyz = scene.xyz - scene.xyz.mean(axis=0)
-    space = search_in_space(xyz, SilentMonitor())
-    return LabelledCloud(scene.noise[space.order], scene.kinds[space.order], seed, space=space)
-
-
 def sample_with_beams(drive: Drive, seed: int) -> Iterator[LabelledCloud]:
     """A recording all of whose points are taken for true; none without beams."""
     origins = beam_origins(drive)
@@ -297,9 +277,8 @@ def sample_with_beams(drive: Drive, seed: int) -> Iterator[LabelledCloud]:
         rows = range(int(cuts[number]), int(min(cuts[number + 1], most)))
         beams, points = beams_of(drive, image, rows, origins)
         intensity = np.asarray(drive.columns["intensity"][points])
-        noise = np.zeros(beams.ranges.size, np.int64)
-        search = search_with_beams(beams, SilentMonitor())
-        yield LabelledCloud(noise, noise + TREE, seed + number, search, intensity)
+        search, kept = search_with_beams(beams, SilentMonitor()), _all_kept(beams.ranges.size)
+        yield LabelledCloud(*kept, seed + number, search, intensity, points_wanted=_POINTS_KEPT)
 
 
 def sample_in_space(drive: Drive, seed: int) -> Iterator[LabelledCloud]:
@@ -307,9 +286,14 @@ def sample_in_space(drive: Drive, seed: int) -> Iterator[LabelledCloud]:
     xyz = drive.xyz(slice(0, min(drive.count, 4 * _MOST_POINTS)))
     random = np.random.default_rng(seed)
     for number, cloud in enumerate(_as_delivered_elsewhere(xyz - xyz.mean(axis=0), random)):
-        noise = np.zeros(cloud.shape[0], np.int64)
         space = search_in_space(np.ascontiguousarray(cloud), SilentMonitor())
-        yield LabelledCloud(noise, noise + TREE, seed + number, space=space)
+        kept = _all_kept(cloud.shape[0])
+        yield LabelledCloud(*kept, seed + number, space=space, points_wanted=_POINTS_KEPT)
+
+
+def _all_kept(count: int) -> tuple[Flags, NDArray[np.uint8]]:
+    """Whether points are noise, and what they are: thin things, which count most."""
+    return np.zeros(count, np.bool_), np.full(count, _CROWN, np.uint8)
 
 
 def _as_delivered_elsewhere(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -68,6 +69,41 @@ def shift_to_keep(
     """Trees whose sum is above zero for all noise but a small share."""
     odds = log_odds(trees, rows, SilentMonitor())[is_noise]
     return trees._replace(base=trees.base - float(np.quantile(odds, lost_share)))
+
+
+def mean_of_trees(sums: Sequence[Trees]) -> Trees:
+    """Trees that give the mean of what several sums of them say.
+
+    They take turns, so that those at the front say about what all do.
+    """
+    each = [
+        (number / one.roots.size, one, slice(*ends))
+        for one in sums
+        for number, ends in enumerate(pairwise([*one.roots.tolist(), one.features.size]))
+    ]
+    each.sort(key=lambda turn: turn[0])
+    starts = np.cumsum([0, *(nodes.stop - nodes.start for _, _, nodes in each)])[:-1]
+    moves = [start - nodes.start for start, (_, _, nodes) in zip(starts, each, strict=True)]
+    features = np.concatenate([one.features[nodes] for _, one, nodes in each])
+    values = np.concatenate([one.thresholds[nodes] for _, one, nodes in each])
+    values[features < 0] = (values[features < 0] / len(sums)).astype(np.float32)
+    lefts, rights = (
+        np.concatenate(
+            [
+                getattr(one, side)[nodes] + move
+                for move, (_, one, nodes) in zip(moves, each, strict=True)
+            ]
+        )
+        for side in ("lefts", "rights")
+    )
+    return Trees(
+        features,
+        values,
+        lefts.astype(np.int32),
+        rights.astype(np.int32),
+        starts.astype(np.int32),
+        float(np.mean([one.base for one in sums])),
+    )
 
 
 # scikit-learn has no types here.

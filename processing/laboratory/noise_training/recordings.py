@@ -6,7 +6,7 @@ usual; those that are learned from have all kinds side by side, and grass of any
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -47,9 +47,26 @@ from processing.project.importing.importing import ImportRequest, import_drives
 from processing.recording.drive import Drive
 
 MOBILE, STANDING, SITE, AIRBORNE = "mobile", "standing", "site", "airborne"
-MEADOW = "meadow"
-MUCH, VARIED, QUIET = "much", "varied", "quiet"
-NOISE_CODES, LOW_PLANT = (7, 18), 3
+MEADOW, SCANS = "meadow", "scans"
+MUCH, VARIED, CLEAR, QUIET = "much", "varied", "clear", "quiet"
+_ALL_KINDS = (VARIED, CLEAR)
+NOISE_CODES = (7, 18)
+_LOW_PLANT, _CROWN, _POLE = 3, 5, 66
+_SITE_CODES = {
+    SiteKind.GRASS: _LOW_PLANT,
+    SiteKind.BRUSH: _CROWN,
+    **dict.fromkeys(
+        (
+            SiteKind.FENCE,
+            SiteKind.SCAFFOLD,
+            SiteKind.NET,
+            SiteKind.BATTER_BOARD,
+            SiteKind.SURVEY_POLE,
+        ),
+        _POLE,
+    ),
+}
+"""Thin things of sites, as streets have them: where only places are known, they are easily lost."""
 _STYLES, _SITE_STYLES = (
     ("urban", "urban", "rural", "highway"),
     ("levee", "cutting", "pad", "hillside"),
@@ -78,6 +95,7 @@ _MEADOW_STEPS_M = (0.022, 0.06)
 _STRIP_SHARE, _STRIP_M = 0.5, (15.0, 30.0)
 _WET_SHARE = 0.35
 _ON_TRIPODS = ("p40", "vz400i", "zf5016")
+_SCANS = (2, 4)
 _SECTORS, _PULSES = (1.0, 1.0, 0.4, 0.15), (200_000, 500_000)
 _SITE_LENGTH_M, _SITE_SPACINGS_M = (20.0, 45.0), (0.03, 0.09)
 _FLIGHT_SPACINGS_M, _FLIGHT_POINTS = (0.25, 2.0), 60_000
@@ -128,10 +146,12 @@ def recorded_scene(how: str, seed: int, folder: Path, noise: str = MUCH) -> Reco
 
     Parameters
     ----------
-    how : {"mobile", "standing", "site", "meadow", "airborne"}
-        A meadow is a site scanned from one place, with its sweeps.
-    noise : {"much", "varied", "quiet"}
-        The usual kinds many times as often; all kinds (and grass of any height); next to none.
+    how : {"mobile", "standing", "scans", "site", "meadow", "airborne"}
+        Scans are several of a street as one cloud. A meadow is a site scanned from one place, with
+        its sweeps.
+    noise : {"much", "varied", "clear", "quiet"}
+        The usual kinds many times as often; all kinds (and grass of any height); the same with
+        panes of which most send nothing back themselves; next to none.
     """
     path = folder / f"{how}-{seed}{'' if noise == MUCH else f'-{noise}'}.npz"
     if not path.is_file():
@@ -160,8 +180,8 @@ def _read_scene(path: Path) -> RecordedScene:
 
 
 def _noise_of(random: Generator, seed: int, sensor: Sensor, noise: str) -> NoiseOptions:
-    if noise == VARIED:
-        return varied_noise(seed, sensor)
+    if noise in _ALL_KINDS:
+        return varied_noise(seed, sensor, has_clear_panes=noise == CLEAR)
     powers = _QUIET if noise == QUIET else _OFTEN[sensor.measures_by]
     return noise_options(seed, sensor, float(10 ** random.uniform(*powers)))
 
@@ -192,7 +212,7 @@ def _varied_sensor(seed: int, sensor: Sensor) -> Sensor:
 
 def _of_any_kind(random: Generator, sensor: Sensor, noise: str) -> Sensor:
     """The same scanner, measuring by phase or by pulses."""
-    if random.random() < (_VARIED_PHASE_SHARE if noise == VARIED else _PHASE_SHARE):
+    if random.random() < (_VARIED_PHASE_SHARE if noise in _ALL_KINDS else _PHASE_SHARE):
         most_m = float(random.choice(_AMBIGUITIES_M))
         return replace(sensor, measures_by="phase", most_m=most_m, returns=1)
     return replace(sensor, measures_by="pulse", most_m=max(sensor.most_m, 150.0))
@@ -202,7 +222,7 @@ def _mobile(seed: int, noise: str) -> RecordedScene:
     """Some seconds of one head, or all that a surveyor cut out of them."""
     random = chance(seed, "training", MOBILE)
     sensor = _of_any_kind(random, any_sensor(seed), noise)
-    is_varied = noise == VARIED
+    is_varied = noise in _ALL_KINDS
     sensor = _varied_sensor(seed, sensor) if is_varied else sensor
     sensor = replace(sensor, heads=sensor.heads[:1])
     with TemporaryDirectory(prefix="zuka-") as at:
@@ -267,21 +287,49 @@ def _drive_scene(drive: Drive, labels: NDArray[np.uint8]) -> RecordedScene:
 
 
 def _standing(seed: int, noise: str) -> RecordedScene:
-    """One scan with its sweeps; now and then two or three as one cloud, of places alone."""
+    """One scan with its sweeps."""
     random = chance(seed, "training", STANDING)
     sensor = _of_any_kind(random, SENSORS[str(random.choice(_ON_TRIPODS))], noise)
-    sensor = _varied_sensor(seed, sensor) if noise == VARIED else sensor
+    sensor = _varied_sensor(seed, sensor) if noise in _ALL_KINDS else sensor
     street = Street(seed, style_of(str(random.choice(_STYLES))), 20.0)
     options = _noise_of(random, seed, sensor, noise)
     pulses, share = int(random.integers(*_PULSES)), float(random.choice(_SECTORS))
     weather = Weather(0.0, float(random.uniform(0.3, 0.9)), 0.0, float(random.uniform(0.03, 1.0)))
-    weather = _weather_of(seed) if noise == VARIED else weather
+    weather = _weather_of(seed) if noise in _ALL_KINDS else weather
     with TemporaryDirectory(prefix="zuka-") as at:
         file = Path(at) / "scan.laz"
         scan = StreetScan(0, sensor, pulses, share, options)
         scan_street(street, scan, weather, file, SilentMonitor())
         drive, labels = _imported(file, (), file.with_suffix(".labels.npy"))
         return _swept_scene(drive, labels)
+
+
+def _scans(seed: int, noise: str) -> RecordedScene:
+    """Some scans of a street as one cloud, of places alone."""
+    import laspy
+
+    random = chance(seed, "training", SCANS)
+    sensor = _of_any_kind(random, SENSORS[str(random.choice(_ON_TRIPODS))], noise)
+    sensor = _varied_sensor(seed, sensor)
+    street = Street(seed, style_of(str(random.choice(_STYLES))), 30.0)
+    options, weather = _noise_of(random, seed, sensor, noise), _weather_of(seed)
+    count = int(random.integers(_SCANS[0], _SCANS[1] + 1))
+    pulses = int(random.integers(*_PULSES)) // count
+    xyz, labels, intensities = [], [], []
+    with TemporaryDirectory(prefix="zuka-") as at:
+        for number in range(count):
+            file = Path(at) / f"scan{number}.laz"
+            scan = StreetScan(number, sensor, pulses, 1.0, options)
+            scan_street(street, scan, weather, file, SilentMonitor())
+            points = laspy.read(file)
+            xyz.append(np.asarray(points.xyz))
+            labels.append(np.load(file.with_suffix(".labels.npy")))
+            intensities.append(np.asarray(points.intensity))
+    places = np.concatenate(xyz)
+    scene = RecordedScene(
+        places - places.mean(axis=0), np.concatenate(labels), np.concatenate(intensities)
+    )
+    return _piece_of_many(random, scene)
 
 
 def _swept_scene(drive: Drive, labels: NDArray[np.uint8]) -> RecordedScene:
@@ -315,10 +363,16 @@ def _meadow(seed: int, _: str) -> RecordedScene:
         simulate_site(request, folder, SilentMonitor(), weather=_weather_of(seed))
         date = str(random.choice(DATES))
         labels = folder / "truth" / f"labels_{date}.npy"
-        coded = np.load(labels)  # grass is but "other" there
-        coded[np.load(folder / "truth" / f"kinds_{date}.npy") == SiteKind.GRASS] = LOW_PLANT
-        np.save(labels, coded)
+        np.save(labels, _site_labels(folder / "truth", date, (SiteKind.GRASS,)))
         return _swept_scene(*_imported(folder / "in" / f"{date}.laz", (), labels))
+
+
+def _site_labels(truth: Path, date: str, told: Iterable[SiteKind]) -> NDArray[np.uint8]:
+    """Codes of a site's points: some kinds are told that are but "other" in its truth."""
+    codes, kinds = np.load(truth / f"labels_{date}.npy"), np.load(truth / f"kinds_{date}.npy")
+    for kind in told:
+        codes[(kinds == kind) & ~np.isin(codes, NOISE_CODES)] = _SITE_CODES[kind]
+    return np.asarray(codes, np.uint8)
 
 
 def _site(seed: int, noise: str) -> RecordedScene:
@@ -336,11 +390,11 @@ def _site(seed: int, noise: str) -> RecordedScene:
     )
     with TemporaryDirectory(prefix="zuka-") as at:
         folder = Path(at) / "site"
-        weather = _weather_of(seed) if noise == VARIED else None
+        weather = _weather_of(seed) if noise in _ALL_KINDS else None
         simulate_site(request, folder, SilentMonitor(), weather=weather)
         date = str(random.choice(DATES))
         points = laspy.read(folder / "in" / f"{date}.laz")
-        xyz, labels = np.asarray(points.xyz), np.load(folder / "truth" / f"labels_{date}.npy")
+        xyz, labels = np.asarray(points.xyz), _site_labels(folder / "truth", date, _SITE_CODES)
         intensity = np.asarray(points.intensity)
     scene = RecordedScene(xyz - xyz.mean(axis=0), labels, intensity)
     return _piece_of_many(random, scene)
@@ -371,10 +425,22 @@ def _piece_of_many(random: Generator, scene: RecordedScene) -> RecordedScene:
 _MAKERS: Mapping[str, Callable[[int, str], RecordedScene]] = {
     MOBILE: _mobile,
     STANDING: _standing,
+    SCANS: _scans,
     SITE: _site,
     MEADOW: _meadow,
     AIRBORNE: _airborne,
 }
+
+
+def quietened(scene: RecordedScene, seed: int) -> RecordedScene:
+    """A scene without most of its noise: a tripod on a meadow sees mostly blades of grass."""
+    random = np.random.default_rng(seed * 7 + 6)
+    share = 2 ** random.uniform(*_KEPT_NOISE)
+    return scene.chosen(~scene.is_noise | (random.random(scene.labels.size) < share))
+
+
+_KEPT_NOISE = (-7.0, -1.0)
+"""Powers of two of its share."""
 
 
 def thin_scene(scene: RecordedScene, seed: int) -> RecordedScene:

@@ -1,4 +1,4 @@
-"""Hills, cuts and banks under a simulated scene, for clouds of which only places are known.
+"""Hills, cuts and banks under a recorded scene, for clouds of which only places are known.
 
 Streets are level, sites and hillsides are not. Everything of a scene is lifted by the relief under
 it; what the relief hides from the scanner is left out.
@@ -12,7 +12,7 @@ import numpy as np
 from numpy.random import Generator
 
 from processing.core.arrays import Floats
-from processing.laboratory.noise_training.scenes import TrainingScene
+from processing.laboratory.noise_training.recordings import RecordedScene
 
 _STREAM = 5
 _MOST_BANKS, _BANK_HEIGHTS_M, _BANK_SLOPES = 5, (0.5, 6.0), (0.3, 1.2)
@@ -55,7 +55,7 @@ def relief_of(random: Generator, length_m: float) -> Relief:
     for _ in range(int(random.integers(1, _MOST_BANKS + 1))):
         way, high = random.uniform(0, 2 * np.pi), random.uniform(*_BANK_HEIGHTS_M)
         width = high / random.uniform(*_BANK_SLOPES)
-        start = random.uniform(-0.5, 0.5) * length_m + np.cos(way) * length_m / 2
+        start = random.uniform(-0.5, 0.5) * length_m
         banks.append([np.cos(way), np.sin(way), start, width, high * random.choice([-1, 1])])
     way, far = random.uniform(0, 2 * np.pi), 4 * length_m
     tilt = random.uniform(0, _MOST_TILT)
@@ -75,18 +75,26 @@ def relief_of(random: Generator, length_m: float) -> Relief:
     return Relief(np.array(banks), np.array(waves))
 
 
-def on_relief(scene: TrainingScene, seed: int) -> TrainingScene:
-    """The scene on a relief of its own."""
+def on_relief(scene: RecordedScene, seed: int) -> RecordedScene:
+    """The places of a scene on a relief of its own; its beams are no longer known.
+
+    Raises
+    ------
+    ValueError
+        No beams are known: what relief hides can't be told.
+    """
+    if scene.beams is None:
+        raise ValueError("no beams are known of this recording")
     random = np.random.default_rng(seed * 7 + _STREAM)
-    relief = relief_of(random, float(np.ptp(np.percentile(scene.xyz[:, 0], [1, 99]))))
-    xyz, origins = _lift_points(scene.xyz, relief), _lift_points(scene.origins, relief)
+    along = np.percentile(scene.xyz[:, :2], [1, 99], axis=0)
+    relief = relief_of(random, float(np.ptp(along, axis=0).max()))
+    xyz, origins = (_lifted(one, relief) for one in (scene.beams.xyz, scene.beams.origins))
     is_hidden = np.zeros(xyz.shape[0], np.bool_)
     for share in _ALONG:
         beam = origins + share * (xyz - origins)
         is_hidden |= beam[:, 2] < relief.heights(beam[:, :2]) - _HIDES_M
-    ranges = np.linalg.norm(xyz - origins, axis=1)
-    return replace(scene, xyz=xyz, origins=origins, ranges=ranges).chosen(~is_hidden)
+    return replace(scene, xyz=xyz, beams=None).chosen(~is_hidden)
 
 
-def _lift_points(xyz: Floats, relief: Relief) -> Floats:
+def _lifted(xyz: Floats, relief: Relief) -> Floats:
     return np.column_stack([xyz[:, :2], xyz[:, 2] + relief.heights(xyz[:, :2])])

@@ -2,17 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
-from numpy.typing import NDArray
 
 from processing.core.arrays import Flags
-from processing.laboratory.noise_training.noise_kinds import NOISE_KINDS
-from processing.laboratory.noise_training.scenes import TrainingScene
-from processing.laboratory.noise_training.streets import KINDS
+from processing.laboratory.noise_training.recordings import RecordedScene
+from processing.methods.noise.combined import noise_codes_in_space, noise_codes_with_beams
 
+THIN_CODES = {
+    "wire": (14,),
+    "pole, trunk": (66,),
+    "sign": (65,),
+    "low plant": (3, 4),
+    "crown": (5,),
+}
+"""Codes of what is lost most easily, by its name."""
+
+_OTHERS = {"ground": (2,), "road": (11,), "building": (6,), "vehicle": (64,), "curb": (67,)}
 _FEWEST = 20
+
+
+def said_of(scene: RecordedScene) -> Flags:
+    """(n,) what the models that the program has call noise."""
+    if scene.beams is not None:
+        return np.asarray(noise_codes_with_beams(scene.beams, scene.intensity) > 0, np.bool_)
+    return np.asarray(noise_codes_in_space(scene.xyz) > 0, np.bool_)
 
 
 def f_measure(said: Flags, truth: Flags) -> float:
@@ -21,21 +34,15 @@ def f_measure(said: Flags, truth: Flags) -> float:
     return 2 * int((said & truth).sum()) / both if both else 1.0
 
 
-def score_line(name: str, said: Flags, scene: TrainingScene) -> str:
-    """One scene as a line: F of noise, F of kept points, noise found and things kept by kind."""
-    truth = scene.noise > 0
-    found = _shares(NOISE_KINDS, scene.noise, said, first=1)
-    kept = _shares(KINDS, scene.kinds, ~said, first=0)
+def score_line(name: str, said: Flags, scene: RecordedScene) -> str:
+    """One scene as a line: F of noise, F of kept points, things kept by kind."""
+    truth = scene.is_noise
+    kept = []
+    for kind, codes in {**THIN_CODES, **_OTHERS}.items():
+        is_kind = np.isin(scene.labels, codes)
+        if is_kind.sum() >= _FEWEST:
+            kept.append(f"{kind} {(~said[is_kind]).mean():.3f}")
     return (
         f"{name}: F {f_measure(said, truth):.3f} of {truth.mean():.1%} noise, "
-        f"kept F {100 * f_measure(~said, ~truth):.2f} | found {found} | kept {kept}"
+        f"kept F {100 * f_measure(~said, ~truth):.2f} | kept {', '.join(kept)}"
     )
-
-
-def _shares(names: Sequence[str], kinds: NDArray[np.int64], said: Flags, *, first: int) -> str:
-    parts = []
-    for number, name in enumerate(names):
-        is_kind = kinds == number
-        if number >= first and is_kind.sum() >= _FEWEST:
-            parts.append(f"{name} {said[is_kind].mean():.3f}")
-    return ", ".join(parts)

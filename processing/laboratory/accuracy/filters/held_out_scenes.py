@@ -1,7 +1,7 @@
 """Noise of simulated recordings that no model learned from, as a table.
 
-The models learned from another, simpler world (:mod:`processing.laboratory.noise_training`); these
-are streets from vehicles and tripods, sites and flights of the simulator, as they are delivered.
+Streets from vehicles and tripods, sites and flights of the simulator, as they are delivered, of
+other seeds than those that the models learned from (:mod:`processing.laboratory.noise_training`).
 """
 
 from __future__ import annotations
@@ -22,8 +22,7 @@ from processing.laboratory.noise_training.recordings import (
     recorded_scene,
     thin_scene,
 )
-from processing.laboratory.noise_training.scores import f_measure
-from processing.methods.noise.combined import noise_codes_in_space, noise_codes_with_beams
+from processing.laboratory.noise_training.scores import THIN_CODES, f_measure, said_of
 from processing.methods.noise.neighbours.radius import radius_outliers
 from processing.methods.noise.neighbours.statistical import statistical_outliers
 
@@ -31,7 +30,6 @@ SEEDS = range(901, 913)
 _FEWEST = 50
 _BEAMS, _PLACES = "beams", "places"
 _SCANNERS = {_BEAMS: (MOBILE, MOBILE, STANDING), _PLACES: (STANDING, SITE, AIRBORNE, MOBILE)}
-_THIN = {"wire": (14,), "pole, trunk": (66,), "sign": (65,), "low plant": (3, 4), "crown": (5,)}
 
 
 def unseen_rows(seeds: Sequence[int] = SEEDS, folder: Path | None = None) -> Iterator[list[str]]:
@@ -43,12 +41,12 @@ def unseen_rows(seeds: Sequence[int] = SEEDS, folder: Path | None = None) -> Ite
         Where recordings are kept; None for nowhere.
     """
     head = ["known", "scanner, seed", "points", "noise", "kept F", "noise P", "R", "**F**"]
-    yield [*head, *(f"{name} kept" for name in _THIN), "radius F", "statistical F"]
+    yield [*head, *(f"{name} kept" for name in THIN_CODES), "radius F", "statistical F"]
     with TemporaryDirectory(prefix="zuka-") as made:
         for known in (_BEAMS, _PLACES):
             figures = []
             for which, scene in _scenes(known, seeds, folder or Path(made)):
-                mine = _figures(scene, _said_of(scene))
+                mine = _figures(scene, said_of(scene))
                 figures.append(mine)
                 yield [known, which, f"{scene.labels.size:,}", *map(_cell, mine)]
             columns = np.array(figures).T
@@ -67,16 +65,10 @@ def _scenes(known: str, seeds: Sequence[int], folder: Path) -> Iterator[tuple[st
             yield f"{how} {seed}", scene
 
 
-def _said_of(scene: RecordedScene) -> Flags:
-    if scene.beams is not None:
-        return np.asarray(noise_codes_with_beams(scene.beams, scene.intensity) > 0, np.bool_)
-    return np.asarray(noise_codes_in_space(scene.xyz) > 0, np.bool_)
-
-
 def _figures(scene: RecordedScene, said: Flags) -> list[float]:
     is_noise = scene.is_noise
     found = int((said & is_noise).sum())
-    kept = [np.isin(scene.labels, codes) for codes in _THIN.values()]
+    kept = [np.isin(scene.labels, codes) for codes in THIN_CODES.values()]
     peers = [
         radius_outliers(scene.xyz, 0.5, 113),
         statistical_outliers(scene.xyz, 113, 1.5),

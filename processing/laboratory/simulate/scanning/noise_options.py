@@ -14,6 +14,10 @@ _DUSTY_SHARE = 0.25
 _SUNNY_SHARE = 0.5
 """Of recordings: where a head may look towards the sun."""
 
+_SPOTLESS_SHARE, _SPOTLESS = 0.6, (0.5, 1.0)
+_FAINT = (-2.0, 0.0)
+"""Powers of ten."""
+
 
 @dataclass(frozen=True)
 class NoiseOptions:
@@ -47,6 +51,12 @@ class NoiseOptions:
         Of the light that a pane sends back. Clear double panes: 0.15 (their four faces by Fresnel,
         index 1.52: 4.3 % each, less what the faces before let by); coatings against heat, made to
         send back the near infrared, 0.3 to 0.6 and more; metal 0.9.
+    spotless : float
+        Of pulses on panes, mirrors and water: those of which the surface itself, clean or still,
+        sends nothing back.
+    faint : float
+        Of the weakest echo that is taken from a surface: what an image needs. A phase is compared
+        all the time, of whatever light there is.
     saturated : float
         Strength of an echo, 1 that of a white surface 10 m away, beyond which the receiver is
         driven too far and measures as it does on retro-reflecting plates.
@@ -78,6 +88,8 @@ class NoiseOptions:
     glints_per_s: float = 0.0
     mirrored: float = 0.25
     pane: float = 0.15
+    spotless: float = 0.0
+    faint: float = 1.0
     saturated: float = math.inf
     streak_m: float = 0.5
     lasting: float = 1.0
@@ -137,12 +149,29 @@ def noise_options(seed: int, sensor: Sensor, often: float = 1.0) -> NoiseOptions
     return found.times(often)
 
 
-def varied_noise(seed: int, sensor: Sensor) -> NoiseOptions:
+def varied_noise(seed: int, sensor: Sensor, *, has_clear_panes: bool = False) -> NoiseOptions:
     """Noise of which every kind is met in many recordings, its share drawn over powers of ten.
 
     For learning what noise is: where one kind alone is frequent, the others stay unknown. Which
     kinds a scanner has at all depends on how it measures, as in `noise_options`.
+
+    Parameters
+    ----------
+    has_clear_panes : bool
+        Whether most panes of many recordings send nothing back themselves, and images in them need
+        less light than a surface does, where light is compared all the time.
     """
+    found = _usual_panes(seed, sensor)
+    if not has_clear_panes:
+        return found
+    panes = chance(seed, "varied panes")
+    spotless = float(panes.uniform(*_SPOTLESS)) if panes.random() < _SPOTLESS_SHARE else 0.0
+    is_phase = sensor.measures_by == "phase"
+    faint = float(10 ** panes.uniform(*_FAINT)) if is_phase else 1.0
+    return replace(found, spotless=spotless, faint=faint)
+
+
+def _usual_panes(seed: int, sensor: Sensor) -> NoiseOptions:
     random = chance(seed, "varied noise")
     is_phase = sensor.measures_by == "phase"
 

@@ -22,7 +22,7 @@ from processing.laboratory.simulate.scanning.mirrored_echoes import (
 )
 from processing.laboratory.simulate.scanning.noise_options import NoiseOptions, noise_options
 from processing.laboratory.simulate.scanning.passing_noise import PassingNoise, Path
-from processing.laboratory.simulate.scanning.return_kernels import PASSED
+from processing.laboratory.simulate.scanning.return_kernels import PASSED, WEAKEST
 from processing.laboratory.simulate.scanning.returns import (
     HIGH_NOISE,
     LOW_NOISE,
@@ -261,12 +261,23 @@ class NoiseSource:
         rows = self._chosen(beams, rows, self._request.mirrored, 400)
         scanner = recorded.scanner.copy()
         scanner[PASSED] = self._request.pane**2  # there and back
+        scanner[WEAKEST] *= self._request.faint
         images = mirrored_echoes(beams, met, recorded.scene, scanner, rows, key=self._key)
         ranges[images.rays] = images.ranges
         return images
 
+    def _without_panes(self, beams: Beams, met: BeamHits, returns: Returns) -> Returns:
+        """The returns but those of panes that send nothing back themselves."""
+        if self._request.spotless <= 0:
+            return returns
+        rows = returns.pulse - beams.first
+        is_lost = np.isin(met.material[rows], MIRRORS)
+        is_lost &= shares_of(returns.pulse, self._key + 410) < self._request.spotless
+        return number_returns(returns.chosen(~is_lost))
+
     def _merged(self, recorded: PulseHits, ranges: Floats, images: MirroredEchoes) -> Returns:
         beams, met, returns = recorded.beams, recorded.met, recorded.returns
+        returns = self._without_panes(beams, met, returns)
         rows = np.flatnonzero((ranges > _LEAST_M) & (ranges < self._sensor.most_m))
         if rows.size == 0:
             return returns

@@ -9,16 +9,28 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from processing.core.monitor import SilentMonitor
 from processing.laboratory.noise_training import recordings
-from processing.laboratory.noise_training.examples import recording_with_beams
+from processing.laboratory.noise_training.examples import (
+    LabelledCloud,
+    recording_in_space,
+    recording_with_beams,
+)
+from processing.laboratory.noise_training.fitting import TreesSize, fit_trees, shift_to_keep
 from processing.laboratory.noise_training.recordings import (
     MEADOW,
     QUIET,
     STANDING,
     VARIED,
     RecordedScene,
+    quietened,
     recorded_scene,
 )
+from processing.laboratory.noise_training.scores import f_measure, score_line
+from processing.methods.noise.combined import FIRST_LOOK_IN_SPACE, IN_SPACE, MODELS
+from processing.methods.noise.tree_files import read_trees
+from processing.methods.noise.trees import Trees, log_odds
+from resources import path_of
 
 _SEED = 4  # measured by phase, with arcs, glass and streaks
 
@@ -34,6 +46,76 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 @pytest.fixture(scope="module")
 def scene(folder: Path) -> RecordedScene:
     return recorded_scene(STANDING, _SEED, folder, VARIED)
+
+
+@pytest.fixture(scope="module")
+def cloud(scene: RecordedScene) -> LabelledCloud:
+    return recording_in_space(replace(scene, beams=None), 2)
+
+
+def _tree_of_one_leaf(odds: float) -> Trees:
+    none = np.zeros(1, np.int32)
+    return Trees(none - 1, np.array([odds]), none, none, none, 0.0)
+
+
+def test_examples_are_rows_that_say_what_they_are(
+    scene: RecordedScene, cloud: LabelledCloud
+) -> None:
+    with_beams, first = recording_with_beams(scene, 2), _tree_of_one_leaf(1.0)
+    for examples in (
+        *with_beams.alone(),
+        *cloud.alone(),
+        with_beams.again(first, first),
+        cloud.again(None, first),
+    ):
+        assert examples.is_noise.any()
+        assert not examples.is_noise.all()
+        assert np.isfinite(examples.rows).all()
+        assert examples.rows.shape[0] == examples.is_noise.size == examples.weights.size
+    assert with_beams.again(_tree_of_one_leaf(-1.0), first).is_noise.size == 0
+    assert cloud.again(None, _tree_of_one_leaf(-9.0)).is_noise.size == 0
+
+
+def test_every_pass_sees_the_same_examples(cloud: LabelledCloud) -> None:
+    np.testing.assert_array_equal(cloud.alone()[1].rows, cloud.alone()[1].rows)
+
+
+def test_the_first_look_in_space_keeps_what_is_called_noise_and_little_else(
+    cloud: LabelledCloud,
+) -> None:
+    own, again, first = (
+        read_trees(path_of(f"{MODELS}/{name}")) for name in (*IN_SPACE, FIRST_LOOK_IN_SPACE)
+    )
+    examples = cloud.said(own, again)
+    is_left = log_odds(first, examples.rows, SilentMonitor()) > 0
+    assert examples.is_noise.sum() > 100
+    assert is_left[examples.is_noise].mean() >= 0.99
+    assert is_left[~examples.is_noise].mean() < 0.8
+
+
+def test_trees_are_fitted_to_examples_and_a_first_look_keeps_the_noise(
+    scene: RecordedScene,
+) -> None:
+    looks = recording_with_beams(scene, 2).alone()[0]
+    trees = fit_trees(looks, TreesSize(30, 12, 0.25))
+    first = shift_to_keep(trees, looks.rows, looks.is_noise, 0.01)
+    is_left = log_odds(first, looks.rows, SilentMonitor()) > 0
+    assert is_left[looks.is_noise].mean() >= 0.985
+    assert is_left.mean() < 1.0
+
+
+def test_a_score_names_every_kind_that_is_there(scene: RecordedScene) -> None:
+    line = score_line("scene", scene.is_noise, scene)
+    assert "F 1.000" in line
+    assert "road 1.000" in line
+    assert f_measure(np.zeros(scene.labels.size, np.bool_), scene.is_noise) == 0.0
+
+
+def test_a_quietened_scene_keeps_what_is_true_and_loses_most_noise(scene: RecordedScene) -> None:
+    for seed in range(4):
+        quiet = quietened(scene, seed)
+        assert (~quiet.is_noise).sum() == (~scene.is_noise).sum()
+        assert quiet.is_noise.sum() < 0.55 * scene.is_noise.sum()
 
 
 def test_a_quiet_recording_has_less_noise_than_a_varied_one(

@@ -11,7 +11,9 @@ import pytest
 from processing.laboratory.noise_training import recordings
 from processing.laboratory.noise_training.recordings import (
     AIRBORNE,
+    SCANS,
     STANDING,
+    VARIED,
     RecordedScene,
     recorded_scene,
     thin_scene,
@@ -76,3 +78,10 @@ def test_a_thinned_cloud_is_a_part_of_the_scene(scene: RecordedScene) -> None:
     sizes = {thin_scene(scene, seed).labels.size for seed in range(6)}
     assert max(sizes) <= scene.labels.size
     assert len(sizes) > 2
+
+
+def test_scans_of_a_street_are_one_cloud_without_beams(folder: Path) -> None:
+    scene = recorded_scene(SCANS, 302, folder, VARIED)
+    assert scene.beams is None
+    assert scene.is_noise.any()
+    np.testing.assert_allclose(scene.xyz.mean(axis=0), 0.0, atol=5.0)

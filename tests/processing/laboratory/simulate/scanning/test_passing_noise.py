@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from numpy.typing import NDArray
@@ -153,3 +155,17 @@ def test_varied_noise_has_every_kind_in_many_recordings() -> None:
     by_pulses = [varied_noise(seed, SENSORS["vq250"]) for seed in range(60)]
     assert not any(one.arcs_per_s or one.folded for one in by_pulses)
     assert np.median([one.lone for one in by_pulses]) < np.median([one.lone for one in drawn])
+
+
+def test_clear_panes_differ_in_nothing_else() -> None:
+    usual, clear = (
+        [varied_noise(seed, SENSORS["zf9012"], has_clear_panes=has) for seed in range(40)]
+        for has in (False, True)
+    )
+    assert not any(one.spotless for one in usual)
+    assert 0.4 < np.mean([one.spotless >= 0.5 for one in clear]) < 0.8
+    assert all(0.01 <= one.faint <= 1.0 for one in clear)
+    for one, other in zip(usual, clear, strict=True):
+        assert replace(other, spotless=0.0, faint=1.0) == one
+    by_pulses = varied_noise(3, SENSORS["vq250"], has_clear_panes=True)
+    assert by_pulses.faint == 1.0

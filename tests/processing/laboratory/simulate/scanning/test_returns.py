@@ -275,11 +275,35 @@ def test_what_shines_back_too_strongly_is_measured_along_the_beam() -> None:
     assert np.median(strong) < 6.0
 
 
-def test_a_pane_that_sends_more_light_back_shows_more() -> None:
+def _pane_before_a_wall() -> Mesh:
     built = MeshBuilder()
     built.add(box((9.0, -9.0, 0.0), (9.01, 9.0, 9.0)), Material.GLASS, 6, 4)
     built.add(box((-13.0, -9.0, 0.0), (-12.0, 9.0, 9.0)), Material.BRICK, 6, 5)
-    mesh, beams = built.mesh(), _fan(20_000, 80, 100)
+    return built.mesh()
+
+
+def test_a_spotless_pane_shows_images_and_never_itself() -> None:
+    mesh, beams = _pane_before_a_wall(), _fan(20_000, 80, 100)
+    usual = replace(_NOTHING, mirrored=0.5, pane=0.6)
+    dirty, clean = (
+        _noisy(mesh, beams, _PULSE, replace(usual, spotless=share)) for share in (0.0, 1.0)
+    )
+    assert (dirty.label == 6).sum() > 1000
+    assert not (clean.label == 6).any()
+    assert (clean.label == 18).sum() == (dirty.label == 18).sum() > 1000
+
+
+def test_faint_images_are_measured_where_light_is_compared_all_the_time() -> None:
+    mesh, beams = _pane_before_a_wall(), _fan(20_000, 80, 100)
+    usual = replace(_NOTHING, mirrored=0.5, pane=0.02)
+    strong, faint = (
+        _noisy(mesh, beams, _PHASE, replace(usual, faint=share)) for share in (1.0, 0.01)
+    )
+    assert (faint.label == 18).sum() > 2 * (strong.label == 18).sum()
+
+
+def test_a_pane_that_sends_more_light_back_shows_more() -> None:
+    mesh, beams = _pane_before_a_wall(), _fan(20_000, 80, 100)
     shown = [
         int(
             (
