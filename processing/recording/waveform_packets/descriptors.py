@@ -123,6 +123,8 @@ class PacketFile:
         samples lie lower, where no pulse has two returns), or empty where nothing did.
     reason : Text
         Why its points have no waveforms, to follow "no waveforms: "; empty where they have.
+    remark : Text
+        What whoever works with its points is to know of how they came; mostly empty.
     """
 
     number: int
@@ -131,6 +133,7 @@ class PacketFile:
     towards_sensor: bool = True
     sign_by: str = ""
     reason: Text = Text("", "")
+    remark: Text = Text("", "")
 
 
 def packet_key(file: int, byte: int) -> int:

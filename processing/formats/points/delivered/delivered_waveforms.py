@@ -29,6 +29,8 @@ class DeliveredWaveforms:
     pack : str
         Where packets are not in the file as they are kept: what writes them from it,
         ``module:function`` of the file, an open file and a monitor. Empty where they are.
+    remark : Text
+        What whoever works with the points is to know of how they came from waveforms; may be empty.
     """
 
     path: Path = Path()
@@ -38,6 +40,7 @@ class DeliveredWaveforms:
     descriptors: Mapping[int, WaveformDescriptor] = field(default_factory=dict)
     reason: Text = Text("", "")
     pack: str = ""
+    remark: Text = Text("", "")
 
     @property
     def is_readable(self) -> bool:
