@@ -148,6 +148,7 @@ def open_pulsewaves(path: Path) -> FloatFile:
             has_head=True,
             descriptors=packets.descriptors,
             pack=_PACK,
+            echoes=echoes.count,
             remark=_remark_on(survey, echoes),
         ),
         crs=header.crs,
@@ -383,7 +384,12 @@ def _rays(block: SegmentBlock, header: PulseWavesHeader) -> Floats:
 
 
 def _centres(header: PulseWavesHeader, survey: _Survey) -> Floats | None:
-    """Units from the optical centre to the anchor by composition; None where one says none."""
+    """Units from the optical centre to the anchor by composition; None where one says none.
+
+    A path through origins needs times that differ.
+    """
+    if not survey.first_time < survey.last_time:
+        return None
     centres = np.zeros(256)
     for number in survey.compositions:
         units = header.compositions[number].centre_units

@@ -209,7 +209,7 @@ class PulseWaves:
                     ),
                 )
             if composition.is_packed:
-                raise packed(self.path)
+                raise packed(self.header.path)
             if composition.fault.en:
                 raise self._damaged_pulse(
                     pulse,
@@ -225,15 +225,12 @@ class PulseWaves:
         return damaged(self.header.path, whole.filled(pulse=pulse + 1, what=what), byte)
 
     def _beyond(self, pulse: int, byte: int) -> BadFile:
-        return damaged(
-            self.path,
-            Text(
-                f"The samples of pulse {pulse + 1:,} do not lie in the file, which ends at byte "
-                f"{self.data.size:,}.",
-                f"パルス{pulse + 1:,}のサンプルがファイル内にありません"
-                f"（終端は{self.data.size:,}バイト目）。",
-            ),
-            byte,
+        what = Text(
+            "Its samples at byte {byte:,} do not lie in {name}, which ends at byte {end:,}.",
+            "サンプルの位置（{byte:,}バイト目）が {name} の範囲外です（終端は{end:,}バイト目）。",
+        )
+        return self._damaged_pulse(
+            pulse, what.filled(byte=byte, name=self.path.name, end=self.data.size)
         )
 
 
