@@ -203,7 +203,7 @@ _ECHOES = Text(
     "（エコーのない波形: {silent:,}個）。",
 )
 _LENGTHENED = Text(
-    "{echoes} Their lengths are too many for LAS: some waveforms repeat their last sample.",
+    "{echoes} They have more lengths than LAS can tell: some waveforms repeat their last sample.",
     "{echoes}波形の長さの種類がLASの上限を超えるため、一部は最後のサンプルを繰り返しています。",
 )
 
