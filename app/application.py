@@ -235,7 +235,7 @@ def _make_parts(lasting: LastingParts, language: Language) -> WindowParts:
             document, shared, document.templates, document.run_in_background, language=language
         ),
         volume_panel=_make_volume_panel(shared, language),
-        pulse_panel=PulsePanel(document, shared, language),
+        pulse_panel=PulsePanel(document, shared, document.run_in_background, language),
         feature_table=FeatureTable(document, shared, language),
         jobs_panel=JobsPanel(language),
         window=lasting.window,

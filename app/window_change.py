@@ -43,6 +43,7 @@ class _Seen:
     parameters: object
     compared: tuple[ChosenSide | None, ChosenSide | None]
     volume_parameters: object
+    asks_model: bool
     error: UserError | None
     has_focus: bool
 
@@ -64,6 +65,7 @@ class _Seen:
             parameters=None if form is None else form.value(),
             compared=volume.sides,
             volume_parameters=volume.parameters.value(),
+            asks_model=parts.pulse_panel.occlusion_box.switch.isChecked(),
             error=parts.message_bar.error,
             has_focus=focused in (*parts.image_views.views, parts.scene_view.picture),
         )
@@ -87,6 +89,7 @@ class _Seen:
         volume = parts.volume_panel.form
         volume.choose_sides(*self.compared)
         volume.parameters.set_values(vars(self.volume_parameters))
+        parts.pulse_panel.occlusion_box.switch.setChecked(self.asks_model)
         if self.error is not None:
             parts.message_bar.show_error(self.error)
         if self.has_focus:

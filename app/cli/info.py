@@ -133,6 +133,8 @@ def _of_delivered(info: PointFileInfo) -> dict[str, object] | bool:
         readable = {number: one for number, one in readable.items() if number in counted.used}
     lacking = {} if counted is None else counted.lacking
     language = system_language()
+    told = (waveforms.remark,) if waveforms.remark.en else ()
+    remarks = (*told, *remarks_on_lacking(lacking))
     return {
         "pulses": 0 if counted is None else counted.packets,
         "points_with": 0 if counted is None else counted.points,
@@ -142,7 +144,7 @@ def _of_delivered(info: PointFileInfo) -> dict[str, object] | bool:
         "packets": str(waveforms.path),
         "packets_inside": waveforms.path == info.path,
         "reason": waveforms.reason.in_language(language),
-        "remarks": [remark.in_language(language) for remark in remarks_on_lacking(lacking)],
+        "remarks": [remark.in_language(language) for remark in remarks],
     }
 
 

@@ -71,6 +71,13 @@ _POINT_FORMATS = (
         magic=b"ASTM-E57",
     ),
     Format(
+        "pulsewaves",
+        Text.same("PulseWaves"),
+        (".pls",),
+        reads={Content.POINTS: f"{_POINTS}.pulsewaves.pulsewaves:open_pulsewaves"},
+        magic=b"PulseWaves",
+    ),
+    Format(
         "ptx",
         Text.same("PTX"),
         (".ptx",),

@@ -45,9 +45,10 @@ class WaveformFacts:
 
     @property
     def remarks(self) -> tuple[Text, ...]:
-        """What is to be told of waveforms that points should have and have not."""
+        """What is to be told of points and waveforms: how they came, what should be and is not."""
+        told = [file.remark for file in self.files if file.remark.en]
         unread = [_NO_WAVEFORMS.filled(reason=file.reason) for file in self.files if file.reason.en]
-        return (*unread, *remarks_on_lacking(self.lacking))
+        return (*told, *unread, *remarks_on_lacking(self.lacking))
 
 
 _NO_WAVEFORMS = Text("No waveforms: {reason}", "波形なし: {reason}")

@@ -10,8 +10,7 @@ from processing.core.monitor import Monitor, PartMonitor
 from processing.core.owned_files import remove_folder
 from processing.core.parameters import ratio, switch
 from processing.core.text import Text
-from processing.methods.classes.aerial_cells import spacing_m
-from processing.methods.classes.flight_classes import classify_flight
+from processing.methods.classes.flight_classes import classify_flight, flight_cell_m
 from processing.recording.drive import Drive
 from processing.scoring.points.six_classes import SIX
 from processing.scoring.scorers import SIX_CLASS_SCORER
@@ -20,9 +19,6 @@ from processing.tools.tool import Needs, OutputColumn, Together, TogetherResult,
 
 _FINDING = 0.95
 """Of the progress: when all points have a class."""
-
-_LEAST_CELL_M = 0.1
-"""Finer than any flight's points lie apart, and what a cloud gets that is too small to tell."""
 
 _BY_WAVEFORMS = Text("classes by waveforms and surroundings", "波形と周囲の点から分類しました")
 _BY_POINTS = Text(
@@ -91,7 +87,7 @@ def mark_six_classes(
             [found[number] for number in flown],
             scratch,
             PartMonitor(monitor, 0.0, _FINDING),
-            cell_m=max(_LEAST_CELL_M, spacing_m(drives)),
+            cell_m=flight_cell_m(drives),
             uses_waveforms=parameters.uses_waveforms,
         )
         columns = tuple(

@@ -1231,6 +1231,13 @@ kept</source>
     </message>
 </context>
 <context>
+    <name>OcclusionBox</name>
+    <message>
+        <source>What the model looked at</source>
+        <translation>モデルが見たところ</translation>
+    </message>
+</context>
+<context>
     <name>OffsetForm</name>
     <message>
         <source>From points</source>

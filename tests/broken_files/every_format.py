@@ -21,6 +21,7 @@ from processing.operations.export import ExportRequest, export
 from resources import path_of
 from tests.app.volume_command import CORNER, SIDE_M, write_design
 from tests.delivered_files import make_las, ply_bytes, sbet_bytes, trajectory_rows, trajectory_text
+from tests.pulsewaves_flight import write_pulse_flight
 from tests.structured_scans import ptx_text, sphere_scan, write_e57
 
 COUNT = 60
@@ -172,6 +173,7 @@ SMALL_FILES: dict[tuple[Content, str], Writer] = {
     (Content.POINTS, "ply"): lambda path: path.write_bytes(ply_bytes()),
     (Content.POINTS, "e57"): lambda path: write_e57(path, sphere_scan(12, 10)),
     (Content.POINTS, "ptx"): lambda path: path.write_text(ptx_text(sphere_scan(12, 10))),
+    (Content.POINTS, "pulsewaves"): lambda path: write_pulse_flight(path, 20),
     (Content.POINTS, "pcd"): lambda path: path.write_text(_PCD),
     (Content.POINTS, "text"): _text,
     (Content.POINTS, "pulses"): _pulses,

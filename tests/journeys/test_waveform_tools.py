@@ -78,6 +78,27 @@ def test_classes_of_a_flight_are_shown_after_a_run(surveyor: Surveyor, tmp_path:
     assert set(np.unique(_codes(surveyor))) <= {2, 5, 6, 11, 14, 15}
 
 
+def test_after_a_run_one_sees_what_the_model_occlusion(surveyor: Surveyor, tmp_path: Path) -> None:
+    _open_flight(surveyor, tmp_path)
+    surveyor.parts.window.actions_by_id["panel-waveform"].trigger()
+    panel = surveyor.parts.pulse_panel
+    surveyor.bot.waitUntil(panel.isVisible)
+    switch, point = panel.occlusion_box.switch, 10
+    surveyor.document.shared.cursor.move_to(surveyor.position_of(point))
+    assert panel.plot.pulse is not None
+    assert not switch.isEnabled()
+    _choose(surveyor, "waveform-classify")
+    _run(surveyor)
+    surveyor.bot.waitUntil(lambda: len(surveyor.document.runs()) == 1, timeout=WAIT_MS)
+    surveyor.document.shared.cursor.move_to(surveyor.position_of(point + 1))
+    surveyor.bot.waitUntil(switch.isEnabled)
+    switch.click()
+    surveyor.bot.waitUntil(lambda: panel.plot.occlusion is not None, timeout=WAIT_MS)
+    found = panel.plot.occlusion
+    assert found.code == _codes(surveyor)[point + 1]
+    assert f"{found.share:.0%}" in panel.occlusion_box.lines()[0]
+
+
 def test_echoes_go_into_the_file_that_is_asked_for(
     surveyor: Surveyor, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

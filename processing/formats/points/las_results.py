@@ -40,7 +40,19 @@ from processing.formats.points.las.las_records import (
     set_classes,
     set_colors,
 )
-from processing.formats.points.point_files import is_las, read_chunks, read_info
+from processing.formats.points.las.waveform_packets import (
+    EXTERNAL_BIT,
+    descriptor_record,
+    set_wave_fields,
+    wave_fields_of,
+)
+from processing.formats.points.point_files import (
+    PointChunk,
+    PointFileInfo,
+    is_las,
+    read_chunks,
+    read_info,
+)
 from processing.formats.points.reported_writes import ReportedWrites, report_write_failures
 from processing.formats.registry import FORMATS
 
@@ -55,6 +67,7 @@ MOVED = "moved_m"
 _CLASS, _COLOR = "classification", "color"
 _OF_RECORDS = (_CLASS, _COLOR, MOVED)
 _FIRST_COLORED_MINOR = 2
+_WITH_WAVEFORMS = 9
 
 
 @dataclass(frozen=True)
@@ -177,11 +190,11 @@ def _plan_of(
     records: Iterator[NDArray[np.uint8]]
     if not is_las(source):
         info = read_info(source, columns=columns)
-        frame = new_frame(info)
+        frame = _frame_with_waveforms(info)
         size, count = RECORD_SIZES[frame.point_format], info.count
         own = frame.point_format
         chunks = read_chunks(source, _CHUNK_POINTS, columns=columns)
-        records = (records_of(chunk, own) for chunk in chunks)
+        records = (_records_with_waveforms(chunk, own, info) for chunk in chunks)
         promoted_from = -1
     else:
         header = read_header(source)
@@ -206,6 +219,36 @@ def _plan_of(
         frame = frame.with_extra_bytes(b"".join(_write_descriptions(frame, old, new)))
     size = RECORD_SIZES[frame.point_format] + sum(dimension.size for dimension in new)
     return _Plan(frame, count, size, records, promoted_from, room_in, dimensions, is_las(source))
+
+
+def _frame_with_waveforms(info: PointFileInfo) -> LasFrame:
+    """The frame for points of another format, which name packets where packets were made."""
+    frame = new_frame(info)
+    if not _has_packets(info) or info.waveforms is None:
+        return frame
+    head = bytearray(frame.head)
+    head[6] |= EXTERNAL_BIT
+    vlrs = (descriptor_record(*one) for one in info.waveforms.descriptors.items())
+    return dataclasses.replace(
+        frame, head=bytes(head), point_format=_WITH_WAVEFORMS, vlrs=(*frame.vlrs, *vlrs)
+    )
+
+
+def _has_packets(info: PointFileInfo) -> bool:
+    """Whether the file's waveforms go beside LAS; points with colours have no such format here."""
+    waveforms = info.waveforms
+    is_kept = waveforms is not None and waveforms.is_readable and waveforms.has_head
+    return is_kept and not info.has_color
+
+
+def _records_with_waveforms(
+    chunk: PointChunk, point_format: int, info: PointFileInfo
+) -> NDArray[np.uint8]:
+    records = records_of(chunk, point_format)
+    if point_format != _WITH_WAVEFORMS or info.waveforms is None:
+        return records
+    fields = wave_fields_of(chunk.columns, info.waveforms.descriptors)
+    return set_wave_fields(records, fields, point_format)
 
 
 def _needs_promotion(part: Callable[[int, int], ResultColumns], count: int) -> bool:

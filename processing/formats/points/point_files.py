@@ -41,7 +41,7 @@ def read_info(path: Path, *, columns: tuple[str, ...] = ()) -> PointFileInfo:
     Parameters
     ----------
     path : Path
-        LAS, LAZ, COPC (only the header is read); PLY, PCD, E57, PTX, or text of points (read whole,
+        LAS, LAZ, COPC (only the header is read); PLY, PCD, E57, PTX, PulseWaves, text (read whole,
         as their headers don't say where the points lie).
     columns : tuple of str
         What the columns of text are, whatever it says itself; ``-`` for one to be passed over.

@@ -19,20 +19,28 @@ from processing.core.monitor import Monitor
 from processing.core.safe_write import write_safely
 from processing.formats.points.delivered.point_chunk import PointChunk, PointFileInfo, Vector3
 from processing.formats.points.las.las_header import RECORD_SIZES, read_header
-from processing.formats.points.las.las_output import LasFrame, new_frame, vlr_bytes
+from processing.formats.points.las.las_output import LasFrame, new_frame
 from processing.formats.points.las.las_records import positions_in, records_of
 from processing.formats.points.las.waveform_packets import (
-    WAVEFORM_FIELDS,
-    WAVEFORM_FIELDS_AT,
+    EXTERNAL_BIT,
+    PACKETS_HEAD_BYTES,
+    descriptor_record,
+    has_packets_head,
+    packets_head,
     packets_of,
+    set_wave_fields,
+    wave_fields_of,
 )
 from processing.formats.points.point_files import is_las
-from processing.recording.waveform_packets.descriptors import WaveformDescriptor
+from processing.recording.waveform_packets.descriptors import (
+    DESCRIPTOR,
+    DIRECTION,
+    LOCATION,
+    PACKET,
+    WaveformDescriptor,
+)
 
-_FORMAT = 9
-_EXTERNAL_BIT = 4
-_FIRST_DESCRIPTOR, _PACKETS_RECORD = 100, 65535
-_SPEC = b"LASF_Spec"
+_FORMAT, _NUMBER = 9, 1
 _COPIED_BYTES = 8 << 20
 PACKETS_ENDING = ".wdp"
 """Of a file of packets beside its points."""
@@ -147,7 +155,7 @@ class WaveformLasFile:
         self._points, self._packets = points, packets
         self._descriptor = description.descriptor
         self._frame, self._written = _frame_of(description), _Written()
-        self._packets.write(_packets_head(0))
+        self._packets.write(packets_head(0))
         self._points.write(self._frame.start(RECORD_SIZES[_FORMAT], None))
 
     def write(self, some: WaveformRecords) -> None:
@@ -171,9 +179,9 @@ class WaveformLasFile:
         ------
         OSError
         """
-        length = self._packets.tell() - len(_packets_head(0))
+        length = self._packets.tell() - PACKETS_HEAD_BYTES
         self._packets.seek(0)
-        self._packets.write(_packets_head(length))
+        self._packets.write(packets_head(length))
         self._written.note(self._points, self._frame)
 
 
@@ -198,7 +206,8 @@ def packets_beside(source: Path, kept: Path | None = None) -> Path | None:
     MissingInput, NoSpace, BadFile
     """
     if not is_las(source):
-        return None
+        # What a file of another format has instead of packets was made into them by the import.
+        return kept if kept is not None and kept.is_file() and has_packets_head(kept) else None
     packets = packets_of(read_header(source))
     if packets is None or packets.delivered.path in (Path(), source):
         return None
@@ -263,38 +272,27 @@ def _frame_of(description: WaveformLas) -> LasFrame:
         )
     )
     head = bytearray(frame.head)
-    head[6] |= _EXTERNAL_BIT
+    head[6] |= EXTERNAL_BIT
     names = (description.system.encode("ascii"), description.software.encode("ascii"))
     struct.pack_into("<32s32s", head, 26, *names)
     if description.day is not None:
         day = description.day
         struct.pack_into("<HH", head, 90, day.timetuple().tm_yday, day.year)
-    one = description.descriptor
-    described = struct.pack(
-        "<BBIIdd", one.bits, 0, one.samples, one.spacing_ps, one.gain, one.offset
-    )
-    vlr = vlr_bytes(_SPEC, _FIRST_DESCRIPTOR, described)
+    vlr = descriptor_record(_NUMBER, dataclasses.replace(description.descriptor, compression=0))
     return dataclasses.replace(
         frame, head=bytes(head), point_format=_FORMAT, vlrs=(*frame.vlrs, vlr)
     )
-
-
-def _packets_head(length: int) -> bytes:
-    return struct.pack("<H16sHQ32s", 0, _SPEC, _PACKETS_RECORD, length, b"")
 
 
 def _records_with_packets(
     some: WaveformRecords, first: int, descriptor: WaveformDescriptor
 ) -> NDArray[np.uint8]:
     records = records_of(PointChunk(dict(some.columns)), _FORMAT)
-    fields = np.zeros(len(records), WAVEFORM_FIELDS)
     has_packet = some.packet >= 0
-    fields["descriptor"] = has_packet
-    fields["byte"] = np.where(has_packet, first + some.packet * descriptor.packet_bytes, 0)
-    fields["size"] = np.where(has_packet, descriptor.packet_bytes, 0)
-    fields["location"] = np.where(has_packet, some.location_ps, 0)
-    fields["direction"] = np.where(has_packet[:, None], some.direction, 0)
-    at = WAVEFORM_FIELDS_AT[_FORMAT]
-    own = fields.view(np.uint8).reshape(len(records), -1)
-    records[:, at : at + own.shape[1]] = own
-    return records
+    waves = {
+        PACKET: np.where(has_packet, first + some.packet * descriptor.packet_bytes, -1),
+        DESCRIPTOR: np.full(some.packet.size, _NUMBER, np.uint8),
+        LOCATION: some.location_ps,
+        DIRECTION: some.direction,
+    }
+    return set_wave_fields(records, wave_fields_of(waves, {_NUMBER: descriptor}), _FORMAT)

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.core.arrays import Floats
+from processing.core.arrays import Floats, Integers
 from processing.core.monitor import Monitor
 from processing.methods.classes.features import ClassCells, class_cells
 from processing.recording.drive import Drive
@@ -116,6 +116,15 @@ class AerialPoints:
     is_ground: NDArray[np.bool_]
     is_last: NDArray[np.bool_]
     is_only: NDArray[np.bool_]
+
+
+def last_and_only(drive: Drive, points: Integers) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Which of a drive's points are their pulse's last, and its only return, (n,) each."""
+    columns = drive.columns
+    if not (columns.has("return_number") and columns.has("number_of_returns")):
+        return np.ones(points.size, np.bool_), np.ones(points.size, np.bool_)
+    returns = np.asarray(columns["number_of_returns"][points])
+    return np.asarray(columns["return_number"][points]) >= returns, returns <= 1
 
 
 def aerial_cells(points: AerialPoints, cell_m: float, monitor: Monitor) -> ClassCells:

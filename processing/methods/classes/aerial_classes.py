@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from processing.core.arrays import Floats, Integers
 from processing.core.errors import report_as_user_error
 from processing.core.monitor import Monitor, PartMonitor
-from processing.methods.classes.aerial_cells import AerialPoints, aerial_cells
+from processing.methods.classes.aerial_cells import AerialPoints, aerial_cells, last_and_only
 from processing.methods.classes.class_models import ClassModels
 from processing.methods.classes.drive_classes import classes_of_cells
 from processing.methods.classes.features import REACH
@@ -76,15 +76,11 @@ class Strips:
     def points(self, points: Integers, xyz: Floats) -> AerialPoints:
         """What the features of points need; ``xyz`` (n, 3) m, where they are."""
         heights, is_ground = np.zeros(points.size), np.zeros(points.size, np.bool_)
-        is_last, is_only = np.ones(points.size, np.bool_), np.ones(points.size, np.bool_)
+        is_last, is_only = np.empty(points.size, np.bool_), np.empty(points.size, np.bool_)
         for number, own, local in self.by_drive(points):
-            columns = self._drives[number].columns
             heights[own] = np.nan_to_num(self._ground_column(number, HEIGHT)[local], nan=0.0)
             is_ground[own] = self._ground_column(number, CLASS)[local] == GROUND
-            if columns.has("return_number") and columns.has("number_of_returns"):
-                returns = np.asarray(columns["number_of_returns"][local])
-                is_last[own] = np.asarray(columns["return_number"][local]) >= returns
-                is_only[own] = returns <= 1
+            is_last[own], is_only[own] = last_and_only(self._drives[number], local)
         return AerialPoints(xyz - xyz.min(axis=0), heights, is_ground, is_last, is_only)
 
     def give(

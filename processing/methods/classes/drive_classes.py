@@ -340,10 +340,23 @@ def shares_of_cells(
     a project's own trees all cells are asked, since they may have been taught otherwise.
     """
     rows = rows_seen_again(cells, models, monitor)
+    return shares_of_rows(rows, cells.rows.shape[1], models, monitor)
+
+
+def shares_of_rows(
+    rows: NDArray[np.float32], features: int, models: ClassModels, monitor: Monitor
+) -> NDArray[np.float32]:
+    """(c, k) as :func:`shares_of_cells`, of rows as :func:`rows_seen_again` gives them.
+
+    Parameters
+    ----------
+    features : int
+        Columns before what the first trees said.
+    """
     if models.is_own or not np.array_equal(models.alone.codes, models.again.codes):
         return models.say_again(rows, monitor)
-    first, classes = cells.rows.shape[1], models.alone.codes.size
-    shares, near = rows[:, first : first + classes], rows[:, first + classes :]
+    classes = models.alone.codes.size
+    shares, near = rows[:, features : features + classes], rows[:, features + classes :]
     best = shares.argmax(axis=1)[:, None]
     is_sure = np.take_along_axis(shares, best, axis=1)[:, 0] > _SURE
     is_sure &= np.take_along_axis(near, best, axis=1)[:, 0] > _SURE

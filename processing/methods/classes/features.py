@@ -62,7 +62,7 @@ person's or a plate's surroundings."""
 FEATURES = SHAPES * len(_SHAPE_LEVELS) + COLUMN * len(_COLUMN_LEVELS) + 2 * len(_PLAN_LEVELS) + 3
 """Numbers in a row: shapes, columns, heights in plan; height, intensity and its spread."""
 
-_AGREE_LEVELS = (1, 3)
+AGREE_LEVELS = (1, 3)
 """Sizes of cells within which neighbours are asked what they are: 0.6 and 2.4 m around."""
 
 _CELLS_AT_ONCE = 4_096
@@ -119,7 +119,7 @@ class ClassCells:
             what averaged trees say of the cell and within both.
         """
         own = shares if averaged is None else np.hstack([shares, averaged])
-        near = [self.means_around(own, number, monitor) for number in _AGREE_LEVELS]
+        near = [self.means_around(own, number, monitor) for number in AGREE_LEVELS]
         count = shares.shape[1]
         columns = [self.rows, shares, *(one[:, :count] for one in near)]
         if averaged is not None:

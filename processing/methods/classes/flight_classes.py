@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from processing.core.arrays import Floats, Integers
 from processing.core.errors import report_as_user_error
 from processing.core.monitor import Monitor, PartMonitor
+from processing.methods.classes.aerial_cells import last_and_only, spacing_m
 from processing.methods.classes.aerial_classes import Strips
 from processing.methods.classes.class_models import flight_models
 from processing.methods.classes.drive_classes import FoundClasses, shares_of_cells
@@ -36,12 +37,13 @@ from processing.methods.noise.tiles_of_space import TiledCloud
 from processing.methods.waveforms.return_measures import (
     RETURN_MEASURES,
     PulseReference,
+    neutral_measures,
     pulse_reference,
     raw_measures,
     return_measures,
 )
 from processing.recording.drive import Drive
-from processing.recording.waveforms import waveforms_of
+from processing.recording.waveforms import Waveforms, waveforms_of
 
 _TILE_M = 4.0
 _POINTS_PER_PART = 400_000
@@ -50,6 +52,9 @@ _POINTS_PER_PART = 400_000
 _POINTS_AT_ONCE = 1 << 18
 _GROUND = 0.25
 """Of the progress: when the ground is known."""
+
+_LEAST_CELL_M = 0.1
+"""Finer than any flight's points lie apart, and what a cloud gets that is too small to tell."""
 
 _SAMPLE = 40_000
 """Returns, evenly among all of a drive, that its pulse and the light of its ground are taken from.
@@ -79,16 +84,83 @@ class FlightPart:
 
 
 @dataclass(frozen=True)
-class _Light:
+class FlightLight:
     """Against what a drive's returns are told.
 
-    ``intensity``: median of its ground; ``pulse``: its own; ``tones``: brightness of some of its
-    ground's returns as :class:`FlightReturns` tells it, log2 over the median.
+    Attributes
+    ----------
+    intensity : float
+        Median of its ground.
+    pulse : PulseReference or None
+        Its own; None without waveforms.
+    tones : (k,) float64
+        Brightness of some of its ground's returns, log2 over the median.
     """
 
     intensity: float
     pulse: PulseReference | None
     tones: Floats
+
+    @classmethod
+    def of(
+        cls, drive: Drive, points: Integers, bare: NDArray[np.bool_], waveforms: Waveforms | None
+    ) -> FlightLight:
+        """The light of a drive.
+
+        Parameters
+        ----------
+        points : (k,) int64
+            Some of the drive's, as :func:`sampled_points` gives them.
+        bare : (k,) bool
+            Which of them are on the ground and their pulse's only one; all are taken where none is.
+        """
+        _, is_only = last_and_only(drive, points)
+        known = bare & is_only
+        known = known if known.any() else np.ones_like(known)
+        intensity = np.asarray(drive.columns["intensity"][points], np.float64)[known]
+        light = float(np.median(intensity))
+        tones = _doublings(intensity, light)
+        if waveforms is None:
+            return cls(light, None, tones)
+        raw = raw_measures(waveforms, points)
+        pulse = pulse_reference(raw, is_only, bare)
+        if pulse is not None:
+            tones = return_measures(raw[known], pulse)[:, 0].astype(np.float64)
+        return cls(light, pulse, tones)
+
+    def told(
+        self, drive: Drive, points: Integers, waveforms: Waveforms | None
+    ) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+        """What the returns of points say, (n, RETURN_COLUMNS), and their waveforms.
+
+        The latter, (n, RETURN_MEASURES), are those of bare ground where there is none.
+        """
+        columns = drive.columns
+        returns = np.ones((points.size, RETURN_COLUMNS), np.float32)
+        returns[:, 0] = _doublings(np.asarray(columns["intensity"][points], float), self.intensity)
+        if columns.has("return_number") and columns.has("number_of_returns"):
+            for at, name in ((1, "return_number"), (2, "number_of_returns")):
+                returns[:, at] = np.minimum(columns[name][points], _MOST_RETURNS)
+        if waveforms is None or self.pulse is None:
+            return returns, neutral_measures(points.size)
+        return returns, return_measures(raw_measures(waveforms, points), self.pulse)
+
+
+def flight_cell_m(drives: Sequence[Drive]) -> float:
+    """Width of the cells that points of strips which were flown together are taken together in."""
+    return max(_LEAST_CELL_M, spacing_m(drives))
+
+
+def sampled_points(drive: Drive) -> Integers:
+    """(k,) int64: returns evenly among all, that its pulse and its light are taken from."""
+    return np.arange(0, drive.count, max(1, drive.count // _SAMPLE))
+
+
+def ranks_of(lights: Sequence[FlightLight]) -> Floats:
+    """(RANKS,) brightness of a flight's ground, rising, in even steps of its order."""
+    tones = np.concatenate([one.tones for one in lights])
+    ranks: Floats = np.quantile(tones, np.linspace(0.0, 1.0, RANKS))
+    return ranks
 
 
 class FlightReturns:
@@ -118,8 +190,7 @@ class FlightReturns:
         self._waveforms = [waveforms_of(one) if uses_waveforms else None for one in drives]
         self._lights = [self._light_of(number) for number in range(len(drives))]
         self.has_waveforms = any(one.pulse is not None for one in self._lights)
-        tones = np.concatenate([one.tones for one in self._lights])
-        self._ranks = np.quantile(tones, np.linspace(0.0, 1.0, RANKS))
+        self._ranks = ranks_of(self._lights)
 
     def parts(self, cell_m: float, monitor: Monitor) -> Iterator[FlightPart]:
         """Cells, a part of space at a time; noise is left out."""
@@ -145,42 +216,19 @@ class FlightReturns:
                 yield FlightPart(numbers, own, cells)
             done += part.own.size
 
-    def _light_of(self, number: int) -> _Light:
-        drive, waveforms = self._drives[number], self._waveforms[number]
-        local = np.arange(0, drive.count, max(1, drive.count // _SAMPLE))
-        xyz = drive.xyz(local)
-        known = self.strips.points(local + int(self.strips.starts[number]), xyz)
-        bare = known.is_ground & known.is_only
-        bare = bare if bare.any() else np.ones_like(bare)
-        intensity = np.asarray(drive.columns["intensity"][local], np.float64)[bare]
-        light = float(np.median(intensity))
-        tones = _doublings(intensity, light)
-        if waveforms is None:
-            return _Light(light, None, tones)
-        raw = raw_measures(waveforms, local)
-        pulse = pulse_reference(raw, known.is_only, known.is_ground)
-        if pulse is not None:
-            tones = return_measures(raw[bare], pulse)[:, 0].astype(np.float64)
-        return _Light(light, pulse, tones)
+    def _light_of(self, number: int) -> FlightLight:
+        drive = self._drives[number]
+        local = sampled_points(drive)
+        known = self.strips.points(local + int(self.strips.starts[number]), drive.xyz(local))
+        return FlightLight.of(drive, local, known.is_ground, self._waveforms[number])
 
     def _told(self, numbers: Integers) -> tuple[NDArray[np.float32], NDArray[np.float32] | None]:
         """What the returns of points say, and their waveforms."""
-        returns = np.zeros((numbers.size, RETURN_COLUMNS), np.float32)
-        measures = np.full((numbers.size, RETURN_MEASURES), np.nan, np.float32)
-        measures[:] = return_measures(np.full((1, 5), np.nan), PulseReference(1, 1, 1, 1, 1))
+        returns = np.empty((numbers.size, RETURN_COLUMNS), np.float32)
+        measures = np.empty((numbers.size, RETURN_MEASURES), np.float32)
         for number, own, local in self.strips.by_drive(numbers):
-            drive, light = self._drives[number], self._lights[number]
-            columns = drive.columns
-            bright = np.asarray(columns["intensity"][local], np.float64)
-            returns[own, 0] = _doublings(bright, light.intensity)
-            returns[own, 1:] = 1.0
-            if columns.has("return_number") and columns.has("number_of_returns"):
-                for at, name in ((1, "return_number"), (2, "number_of_returns")):
-                    returns[own, at] = np.minimum(columns[name][local], _MOST_RETURNS)
-            waveforms = self._waveforms[number]
-            if waveforms is not None and light.pulse is not None:
-                raw = raw_measures(waveforms, local)
-                measures[own] = return_measures(raw, light.pulse)
+            told = self._lights[number].told(self._drives[number], local, self._waveforms[number])
+            returns[own], measures[own] = told
         return returns, measures if self.has_waveforms else None
 
 
@@ -206,7 +254,7 @@ def classify_flight(
     found : sequence of FoundClasses
         For each drive, zero; gets classes and how sure they are.
     cell_m : float
-        How far apart the points lie, as :func:`~.aerial_cells.spacing_m` tells.
+        How far apart the points lie, as :func:`flight_cell_m` tells.
 
     Returns
     -------

@@ -61,20 +61,32 @@ def raw_measures(waveforms: Waveforms, points: Integers) -> Floats:
         some = with_one[first : first + _AT_ONCE]
         pulses = waveforms.pulses(numbers[some])
         samples = waveforms.samples_of(numbers[some])
-        shapes = echo_shapes(
-            samples, pulses.lengths, pulses.interval_ns, waveforms.location_ns(points[some])
-        )
-        whole = samples.sum(axis=1, dtype=np.float64) - shapes.baseline * pulses.lengths
-        found[some] = np.column_stack(
-            [
-                shapes.amplitude,
-                shapes.width_ns,
-                shapes.energy,
-                shapes.rise_ns,
-                whole * pulses.interval_ns,
-            ]
-        )
+        places = waveforms.location_ns(points[some])
+        found[some] = measures_of_samples(samples, pulses.lengths, pulses.interval_ns, places)
     return found
+
+
+def measures_of_samples(
+    samples: NDArray[np.float32],
+    lengths: NDArray[np.int32],
+    interval_ns: Floats,
+    place_ns: Floats,
+) -> Floats:
+    """(k, 5) as :func:`raw_measures`, of waveforms of which a row is that of a return.
+
+    Parameters
+    ----------
+    samples : (k, m) float32
+        Counts; 0 behind the length.
+    lengths : (k,) int32
+    interval_ns, place_ns : (k,) float64
+        Between samples; of the return, after the first sample.
+    """
+    shapes = echo_shapes(samples, lengths, interval_ns, place_ns)
+    whole = samples.sum(axis=1, dtype=np.float64) - shapes.baseline * lengths
+    return np.column_stack(
+        [shapes.amplitude, shapes.width_ns, shapes.energy, shapes.rise_ns, whole * interval_ns]
+    )
 
 
 def pulse_reference(
@@ -120,3 +132,8 @@ def return_measures(raw: Floats, reference: PulseReference) -> NDArray[np.float3
     measures = np.column_stack(columns).astype(np.float32)
     measures = np.where(np.isfinite(measures), measures, _NEUTRAL)
     return np.asarray(np.clip(measures, -_MOST, _MOST), np.float32)
+
+
+def neutral_measures(count: int) -> NDArray[np.float32]:
+    """(count, :data:`RETURN_MEASURES`) what returns without a waveform are taken for."""
+    return np.tile(_NEUTRAL, (count, 1))

@@ -77,6 +77,8 @@ def keep_waveforms(
             descriptors={one: waveforms[number].descriptors[one] for one in sorted(used[number])},
             towards_sensor=signs[number].towards_sensor,
             sign_by=signs[number].told_by,
+            echoes=waveforms[number].echoes,
+            remark=waveforms[number].remark,
         )
         for number in sorted(used)
     ]

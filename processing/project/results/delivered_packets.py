@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from processing.core.errors import InUse
+from processing.core.errors import UNCHANGED, BadFile, InUse
 from processing.core.text import Text
+from processing.formats.points.point_files import read_info
 from processing.formats.points.waveform_output import PACKETS_ENDING, packets_beside
 from processing.recording.drive import Drive
 from processing.recording.waveform_packets.kept_packets import packets_path, read_packet_files
@@ -21,19 +22,26 @@ class DeliveredPackets:
     ----------
     drives : sequence of Drive
         Their own copies of the packets serve where the delivered ones are gone.
+
+    Raises
+    ------
+    MissingInput, NoSpace, BadFile
+        A file whose points are echoes can't be read, or has others than when it was imported.
     """
 
     def __init__(self, drives: Sequence[Drive]) -> None:
         self._kept: dict[Path, Path] = {}
         for drive in drives:
             by_name = {
-                Path(file.delivered).with_suffix(""): packets_path(drive.folder, file.number)
+                Path(file.delivered).with_suffix(""): file
                 for file in read_packet_files(drive.folder)
             }
             for one in drive.info.sources:
                 found = by_name.get(Path(one.path).with_suffix(""))
                 if found is not None:
-                    self._kept[drive.source_path(one)] = found
+                    source = drive.source_path(one)
+                    self._kept[source] = packets_path(drive.folder, found.number)
+                    _check_echoes(source, found.echoes)
 
     def to_copy(self, source: Path, output: Path) -> tuple[Path, Path] | None:
         """What is to be copied beside the points of a delivered file, and where to.
@@ -57,6 +65,25 @@ class DeliveredPackets:
         if packets is None or (target.is_file() and target.samefile(packets)):
             return None
         return packets, target
+
+
+def _check_echoes(source: Path, imported: int) -> None:
+    """Refuse points that are found anew in waveforms and are no longer those of the drive."""
+    if not imported:
+        return
+    now = read_info(source).waveforms
+    if now is None or now.echoes == imported:
+        return
+    raise BadFile(
+        Text(
+            "The program finds {now:,} echoes in the waveforms now; {imported:,} were imported.",
+            "現在のプログラムが検出するエコーは{now:,}個で、インポート時の{imported:,}個と異なります。",
+        ).filled(now=now.echoes, imported=imported),
+        Text.same(str(source)),
+        Text(
+            "Import the file again. {unchanged}", "もう一度インポートしてください。{unchanged}"
+        ).filled(unchanged=UNCHANGED),
+    )
 
 
 def refuse_others_packets(target: Path, output: Path) -> None:

@@ -123,6 +123,10 @@ class PacketFile:
         samples lie lower, where no pulse has two returns), or empty where nothing did.
     reason : Text
         Why its points have no waveforms, to follow "no waveforms: "; empty where they have.
+    echoes : int
+        Points that were made of the waveforms; 0 where points were delivered.
+    remark : Text
+        What whoever works with its points is to know of how they came; mostly empty.
     """
 
     number: int
@@ -131,6 +135,8 @@ class PacketFile:
     towards_sensor: bool = True
     sign_by: str = ""
     reason: Text = Text("", "")
+    echoes: int = 0
+    remark: Text = Text("", "")
 
 
 def packet_key(file: int, byte: int) -> int:

@@ -107,5 +107,9 @@ def _file_from(values: Mapping[str, Any]) -> PacketFile:
     descriptors = {
         int(number): WaveformDescriptor(**one) for number, one in values["descriptors"].items()
     }
-    reason = Text(**values["reason"])
-    return PacketFile(**{**values, "descriptors": descriptors, "reason": reason})
+    # Projects of before have no remarks.
+    texts = {name: Text(**values.get(name, _NOTHING)) for name in ("reason", "remark")}
+    return PacketFile(**{**values, "descriptors": descriptors, **texts})
+
+
+_NOTHING = {"en": "", "ja": ""}

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 from app.cli.parser import read_arguments
+from tests.pulsewaves_flight import write_pulse_flight
 from tests.waveform_flight import SAMPLES, write_flight
 
 
@@ -42,3 +43,22 @@ def test_an_import_without_the_packets_says_which_file_is_missing(
     flight.path.with_suffix(".wdp").unlink()
     assert "a.wdp" in _printed(capsys, "info", flight.path)
     assert "a.wdp" in _printed(capsys, "import", tmp_path / "a.zuka", flight.path)
+
+
+def test_pulsewaves_are_imported_and_written_again_as_las(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    flight = write_pulse_flight(tmp_path / "a.pls")
+    told = json.loads(_printed(capsys, "info", flight.path, "--json"))
+    assert (told["format"], told["points"], told["crs"]) == ("PulseWaves", 160, "EPSG:6677")
+    assert told["waveforms"]["packets"] == str(tmp_path / "a.wvs")
+    assert "160" in told["waveforms"]["remarks"][0]
+    project = tmp_path / "a.zuka"
+    assert "160" in _printed(capsys, "import", project, flight.path)
+    (drive,) = json.loads(_printed(capsys, "info", project, "--json"))["drives"]
+    assert (drive["waveforms"]["pulses"], drive["rows_by"]) == (160, "top-view")
+    out = tmp_path / "out"
+    written = _printed(capsys, "export", project, "--format", "las", "--out", out).split()
+    assert sorted(Path(one).name for one in written) == ["a.laz", "a.wdp"]
+    told = json.loads(_printed(capsys, "info", out / "a.laz", "--json"))
+    assert (told["points"], told["waveforms"]["pulses"]) == (160, 160)

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QResizeEvent, QShowEvent
-from PySide6.QtWidgets import QBoxLayout, QLabel, QWidget
+from PySide6.QtWidgets import QBoxLayout, QLabel, QVBoxLayout, QWidget
 from typing_extensions import override
 
 from processing.core.errors import UserError
 from processing.core.text import Language, Text
+from processing.methods.classes.pulse_occlusion import PulseOcclusion
 from processing.recording.shown_pulse import ShownPulse, pulse_behind
+from widgets.mouse_tools.tracing import BackgroundRunner
+from widgets.panels.waveform.occlusion_box import AskedPoint, OcclusionBox
 from widgets.panels.waveform.pulse_plot import PulsePlot, PulseWords
 from widgets.parts.scrolled import make_scrollable
 from widgets.shared.cursor import PickedPosition
@@ -51,6 +55,8 @@ class PulsePanel(QWidget):
     ----------
     source : MapSource
     shared : SharedState
+    in_background : BackgroundRunner
+        Asks the model of a class what it looked at.
     language : Language
     """
 
@@ -58,6 +64,7 @@ class PulsePanel(QWidget):
         self,
         source: MapSource,
         shared: SharedState,
+        in_background: BackgroundRunner,
         language: Language,
         parent: QWidget | None = None,
     ) -> None:
@@ -75,15 +82,24 @@ class PulsePanel(QWidget):
         self._facts.setMargin(4)
         self._scroll = make_scrollable(self._facts)
         self._scroll.setMinimumHeight(0)
+        self._scroll.hide()
+        self.occlusion_box = OcclusionBox(source, in_background, language, self)
         self.plot = PulsePlot(self._words(_ALONG), self)
+        beside = QVBoxLayout()
+        beside.setSpacing(0)
+        beside.addWidget(self.occlusion_box)
+        beside.addWidget(self._scroll, 1)
+        beside.addStretch(0)
         self._layout = QBoxLayout(QBoxLayout.Direction.LeftToRight, self)
         self._layout.setContentsMargins(0, 0, 0, 0)
         self._layout.setSpacing(0)
-        self._layout.addWidget(self._message)
+        self._layout.addWidget(self._message, _PLOT_SHARE)
         self._layout.addWidget(self.plot, _PLOT_SHARE)
-        self._layout.addWidget(self._scroll, 1)
+        self._layout.addLayout(beside, 1)
+        self.occlusion_box.found.connect(self._on_occlusion_box_found)
         shared.cursor.moved.connect(self._on_cursor_moved)
         shared.map_changes.drives_changed.connect(self._on_map_drives_changed)
+        shared.map_changes.labels_changed.connect(self._on_map_labels_changed)
         self._show_message(_CLICK)
 
     @override
@@ -109,7 +125,18 @@ class PulsePanel(QWidget):
         self._show_point_if_seen()
 
     def _on_map_drives_changed(self) -> None:
+        self.occlusion_box.forget_work()
         self._show_point_if_seen()
+
+    def _on_map_labels_changed(self, drive: str, points: NDArray[np.int64]) -> None:
+        position = self._cursor.position
+        if position is None or position.measured is None or position.measured.drive != drive:
+            return
+        if not points.size or position.measured.point in points:
+            self._show_point_if_seen()
+
+    def _on_occlusion_box_found(self, found: PulseOcclusion | None) -> None:
+        self.plot.show_occlusion(found, has_room=self.occlusion_box.is_shown)
 
     def _show_point_if_seen(self) -> None:
         self._is_stale = True
@@ -135,6 +162,7 @@ class PulsePanel(QWidget):
             self._show_message(found)
         else:
             self._show_pulse(found)
+            self.occlusion_box.show_point(AskedPoint(drive, position.measured.point))
 
     def _show_message(self, text: Text) -> None:
         self._message.setText(text.in_language(self._language))
@@ -142,6 +170,7 @@ class PulsePanel(QWidget):
         self.plot.show_pulse(None)
         self.plot.hide()
         self._scroll.hide()
+        self.occlusion_box.show_point(None)
 
     def _show_pulse(self, pulse: ShownPulse) -> None:
         self._message.hide()

@@ -11,9 +11,22 @@ from PySide6.QtGui import QColor, QFontMetrics, QPainter, QPaintEvent, QPalette,
 from PySide6.QtWidgets import QSizePolicy, QWidget
 from typing_extensions import override
 
+from processing.methods.classes.pulse_occlusion import PulseOcclusion
 from processing.recording.shown_pulse import ShownPulse
 
 _NICE = (1.0, 2.0, 5.0)
+ALONE, TOGETHER = "#d55e00", "#009e73"
+"""Colours of what hangs on this pulse, and on it together with those around: both can be read on
+light and dark, and told apart by the colour-blind (Okabe & Ito)."""
+
+_BAND, _BAND_SHARE, _APART = 2.6, 0.36, 0.3
+"""Most height of the band below the waveform in lines of text, its most share of what there is for
+both, and the gap between them in lines."""
+
+_BAND_ENDS = 0.1, 0.25, 0.5, 1.0
+"""Probabilities that the band reaches up to, and down to."""
+
+_UNSEEN = 0.01
 _ABOVE = 1.12
 """The highest peak keeps clear of the returns' numbers over the field."""
 
@@ -37,6 +50,12 @@ class _Axes:
     time_ns: float
     low: float
     high: float
+    band: QRectF | None = None
+
+    @property
+    def bottom(self) -> float:
+        """Where the scale of time stands."""
+        return self.field.bottom() if self.band is None else self.band.bottom()
 
     def x(self, time_ns: float) -> float:
         return self.field.left() + self.field.width() * time_ns / self.time_ns
@@ -53,8 +72,15 @@ class PulsePlot(QWidget):
         super().__init__(parent)
         self._words = words
         self._pulse: ShownPulse | None = None
+        self._occlusion: PulseOcclusion | None = None
+        self._has_band = False
         self.setMinimumSize(200, 140)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
+
+    @property
+    def occlusion(self) -> PulseOcclusion | None:
+        """What is drawn in the band below the waveform."""
+        return self._occlusion
 
     @property
     def pulse(self) -> ShownPulse | None:
@@ -64,6 +90,11 @@ class PulsePlot(QWidget):
     def show_pulse(self, pulse: ShownPulse | None) -> None:
         """Show a pulse; None: nothing."""
         self._pulse = pulse
+        self.update()
+
+    def show_occlusion(self, found: PulseOcclusion | None, *, has_room: bool) -> None:
+        """Show in a band what the class hangs on; its room may be kept while nothing is known."""
+        self._occlusion, self._has_band = found, has_room
         self.update()
 
     def use_words(self, words: PulseWords) -> None:
@@ -88,15 +119,22 @@ class PulsePlot(QWidget):
             self._paint_scales(painter, self._pulse, axes)
             self._paint_samples(painter, self._pulse, axes)
             self._paint_returns(painter, self._pulse, axes)
+            if axes.band is not None:
+                self._paint_band(painter, self._occlusion, axes, axes.band)
 
     def _axes(self, pulse: ShownPulse, metrics: QFontMetrics) -> _Axes:
         line = metrics.height()
         side = metrics.horizontalAdvance("00000") + line
         field = QRectF(self.rect()).adjusted(side, 3.4 * line, -side, -2.4 * line)
+        band = None
+        if self._has_band:
+            height = min(_BAND * line, _BAND_SHARE * field.height())
+            band = QRectF(field.left(), field.bottom() - height, field.width(), height)
+            field.setBottom(band.top() - _APART * line)
         low = min(0.0, float(pulse.counts.min()))
         high = max(low + 1.0, float(pulse.counts.max()))
         span = (pulse.counts.size - 1) * pulse.descriptor.interval_ns
-        return _Axes(field, max(span, 1e-3), low, low + (high - low) * _ABOVE)
+        return _Axes(field, max(span, 1e-3), low, low + (high - low) * _ABOVE, band)
 
     def _paint_scales(self, painter: QPainter, pulse: ShownPulse, axes: _Axes) -> None:
         line, field, words = painter.fontMetrics().height(), axes.field, self._words
@@ -124,11 +162,11 @@ class PulsePlot(QWidget):
         for time in nice_steps(0.0, axes.time_ns, field.width() / per_label):
             x = axes.x(time)
             painter.setPen(faint)
-            painter.drawLine(QPointF(x, field.top()), QPointF(x, field.bottom()))
+            painter.drawLine(QPointF(x, field.top()), QPointF(x, axes.bottom))
             painter.setPen(ink)
-            below = QRectF(x - per_label / 2, field.bottom() + 0.1 * line, per_label, line)
+            below = QRectF(x - per_label / 2, axes.bottom + 0.1 * line, per_label, line)
             painter.drawText(below, int(Qt.AlignmentFlag.AlignHCenter), f"{time:g}")
-        below = QRectF(0, field.bottom() + 1.1 * line, self.width(), 1.2 * line)
+        below = QRectF(0, axes.bottom + 1.1 * line, self.width(), 1.2 * line)
         painter.drawText(below, int(Qt.AlignmentFlag.AlignHCenter), words.time)
         if np.isfinite(pulse.metres_in_ns):
             self._paint_metres(painter, pulse, axes)
@@ -184,6 +222,48 @@ class PulsePlot(QWidget):
             box = QRectF(x - 2 * line, axes.field.top() - line, 4 * line, line)
             painter.drawText(box, int(Qt.AlignmentFlag.AlignHCenter), str(number + 1))
 
+    def _paint_band(
+        self, painter: QPainter, found: PulseOcclusion | None, axes: _Axes, band: QRectF
+    ) -> None:
+        """How much likelier the class is with each window hidden: less so where it is looked at."""
+        line = painter.fontMetrics().height()
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        painter.setPen(QPen(self._colour(QPalette.ColorRole.Midlight), 1))
+        painter.drawRect(band)
+        if found is None:
+            return
+        changes = -np.stack([found.drops, found.drops_together])
+        low, high = -_end_of(-float(changes.min())), 0.0
+        if changes.max() > _UNSEEN:
+            high = _end_of(float(changes.max()))
+
+        def y(change: float) -> float:
+            return band.bottom() - band.height() * (change - low) / (high - low)
+
+        painter.setPen(QPen(self._colour(QPalette.ColorRole.PlaceholderText), 1.2, _DASHES))
+        painter.drawLine(QPointF(band.left(), y(0.0)), QPointF(band.right(), y(0.0)))
+        places = [axes.x(time) for time in found.middles_ns.tolist()]
+        alone, around = (
+            [QPointF(x, y(value)) for x, value in zip(places, one.tolist(), strict=True)]
+            for one in changes
+        )
+        fill = QColor(ALONE)
+        fill.setAlphaF(0.45)
+        painter.setBrush(fill)
+        painter.setPen(Qt.PenStyle.NoPen)
+        ends = [QPointF(places[-1], y(0.0)), QPointF(places[0], y(0.0))]
+        painter.drawPolygon(QPolygonF([*alone, *ends]))
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        for curve, colour in ((alone, ALONE), (around, TOGETHER)):
+            painter.setPen(QPen(QColor(colour), 1.6))
+            painter.drawPolyline(QPolygonF(curve))
+        # Inside, at the end, where a waveform seldom has an echo: beside it stand other numbers.
+        painter.setPen(self._colour(QPalette.ColorRole.Text))
+        for value, top in ((low, band.bottom() - line), (high, band.top())):
+            box = QRectF(band.right() - 6 * line, top, 5.8 * line, line)
+            words = f"{value:+.0%}".replace("-", "−")
+            painter.drawText(box, int(Qt.AlignmentFlag.AlignRight), words if value else "")
+
     def _write_upright(self, painter: QPainter, words: str, left: float) -> None:
         line = painter.fontMetrics().height()
         painter.save()
@@ -198,6 +278,11 @@ class PulsePlot(QWidget):
 
 
 _DASHES, _PLAIN = Qt.PenStyle.DashLine, Qt.PenStyle.SolidLine
+
+
+def _end_of(most: float) -> float:
+    """How far the band reaches."""
+    return next((end for end in _BAND_ENDS if end >= most), 1.0)
 
 
 def nice_steps(low: float, high: float, most: float) -> Sequence[float]:

@@ -52,10 +52,17 @@ class FloatFile:
         ``scan`` (n,): number in the file from 1; ``scanner_position`` (n, 3) float64: where the
         scanner stood, m. A block is of one scan, and scans follow one another. Rows with waveforms
         have :data:`WAVE_COLUMNS`, a packet for each row, also for those that are no point.
+        ``scanner`` (n,): the scanner's number, where scans don't tell it.
     columns_taken : tuple of str
         As :class:`PointFileInfo` says.
     waveforms : DeliveredWaveforms or None
-        Of rows with waveforms, of one descriptor; their size follows from the rows.
+        Of rows with waveforms; without a size they are of one descriptor, a packet for each row.
+    crs : str
+        ``EPSG:n``, or empty.
+    is_adjusted_standard : bool or None
+        As :class:`PointFileInfo` says.
+    beside : tuple of Path
+        Other files that belong to it.
     """
 
     path: Path
@@ -63,6 +70,9 @@ class FloatFile:
     blocks: Callable[[], Iterator[ColumnBlock]]
     columns_taken: tuple[str, ...] = ()
     waveforms: DeliveredWaveforms | None = None
+    crs: str = ""
+    is_adjusted_standard: bool | None = None
+    beside: tuple[Path, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -97,9 +107,10 @@ def info_of(file: FloatFile) -> PointFileInfo:
         offset=offset,
         lowest=summary.lowest,
         highest=summary.highest,
-        crs="",
+        crs=file.crs,
         has_time="time" in summary.names,
         has_color="color" in summary.names,
+        is_adjusted_standard=file.is_adjusted_standard,
         first_time=summary.first_time,
         attributes=tuple(name for name in summary.names if name not in _OF_SCANS),
         scanner_positions=summary.scanner_positions,
@@ -109,8 +120,8 @@ def info_of(file: FloatFile) -> PointFileInfo:
 
 
 def _waveforms(file: FloatFile, rows: int) -> DeliveredWaveforms | None:
-    if file.waveforms is None:
-        return None
+    if file.waveforms is None or file.waveforms.size:
+        return file.waveforms
     (descriptor,) = file.waveforms.descriptors.values()
     return replace(file.waveforms, size=rows * descriptor.packet_bytes)
 
@@ -177,6 +188,8 @@ def _chunk_columns(
 
 
 def _scanners(values: ColumnBlock, summary: _Summary) -> NDArray[np.uint16]:
+    if "scanner" in values:
+        return _clip_values(values["scanner"], 0, _FULL).astype(np.uint16)
     if len(summary.scanner_positions) < 2:
         return np.zeros(values["xyz"].shape[0], dtype=np.uint16)
     return _clip_values(values["scan"], 0, _FULL).astype(np.uint16)
@@ -220,18 +233,20 @@ def _usable(xyz: NDArray[np.generic]) -> NDArray[np.bool_]:
 
 
 def _summary_of(file: FloatFile) -> _Summary:
-    with report_as_user_error(file.path):
-        status = file.path.stat()
-    return _read_summary(_Key(file, status.st_size, status.st_mtime_ns))
+    states = []
+    for path in (file.path, *file.beside):
+        with report_as_user_error(path):
+            status = path.stat()
+        states.append((status.st_size, status.st_mtime_ns))
+    return _read_summary(_Key(file, tuple(states)))
 
 
 @dataclass(frozen=True)
 class _Key:
-    """A file in a certain state; equal for the same path, columns, size and time of change."""
+    """A file in a certain state; equal for the same path, columns, sizes and times of change."""
 
     file: FloatFile
-    size: int
-    modified_ns: int
+    states: tuple[tuple[int, int], ...]
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, _Key) and self._state() == other._state()
@@ -239,8 +254,8 @@ class _Key:
     def __hash__(self) -> int:
         return hash(self._state())
 
-    def _state(self) -> tuple[Path, tuple[str, ...], int, int]:
-        return (self.file.path, self.file.columns_taken, self.size, self.modified_ns)
+    def _state(self) -> tuple[Path, tuple[str, ...], tuple[tuple[int, int], ...]]:
+        return (self.file.path, self.file.columns_taken, self.states)
 
 
 @lru_cache(maxsize=256)

@@ -29,6 +29,10 @@ class DeliveredWaveforms:
     pack : str
         Where packets are not in the file as they are kept: what writes them from it,
         ``module:function`` of the file, an open file and a monitor. Empty where they are.
+    echoes : int
+        Points that were made of the waveforms; 0 where points were delivered.
+    remark : Text
+        What whoever works with the points is to know of how they came from waveforms; may be empty.
     """
 
     path: Path = Path()
@@ -38,6 +42,8 @@ class DeliveredWaveforms:
     descriptors: Mapping[int, WaveformDescriptor] = field(default_factory=dict)
     reason: Text = Text("", "")
     pack: str = ""
+    echoes: int = 0
+    remark: Text = Text("", "")
 
     @property
     def is_readable(self) -> bool:

@@ -20,7 +20,7 @@ class PointFileInfo:
     Attributes
     ----------
     format : str
-        ``LAS``, ``LAZ``, ``COPC``, ``PLY``, ``PCD``, ``E57``, ``PTX`` or ``text``.
+        ``LAS``, ``LAZ``, ``COPC``, ``PLY``, ``PCD``, ``E57``, ``PTX``, ``PulseWaves``, ``text``.
     count : int
         Points.
     scale, offset : tuple of float

@@ -24,14 +24,24 @@ def crs_of(header: LasHeader) -> str:
     str
         ``EPSG:n``; empty when none is named, or none that EPSG lists.
     """
-    wkt = header.vlr(_USER, _WKT)
+    found = (header.vlr(_USER, number) for number in (_WKT, _KEYS, _WORDS))
+    return crs_in_records(*(None if one is None else one.data for one in found))
+
+
+def crs_in_records(wkt: bytes | None, keys: bytes | None, words: bytes | None) -> str:
+    """The same of the records that LAS and PulseWaves have for it; None for one that isn't there.
+
+    Parameters
+    ----------
+    wkt, keys, words : bytes or None
+        WKT; the GeoTIFF directory; its words.
+    """
     if wkt is not None:
-        text = wkt.data.split(b"\0", 1)[0].decode("utf-8", "replace").strip()
+        text = wkt.split(b"\0", 1)[0].decode("utf-8", "replace").strip()
         found = _from_wkt(text) if text else ""
         if found:
             return found
-    keys, words = header.vlr(_USER, _KEYS), header.vlr(_USER, _WORDS)
-    return "" if keys is None else _from_geotiff(keys.data, b"" if words is None else words.data)
+    return "" if keys is None else _from_geotiff(keys, words or b"")
 
 
 @lru_cache(maxsize=64)

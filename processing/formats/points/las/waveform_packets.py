@@ -7,8 +7,10 @@ and waveform data packets (record 65535); LASlib (LAStools) for what writers do 
 from __future__ import annotations
 
 import struct
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +19,7 @@ from processing.core.errors import report_as_user_error
 from processing.core.text import Text
 from processing.formats.points.delivered.delivered_waveforms import DeliveredWaveforms
 from processing.formats.points.las.las_header import LasHeader
+from processing.formats.points.las.las_output import vlr_bytes
 from processing.recording.waveform_packets.descriptors import (
     DESCRIPTOR,
     DIRECTION,
@@ -44,7 +47,14 @@ _DESCRIPTOR = struct.Struct("<BBIIdd")
 _FIRST_DESCRIPTOR, _DESCRIPTORS = 99, range(1, 256)
 _SPEC, _PACKETS_RECORD = "LASF_Spec", 65535
 _EVLR_HEAD = struct.Struct("<H16sHQ32s")
-_INTERNAL_BIT, _EXTERNAL_BIT = 2, 4
+
+PACKETS_HEAD_BYTES = _EVLR_HEAD.size
+"""What stands before packets in a file of their own, and is counted with them."""
+
+EXTERNAL_BIT = 4
+"""Of the global encoding: packets are in a file beside the points."""
+
+_INTERNAL_BIT = 2
 _PLAIN_ENDING, _PACKED_ENDING = ".wdp", ".wdz"
 
 
@@ -96,6 +106,53 @@ def wave_fields(records: NDArray[np.uint8], point_format: int) -> NDArray[np.voi
     at = WAVEFORM_FIELDS_AT[point_format]
     own = np.ascontiguousarray(records[:, at : at + WAVEFORM_FIELDS.itemsize])
     return np.asarray(own.view(WAVEFORM_FIELDS)).reshape(-1)
+
+
+def wave_fields_of(
+    columns: Mapping[str, NDArray[Any]], descriptors: Mapping[int, WaveformDescriptor]
+) -> NDArray[np.void]:
+    """The wave packet fields of points, as a file is to have them.
+
+    Parameters
+    ----------
+    columns : mapping
+        :data:`WAVE_COLUMNS`; a packet is its byte alone.
+    """
+    fields = np.zeros(columns[PACKET].size, WAVEFORM_FIELDS)
+    has_packet = columns[PACKET] >= 0
+    sizes = np.zeros(256, np.int64)
+    for number, one in descriptors.items():
+        sizes[number] = one.packet_bytes
+    named = np.where(has_packet, columns[DESCRIPTOR], 0)
+    fields["descriptor"] = named
+    fields["byte"] = np.where(has_packet, columns[PACKET], 0)
+    fields["size"] = sizes[named]
+    fields["location"] = np.where(has_packet, columns[LOCATION], 0)
+    fields["direction"] = np.where(has_packet[:, None], columns[DIRECTION], 0)
+    return fields
+
+
+def set_wave_fields(
+    records: NDArray[np.uint8], fields: NDArray[np.void], point_format: int
+) -> NDArray[np.uint8]:
+    """The records, changed in place, with these wave packet fields."""
+    at = WAVEFORM_FIELDS_AT[point_format]
+    own = np.ascontiguousarray(fields).view(np.uint8).reshape(len(records), -1)
+    records[:, at : at + own.shape[1]] = own
+    return records
+
+
+def descriptor_record(number: int, one: WaveformDescriptor) -> bytes:
+    """The record of the header that says how packets are coded."""
+    described = _DESCRIPTOR.pack(
+        one.bits, one.compression, one.samples, one.spacing_ps, one.gain, one.offset
+    )
+    return vlr_bytes(_SPEC.encode(), _FIRST_DESCRIPTOR + number, described)
+
+
+def packets_head(length: int) -> bytes:
+    """What stands before so many bytes of packets in a file of their own."""
+    return _EVLR_HEAD.pack(0, _SPEC.encode(), _PACKETS_RECORD, length, b"")
 
 
 def packets_of(header: LasHeader, sample: NDArray[np.uint8] | None = None) -> LasPackets | None:
@@ -206,14 +263,24 @@ def _beside(header: LasHeader, *, is_packed: bool) -> DeliveredWaveforms:
                 f"{path.name} のサンプルは圧縮されています。LAStools（las2las）で展開してください",
             ),
         )
-    with report_as_user_error(path), path.open("rb") as file:
+    with report_as_user_error(path):
         size = path.stat().st_size
+    return DeliveredWaveforms(path=path, size=size, has_head=has_packets_head(path))
+
+
+def has_packets_head(path: Path) -> bool:
+    """Whether a file of packets begins with the head of a record, as the standard wants it.
+
+    Raises
+    ------
+    MissingInput, NoSpace
+    """
+    with report_as_user_error(path), path.open("rb") as file:
         start = file.read(_EVLR_HEAD.size)
-    has_head = False
-    if len(start) == _EVLR_HEAD.size:
-        _, user, record, _, _ = _EVLR_HEAD.unpack(start)
-        has_head = user.rstrip(b"\0 ") == _SPEC.encode() and record == _PACKETS_RECORD
-    return DeliveredWaveforms(path=path, size=size, has_head=has_head)
+    if len(start) < _EVLR_HEAD.size:
+        return False
+    _, user, record, _, _ = _EVLR_HEAD.unpack(start)
+    return bool(user.rstrip(b"\0 ") == _SPEC.encode() and record == _PACKETS_RECORD)
 
 
 def _file_beside(path: Path, ending: str) -> Path | None:

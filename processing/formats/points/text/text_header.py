@@ -280,7 +280,9 @@ def _no_points(path: Path) -> BadFile:
         Text("It is not a point file that Zuka knows.", "対応していない点群ファイルです。"),
         Text.same(str(path)),
         Text(
-            "Choose LAS, LAZ, PLY, PCD, E57, PTX, or text with x y z on each line. {unchanged}",
-            "LAS・LAZ・PLY・PCD・E57・PTX、または各行にx・y・zのあるテキストを選んでください。{unchanged}",
+            "Choose LAS, LAZ, PLY, PCD, E57, PTX, PulseWaves, or text with x y z on each line. "
+            "{unchanged}",
+            "LAS・LAZ・PLY・PCD・E57・PTX・PulseWaves、または各行にx・y・zのあるテキストを"
+            "選んでください。{unchanged}",
         ).filled(unchanged=UNCHANGED),
     )

@@ -1,0 +1,1 @@
+"""PulseWaves: pulses with their waveforms, ``.pls`` with its ``.wvs``, whose echoes are points."""
