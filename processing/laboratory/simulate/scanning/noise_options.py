@@ -161,7 +161,7 @@ def varied_noise(seed: int, sensor: Sensor, *, has_clear_panes: bool = False) ->
         Whether most panes of many recordings send nothing back themselves, and images in them need
         less light than a surface does, where light is compared all the time.
     """
-    found = _usual_panes(seed, sensor)
+    found = _every_kind(seed, sensor)
     if not has_clear_panes:
         return found
     panes = chance(seed, "varied panes")
@@ -171,7 +171,7 @@ def varied_noise(seed: int, sensor: Sensor, *, has_clear_panes: bool = False) ->
     return replace(found, spotless=spotless, faint=faint)
 
 
-def _usual_panes(seed: int, sensor: Sensor) -> NoiseOptions:
+def _every_kind(seed: int, sensor: Sensor) -> NoiseOptions:
     random = chance(seed, "varied noise")
     is_phase = sensor.measures_by == "phase"
 
