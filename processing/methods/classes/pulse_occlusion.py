@@ -44,7 +44,7 @@ from processing.core.text import Text
 from processing.methods.classes.aerial_cells import AerialPoints, last_and_only
 from processing.methods.classes.class_models import ClassModels, flight_models
 from processing.methods.classes.class_trees import class_shares
-from processing.methods.classes.drive_classes import shares_of_rows
+from processing.methods.classes.drive_classes import rows_seen_again, shares_of_rows
 from processing.methods.classes.features import AGREE_LEVELS, REACH
 from processing.methods.classes.flight_cells import (
     AROUND,
@@ -292,8 +292,7 @@ class _Around:
         changes : (r, k, RETURN_MEASURES) float32
             By how much their measures differ from what was recorded.
         """
-        first = class_shares(models.alone, self._cells.rows, self._monitor)
-        seen = self._cells.with_neighbours(first, self._monitor)[self._cell]
+        seen = rows_seen_again(self._cells, models, self._monitor)[self._cell]
         touched, changed = self._changed_cells(points, changes)
         means, weights = self._means_around(touched)
         is_own = touched == self._cell
@@ -324,7 +323,22 @@ class _Around:
         for number, size in enumerate(AGREE_LEVELS, 1):
             start = features + number * classes
             rows[:, start : start + classes] += own[1 + AROUND.index(size)] * gained
+        self._change_averaged(rows, own, models)
         return shares_of_rows(rows, features, models, self._monitor)
+
+    def _change_averaged(
+        self, rows: NDArray[np.float32], own: NDArray[np.float32], models: ClassModels
+    ) -> None:
+        """Let averaged trees, whose smoothed word the last columns are, look at rows anew."""
+        if models.averaged is None:
+            return
+        features = self._cells.rows.shape[1]
+        before = class_shares(models.averaged, self._cells.rows[self._cell][None], self._monitor)
+        gained = class_shares(models.averaged, rows[:, :features], self._monitor) - before
+        around = sum(own[1 + AROUND.index(size)] for size in AGREE_LEVELS)
+        word = rows[:, -before.shape[1] :]
+        # What the cells around said is kept: taken off their mean, it may come out below nothing.
+        np.maximum(word + gained * (1 + around) / (1 + len(AGREE_LEVELS)), 0, out=word)
 
     def _place(self, points: Integers) -> Integers:
         """Where points of the asked one's drive are among those around; −1 where they aren't."""
