@@ -136,6 +136,7 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--returns", choices=("first", "all"), default="first")
     parser.add_argument("--pulse", type=Path, help="the scanner's, as waveform-estimate takes it")
     parser.add_argument("--crs", default="", help="EPSG:n of the files")
+    parser.add_argument("--columns", default="", help="of text files, such as x,y,z,classification")
     parser.add_argument(
         "--every-point",
         action="store_true",
@@ -175,7 +176,12 @@ def _scored(
     path: Path, options: argparse.Namespace, how: tuple[ArchiveTable, Groups]
 ) -> Iterator[ScoredInput]:
     request = ArchiveRequest(
-        path, options.column, options.density, options.returns == "first", options.crs
+        path,
+        options.column,
+        options.density,
+        options.returns == "first",
+        options.crs,
+        tuple(options.columns.split(",")) if options.columns else (),
     )
     with tempfile.TemporaryDirectory(prefix="zuka-") as position:
         scratch = Path(position)

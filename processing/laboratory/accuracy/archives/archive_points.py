@@ -19,7 +19,7 @@ from processing.core.arrays import Floats, Integers
 from processing.core.errors import MissingInput, Unsuitable
 from processing.core.monitor import SilentMonitor
 from processing.core.text import Text
-from processing.formats.points.point_files import is_las
+from processing.formats.points.point_files import is_las, read_info
 from processing.labels.label_column import LABEL
 from processing.methods.classes.aerial_cells import spacing_m
 from processing.project.importing.import_request import ImportRequest
@@ -49,6 +49,8 @@ class ArchiveRequest:
         Whether later returns are left out.
     crs : str
         ``EPSG:n``; empty for the file's own.
+    columns : tuple of str
+        What the columns of a text file are; empty to go by the file.
     """
 
     path: Path
@@ -56,6 +58,7 @@ class ArchiveRequest:
     density: float = 15.0
     first_only: bool = True
     crs: str = ""
+    columns: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,9 +103,8 @@ def archive_points(
     UserError
         It can't be imported, has no points, or no such column.
     """
-    imported = import_drives(
-        ImportRequest((request.path,), crs=request.crs), into / "drives", SilentMonitor()
-    )
+    delivered = ImportRequest((request.path,), crs=request.crs, columns=request.columns)
+    imported = import_drives(delivered, into / "drives", SilentMonitor())
     drives = [one for one in map(Drive, imported) if one.count]
     if not drives:
         raise Unsuitable(
@@ -129,6 +131,7 @@ def _truths(
     request: ArchiveRequest, drives: Sequence[Drive], truth: NDArray[np.uint8] | None
 ) -> list[NDArray[np.uint8]]:
     if truth is None and request.column == CLASS:
+        _check_classes(request)
         return [np.array(one.columns[CLASS], np.uint8) for one in drives]
     if truth is None:
         truth = _las_column(request)
@@ -137,6 +140,21 @@ def _truths(
         _, indices = sources_of(one.columns, one.info.source_runs, 0, one.count, sources=1)
         found.append(truth[indices])
     return found
+
+
+def _check_classes(request: ArchiveRequest) -> None:
+    """Refuse a file without classes: all points of its drives have the code 0."""
+    attributes = read_info(request.path).attributes
+    if CLASS not in attributes and CLASS not in request.columns:
+        raise MissingInput(
+            Text("The file has no classes of points.", "点のクラスがありません。"),
+            Text.same(f"{request.path}: {', '.join(attributes)}"),
+            Text(
+                "Name its column with --column; of text all with --columns x,y,z,classification.",
+                "--column で列を、テキストでは --columns x,y,z,classification のように"
+                "全列を指定してください。",
+            ),
+        )
 
 
 def _las_column(request: ArchiveRequest) -> NDArray[np.uint8]:

@@ -41,9 +41,6 @@ from processing.tools.waveform_points import (
 
 ALONE, ESTIMATED, REAL = "points alone", "estimated waveforms", "real waveforms"
 
-MadeWaveforms = Callable[[tuple[Drive, ...]], Iterable[MadePoints]]
-"""Points of drives with waveforms that were not recorded."""
-
 
 class FoundCodes(NamedTuple):
     """What was found from an input: a code for each chosen point, or why there is none."""
@@ -71,7 +68,7 @@ def codes_of_inputs(
             lambda: codes_through(
                 archive,
                 scratch / "estimated",
-                lambda of: make_waveforms(of, asked, SilentMonitor()),
+                make_waveforms(archive.drives, asked, SilentMonitor()),
             )
         ),
     }
@@ -99,15 +96,17 @@ def codes_by_waveforms(drives: Sequence[Drive], scratch: Path) -> NDArray[np.uin
     return _classified(drives, scratch, WaveformClassifyParameters())
 
 
-def codes_through(archive: ArchivePoints, scratch: Path, make: MadeWaveforms) -> NDArray[np.uint8]:
-    """(n,) codes from waveforms that are made, written and imported again."""
+def codes_through(
+    archive: ArchivePoints, scratch: Path, made: Iterable[MadePoints]
+) -> NDArray[np.uint8]:
+    """(n,) codes from waveforms that were made of the drives, written and imported again."""
     scratch.mkdir(parents=True)
     method, info = WAVEFORM_ESTIMATE.method, archive.drives[0].info
     if not isinstance(method, NewPointsTogether):
         raise TypeError(WAVEFORM_ESTIMATE.id)
     description = WaveformLas(info.crs, info.scale, info.offset, method.descriptor)
     file = scratch / "estimated.las"
-    write_made_waveforms(file, make(archive.drives), description, SilentMonitor())
+    write_made_waveforms(file, made, description, SilentMonitor())
     imported = import_drives(ImportRequest((file,)), scratch / "drives", SilentMonitor())
     drives = [Drive(one) for one in imported]
     codes = codes_by_waveforms(drives, scratch / "classes")

@@ -9,6 +9,7 @@ import laspy
 import numpy as np
 import pytest
 
+from processing.core.errors import UserError
 from processing.core.monitor import SilentMonitor
 from processing.laboratory.accuracy.archives.archive_classes import main
 from processing.laboratory.accuracy.archives.archive_points import (
@@ -155,6 +156,22 @@ def test_a_file_without_points_is_refused(
     assert capsys.readouterr().err.count("\n") == 1
     assert main(["surface", str(tmp_path / "nowhere.las")]) == 2
     assert "nowhere.las" in capsys.readouterr().err
+
+
+def test_text_is_asked_what_its_columns_are(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "点.txt"
+    rows = [f"{x}.5\t{y}.5\t{0.01 * x:.2f}\t{int(x > 9)}" for x in range(20) for y in range(20)]
+    path.write_text("\n".join(rows) + "\n", "ascii")
+    words = ["surface", str(path), "--codes", "surface=0", "other=1"]
+    assert main(words) == 2
+    assert capsys.readouterr().err.startswith("The file has no classes of points. | ")
+    with pytest.raises(UserError, match="classes"):
+        archive_points(ArchiveRequest(path), tmp_path / "refused")
+    asked = ArchiveRequest(path, density=0.0, columns=("x", "y", "z", "classification"))
+    truth = archive_points(asked, tmp_path / "asked").truth
+    assert np.bincount(truth).tolist() == [200, 200]
 
 
 def test_a_flight_is_scored_through_all_four_inputs(flight: Path) -> None:
