@@ -14,14 +14,11 @@ from processing.core.parameters import ParameterValue, fill_parameters, paramete
 from processing.core.text import Text
 from processing.formats.format import Content
 from processing.formats.points.new_points import Part, write_new_points
-from processing.formats.points.waveform_output import (
-    WaveformLas,
-    WaveformRecords,
-    write_waveform_las,
-)
+from processing.formats.points.waveform_output import WaveformLas
 from processing.formats.registry import FORMATS
 from processing.operations.inputs import OpenedInputs, OperationInputs, opened_inputs
 from processing.project.project import Project
+from processing.project.results.made_waveforms import write_made_waveforms
 from processing.recording.drive import Drive
 from processing.recording.recorded_together import recorded_together
 from processing.recording.vehicle_path.clock import ClockKind, kind_of
@@ -161,19 +158,7 @@ def _write_with_waveforms(
         opened.crs, info.scale, info.offset, descriptor, _is_adjusted_standard(opened)
     )
     made = _made(tool, parameters, opened, monitor)
-    records = (_records_of(one, description) for one in made)
-    write_waveform_las(output, records, description, monitor, never=opened.delivered)
-
-
-def _records_of(made: MadePoints, description: WaveformLas) -> WaveformRecords:
-    packets = made.packets
-    if packets is None:
-        raise TypeError(description)
-    steps = (made.xyz - np.asarray(description.offset)) / np.asarray(description.scale)
-    columns = {"xyz": np.rint(steps).astype(np.int64), **made.columns}
-    return WaveformRecords(
-        columns, packets.packet, packets.location_ps, packets.direction, packets.samples
-    )
+    write_made_waveforms(output, made, description, monitor, never=opened.delivered)
 
 
 def _is_adjusted_standard(opened: OpenedInputs) -> bool:

@@ -214,6 +214,24 @@ class Waveforms:
         order = np.argsort(self._drive.columns[LOCATION][points], kind="stable")
         return np.asarray(points[order], np.int64)
 
+    def returns_of(self, numbers: Integers) -> tuple[Integers, Integers]:
+        """The points on packets.
+
+        Parameters
+        ----------
+        numbers : (k,) int64
+
+        Returns
+        -------
+        points, row : (m,) int64
+            Packet by packet, its owner first; which of the k each is on.
+        """
+        first = np.asarray(self._starts[:-1][numbers], np.int64)
+        count = np.asarray(self._starts[1:][numbers], np.int64) - first
+        row = np.repeat(np.arange(count.size), count)
+        within = np.arange(row.size) - np.repeat(np.cumsum(count) - count, count)
+        return np.asarray(self._points[first[row] + within], np.int64), row
+
     def owners(self, numbers: Integers | slice) -> Integers:
         """The point that each packet counts for: its first return, (k,) int64."""
         return np.asarray(self._points[self._starts[:-1][numbers]], np.int64)

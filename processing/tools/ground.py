@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from processing.core.errors import OutOfRange, report_as_user_error
 from processing.core.monitor import Monitor
-from processing.core.parameters import ParameterChoice, angle, choice, file, length, switch
+from processing.core.parameters import ParameterChoice, angle, choice, file, length, ratio, switch
 from processing.core.text import Text
 from processing.core.worked_ahead import in_order
 from processing.methods.ground.drive_ground import adaptive_ground
@@ -21,6 +21,8 @@ from processing.methods.ground.filters.published_method import PublishedSteps
 from processing.methods.ground.ground_columns import CLASS, GROUND, HEIGHT, OTHER
 from processing.methods.ground.stored_surface import FILE_NAME
 from processing.methods.noise.beams.behind_surfaces import echoes_of
+from processing.methods.waveforms.pulse_ringing import ringing_returns
+from processing.methods.waveforms.return_measures import broad_returns
 from processing.recording.drive import Drive
 from processing.scoring.points.asked_classes import GROUND_ASKED
 from processing.scoring.scorers import GROUND_SCORER
@@ -133,6 +135,18 @@ class GroundParameters:
             "格子内の最下点からこの高さまでの点も地面とします。0では各格子に1点だけ残します。",
         ),
     )
+    widest_echo: float = ratio(
+        0.0,
+        low=0.0,
+        high=20.0,
+        name=Text("Widest echo (adaptive)", "エコー幅の上限（自動調整）"),
+        explanation=Text(
+            "Of flights with waveforms: returns whose echo is wider than so many of the "
+            "recording's narrowest ones are no ground, as of low plants. 0 asks no widths.",
+            "波形付きの航空計測で、エコー幅がデータ中の最も狭いエコーのこの倍数を超える点を、"
+            "低い植生などとして地面から除きます。0では幅を使いません。",
+        ),
+    )
     surface: str = file(
         name=Text("Surface file (adaptive)", "地表面ファイル（自動調整）"),
         explanation=Text(
@@ -171,7 +185,7 @@ def mark_ground(
     with report_as_user_error(into):
         for folder in folders[1:]:
             folder.mkdir()
-    echoes = _echoes(drives, monitor) if parameters.method == ADAPTIVE else ()
+    echoes = _echoes(drives, parameters, monitor) if parameters.method == ADAPTIVE else ()
     points = DrivePoints(drives, points_at_once, monitor, echoes)
     grid_m = parameters.grid_m or _PAPER_GRID_M
     kept: tuple[Path, ...] = ()
@@ -198,10 +212,24 @@ def mark_ground(
     return TogetherResult(columns, kept, _CELLS.filled(size=grid_m))
 
 
-def _echoes(drives: tuple[Drive, ...], monitor: Monitor) -> list[NDArray[np.bool_] | None]:
-    """What a scanner on a tripod can't have seen where it says it lies."""
+def _echoes(
+    drives: tuple[Drive, ...], parameters: GroundParameters, monitor: Monitor
+) -> list[NDArray[np.bool_] | None]:
+    """What is no ground for sure: points that can't be where they say, and by their waveforms.
+
+    A scanner on a tripod can't have seen some of them; some returns of a flight are the
+    receiver's own swing, or too wide.
+    """
     monitor.report(0.0, _ECHOES)
-    return list(in_order(lambda drive: echoes_of(drive, monitor), drives))
+
+    def of(drive: Drive) -> NDArray[np.bool_] | None:
+        found = [echoes_of(drive, monitor), ringing_returns(drive, monitor)]
+        if parameters.widest_echo > 0.0:
+            found.append(broad_returns(drive, parameters.widest_echo, monitor))
+        known = [one for one in found if one is not None]
+        return np.logical_or.reduce(known) if known else None
+
+    return list(in_order(of, drives))
 
 
 def _check(parameters: GroundParameters) -> None:
@@ -254,7 +282,7 @@ GROUND_TOOL = Tool(
             ),
         ),
     ),
-    version=3,
+    version=4,
     gives_classes=(GROUND, OTHER),
     scorer=GROUND_SCORER,
     asked=GROUND_ASKED,

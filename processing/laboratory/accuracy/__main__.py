@@ -73,6 +73,8 @@ TABLES = {
     "ledgers": AccuracyTable("accuracy.ledgers", "streets"),
     "waveform-echoes": AccuracyTable("accuracy.waveform_echoes", "flights", takes_page=False),
     "waveform-estimates": AccuracyTable("accuracy.waveform_estimates", "flights", takes_page=False),
+    "chained-classes": AccuracyTable("accuracy.archives.chained_classes", "flights"),
+    "flight-ground": AccuracyTable("accuracy.archives.flight_ground", "flights"),
     "labels": AccuracyTable("accuracy.labels_against_tools", "streets"),
 }
 """By name, in the order in which they are made."""

@@ -12,9 +12,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from processing.core.arrays import Floats, Integers
+from processing.core.arrays import Flags, Floats, Integers
+from processing.core.monitor import Monitor
+from processing.recording.drive import Drive
 from processing.recording.waveform_packets.echo_shapes import echo_shapes
-from processing.recording.waveforms import Waveforms
+from processing.recording.waveforms import Waveforms, waveforms_of
 
 RETURN_MEASURES = 6
 """Brightness, width, area over height, rise, share of the pulse's energy, its whole energy."""
@@ -27,6 +29,11 @@ _MOST = np.array([6.0, 6.0, 6.0, 6.0, 1.5, 8.0], np.float32)
 
 _AT_ONCE = 8_192
 """Waveforms in memory: 8 MB where one has 240 samples."""
+
+_SAMPLE = 40_000
+"""Returns, evenly among all of a drive, that its pulse is taken from."""
+
+_POINTS_AT_ONCE = 1 << 18
 
 _NARROW = 0.2
 """Share of the lone echoes that are narrower than what is taken for the system's: surfaces across
@@ -132,6 +139,46 @@ def return_measures(raw: Floats, reference: PulseReference) -> NDArray[np.float3
     measures = np.column_stack(columns).astype(np.float32)
     measures = np.where(np.isfinite(measures), measures, _NEUTRAL)
     return np.asarray(np.clip(measures, -_MOST, _MOST), np.float32)
+
+
+def broad_returns(drive: Drive, widest: float, monitor: Monitor) -> Flags | None:
+    """Which of a drive's points come of echoes that are wide for the recording.
+
+    Parameters
+    ----------
+    widest : float
+        In widths of the recording's narrowest echoes.
+
+    Returns
+    -------
+    (n,) bool, or None
+        None without waveforms; points without one are not.
+
+    Raises
+    ------
+    BadFile, MissingInput, NoSpace, Cancelled
+
+    References
+    ----------
+    Doneus and others 2008; Mücke 2010: low plants widen the echo of the ground.
+    """
+    waveforms = waveforms_of(drive)
+    if waveforms is None:
+        return None
+    some = np.arange(0, drive.count, max(1, drive.count // _SAMPLE))
+    columns, is_only = drive.columns, np.ones(some.size, np.bool_)
+    if columns.has("number_of_returns"):
+        is_only = np.asarray(columns["number_of_returns"][some]) <= 1
+    reference = pulse_reference(raw_measures(waveforms, some), is_only, is_only)
+    if reference is None:
+        return None
+    found = np.zeros(drive.count, np.bool_)
+    for start in range(0, drive.count, _POINTS_AT_ONCE):
+        monitor.check()
+        points = np.arange(start, min(start + _POINTS_AT_ONCE, drive.count))
+        measures = return_measures(raw_measures(waveforms, points), reference)
+        found[points] = measures[:, 1] > widest
+    return found
 
 
 def neutral_measures(count: int) -> NDArray[np.float32]:

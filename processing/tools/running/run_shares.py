@@ -65,8 +65,15 @@ def run_shares(
         left = later
 
 
-def mark_all(tool: str, drives: Sequence[Drive], monitor: Monitor, *, into: Path) -> None:
-    """Let a tool say of all points of some drives what it says, with its own parameters.
+def mark_all(
+    tool: str,
+    drives: Sequence[Drive],
+    monitor: Monitor,
+    *,
+    into: Path,
+    parameters: object | None = None,
+) -> None:
+    """Let a tool say of all points of some drives what it says.
 
     For drives that were imported for the moment: what is said becomes their columns at once.
 
@@ -74,13 +81,16 @@ def mark_all(tool: str, drives: Sequence[Drive], monitor: Monitor, *, into: Path
     ----------
     into : Path
         A folder on their disk, which needn't exist.
+    parameters : object, optional
+        An instance of the tool's own parameter class; its own values without.
 
     Raises
     ------
     Unsuitable, OutOfRange, NoSpace, Cancelled
         As :func:`processing.tools.running.runner.run`.
     """
-    for share in run_shares(tool, drives, tool_of(tool).parameters(), monitor):
+    asked = tool_of(tool).parameters() if parameters is None else parameters
+    for share in run_shares(tool, drives, asked, monitor):
         folder = into / f"{tool}-{share.drives[0].id}"
         result = run_together(share.request, share.monitor, into=folder)
         # The first folder may hold those of the others: it goes last.

@@ -21,7 +21,7 @@ _SINGLE = {
     "intensity": ("intensity", "reflectance", "amplitude", "i"),
     "return_number": ("returnnumber", "numecho"),
     "number_of_returns": ("numberofreturns", "nbofecho"),
-    "classification": ("classification", "class"),
+    "classification": ("classification", "class", "semclass"),
     "scan_angle_deg": ("scanangledeg", "scanangle", "scananglerank"),
 }
 GRID_NAMES = (("columnindex", "column", "col"), ("rowindex", "row"))

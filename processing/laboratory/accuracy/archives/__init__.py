@@ -1,0 +1,1 @@
+"""Archives of points without waveforms, classified as the thesis does, against their truth."""
