@@ -13,6 +13,10 @@ from processing.recording.vehicle_path.clock import are_within_days, is_of_week
 _TIMES = 1000
 """Times of each drive that are compared, spread over it."""
 
+_COPY_OFF = 2e-3
+"""By how much extents, m, and times, s, of a copy may differ: what files round them to. No second
+pass has the same number of points at the same times."""
+
 _TOGETHER_DAYS = 1.0
 """Files measured more than a day apart are drives of their own."""
 
@@ -35,11 +39,15 @@ def surveyed_together(drive: Drive, beside: Sequence[Drive]) -> tuple[Drive, ...
 
 
 def _find_met_drives(drive: Drive, beside: Sequence[Drive], days: float) -> tuple[Drive, ...]:
-    together, others = [drive], list(beside)
+    # Of two copies of a strip that which came with the drive is met, so it is asked first.
+    others = sorted(beside, key=lambda other: not _files(drive) & _files(other))
+    together = [drive]
     for one in together:
         met = [other for other in others if _is_together(one, other, days)]
-        together.extend(met)
         others = [other for other in others if other not in met]
+        for other in met:
+            if not any(_are_copies(other, known) for known in together):
+                together.append(other)
     return tuple(together)
 
 
@@ -70,6 +78,23 @@ def _is_together(one: Drive, other: Drive, days: float) -> bool:
         return span is None and other_span is None and both_stand and is_side_by_side
     is_dated = not is_of_week(min(span[0], other_span[0]), max(span[1], other_span[1]))
     return are_within_days(span, other_span, days) and (is_dated or is_side_by_side)
+
+
+def _are_copies(one: Drive, other: Drive) -> bool:
+    """Whether two drives hold the same points, as where one is written anew with waveforms.
+
+    Together they would count every point twice.
+    """
+    if one.count != other.count or _files(one) & _files(other):
+        return False
+    span, other_span = _times(one), _times(other)
+    if span is None or other_span is None:
+        return False
+    ours, theirs = (
+        np.array([*own.info.lowest, *own.info.highest, *times])
+        for own, times in ((one, span), (other, other_span))
+    )
+    return bool(np.abs(ours - theirs).max() < _COPY_OFF)
 
 
 def _files(drive: Drive) -> set[str]:

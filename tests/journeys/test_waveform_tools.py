@@ -131,6 +131,30 @@ def test_estimated_waveforms_are_written_beside_their_points(
     assert target.with_suffix(".wdp").stat().st_size > 60
 
 
+def test_an_archive_is_classified_through_estimated_waveforms(
+    surveyor: Surveyor, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    flight, archive = write_flight(tmp_path / "航空.las", _POINTS), tmp_path / "書庫.laz"
+    laspy.convert(laspy.read(flight.path), point_format_id=6).write(archive)
+    assert surveyor.document.create(tmp_path / "Archive.zuka", "")
+    surveyor.wait_for_job(lambda: surveyor.document.import_files(request_of_files((archive,), "")))
+    delivered, target = surveyor.drive, tmp_path / "推定.las"
+    _answer(monkeypatch, str(target))
+    said: list[Text] = []
+    surveyor.document.reported.connect(said.append)
+    _choose(surveyor, "waveform-estimate")
+    _run(surveyor)
+    _wait_for_words(surveyor, said, target.name)
+    surveyor.wait_for_job(lambda: surveyor.document.import_files(request_of_files((target,), "")))
+    estimated = next(one for one in surveyor.document.drives() if one.id != delivered.id)
+    settings = surveyor.document.shared.view_settings
+    settings.show_image(estimated.id, settings.image_kind)
+    _choose(surveyor, "waveform-classify")
+    _run(surveyor)
+    surveyor.bot.waitUntil(lambda: (_codes(surveyor) != 1).any(), timeout=WAIT_MS)
+    assert not surveyor.document.drive(delivered.id).columns.has("label"), "nor counted twice"
+
+
 def test_no_name_in_the_dialog_runs_nothing(
     surveyor: Surveyor, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -235,10 +235,12 @@ def _about(options: argparse.Namespace, table: ArchiveTable, true: Groups) -> st
     points = "first returns" if options.returns == "first" else "all returns"
     thinned = f"thinned to {options.density:g} points/m²" if options.density > 0 else "not thinned"
     scored = "every delivered point" if options.every_point else "those"
+    more = f" --columns {options.columns}" if options.columns else ""
+    more += " --every-point" if options.every_point else ""
     return (
         f"`python -m processing.laboratory.accuracy.archives.archive_classes {options.table} FILE… "
         f"--codes {named} --density {options.density:g} --returns {options.returns}"
-        f"{' --every-point' if options.every_point else ''} --markdown docs/accuracy.md` makes "
+        f"{more} --markdown docs/accuracy.md` makes "
         f"this section: {points}, {thinned}, are classified; {scored} are scored. {table.about} "
         "Other true classes aren't scored.\n"
     )

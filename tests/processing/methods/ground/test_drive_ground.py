@@ -153,6 +153,24 @@ def test_epochs_are_never_one_recording_and_a_day_at_one_place_is(tmp_path: Path
     assert recordings_of((sunday, tuesday, saturday)) == ((sunday, saturday), (tuesday,))
 
 
+def test_strips_written_anew_are_met_in_place_of_the_delivered_ones(tmp_path: Path) -> None:
+    # An estimated file beside its archive in one project: classified together, every point counted
+    # twice.
+    xyz, beside = level(6.0), level(6.0) + np.array([3.0, 0.0, 0.0])
+    strips = {
+        (file, number): drive_at(
+            tmp_path / f"{file} {number}", cloud, file=file, time_s=3.5e8 + 600.0 * number
+        )
+        for file in ("archive.laz", "estimated.las")
+        for number, cloud in enumerate((xyz, beside))
+    }
+    first, second, new_first, new_second = strips.values()
+    assert recorded_together(first, (second, new_first, new_second)) == (first, second)
+    assert recorded_together(new_first, (first, second, new_second)) == (new_first, new_second)
+    parts = recordings_of((first, second, new_first, new_second))
+    assert parts == ((first, second), (new_first, new_second))
+
+
 def test_clouds_without_times_in_files_of_their_own_may_be_epochs(tmp_path: Path) -> None:
     xyz = level(6.0)
     one = drive_at(tmp_path / "one", xyz, file="before.ply", time_s=np.nan)
