@@ -146,9 +146,9 @@ def read_trained(kind: str, sizes: NetworkSizes, path: Any) -> Any:
 
 def _network(kind: str, sizes: NetworkSizes) -> Any:
     from processing.laboratory.waveform_networks.networks import (
+        CoordinateBlock,
         GlobalBlock,
         LocalBlock,
-        CoordinateBlock,
         WholePatch,
     )
 
