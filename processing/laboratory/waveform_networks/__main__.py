@@ -105,7 +105,10 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--patches", type=int, default=3, help="of each flight that is learnt from")
     parser.add_argument("--epochs", type=int, default=40, help="of what sees no neighbourhoods")
     parser.add_argument("--global-epochs", type=int, default=40)
-    parser.add_argument("--looked-at", type=int, help="patches of a flight that ablations score")
+    parser.add_argument("--waves", type=int, help="of a patch that a step of the local block sees")
+    parser.add_argument(
+        "--looked-at", type=int, help="patches of a simulated flight that are scored, all without"
+    )
     parser.add_argument("--tables", nargs="*", default=_TABLES, choices=_TABLES)
     parser.add_argument("--ship", type=Path, help="file that the local block is written to")
     parser.add_argument("--markdown", type=Path)
@@ -125,10 +128,12 @@ class _Work:
         options, chosen = self.options, set(self.options.tables)
         kinds = (*_BLOCKS, *([WHOLE_PATCH] if "whole" in chosen else []))
         networks = {kind: self.network(kind) for kind in kinds}
-        fitted = answers({kind: networks[kind] for kind in (LOCAL, GLOBAL)}, *self._seen("merging"))
+        most = self.options.looked_at
+        both = {kind: networks[kind] for kind in (LOCAL, GLOBAL)}
+        fitted = answers(both, *self._seen("merging"), None, most)
         learned = LearnedMerge.of(fitted.shares[LOCAL], fitted.shares[GLOBAL], fitted.classes)
         _, checked = self._seen("check")
-        said = answers(networks, self.sizes, checked)
+        said = answers(networks, self.sizes, checked, None, most)
         yield from _block_table("Simulated flights of unseen seeds", said, learned)
         for folder in options.folders:
             other = answers(networks, self.sizes, [first_returns_of(folder)])
@@ -137,7 +142,6 @@ class _Work:
             head = table_head(("merge", "input"), with_mean=False)
             yield from _titled("Points of a class that the local block decided:", head)
             yield from share_rows(said)
-        both = {kind: networks[kind] for kind in (LOCAL, GLOBAL)}
         if "changes" in chosen:
             yield from self._change_table(both, checked)
         if "densities" in chosen:
@@ -155,7 +159,9 @@ class _Work:
             return read_trained(kind, sizes, path)
         alone = kind in _ALONE
         epochs = self.options.epochs if alone else self.options.global_epochs
-        network = trained_network(kind, sizes, self._learnt(), Lesson(epochs, say))
+        network = trained_network(
+            kind, sizes, self._learnt(), Lesson(epochs, say, self.options.waves)
+        )
         write_trained(network, path)
         return network
 
@@ -223,18 +229,26 @@ def _titled(title: str, head: Sequence[str]) -> list[str]:
 
 
 def _about(options: argparse.Namespace) -> str:
+    waves = "" if options.waves is None else f"--waves {options.waves} "
+    looked_at = "" if options.looked_at is None else f"--looked-at {options.looked_at} "
+    learnt = options.waves or options.points
+    scored = "all patches" if options.looked_at is None else f"{options.looked_at} patches"
     return (
         "`python -m processing.laboratory.waveform_networks --keep FOLDER --networks FOLDER "
         f"--seeds {options.seeds} --merging {options.merging} --check {options.check} "
-        f"--width {options.width} --points {options.points} --patches {options.patches} "
-        f"--epochs {options.epochs} --global-epochs {options.global_epochs} "
-        "--markdown docs/accuracy.md` makes this section: the thesis’ network as a reference "
-        "(trees classify in the program). Published are a width of 1 and patches of 50,000 points; "
-        f"these networks have {options.width} of the maps and patches of {options.points:,} "
-        f"points with as many fewer representatives, {options.patches} patches of each flight, "
-        f"{options.epochs} epochs of the local block and {options.global_epochs} of the global "
-        "one. So they stay below what is published, which has another flight’s points, too. "
-        "Precision, recall and F are of first returns with cleaned waveforms, means are plain ones."
+        f"--width {options.width} --points {options.points} --patches {options.patches} {waves}"
+        f"--epochs {options.epochs} --global-epochs {options.global_epochs} {looked_at}"
+        f"--tables {' '.join(options.tables)} --markdown docs/accuracy.md` makes this section: the "
+        "thesis’ network as a reference; trees classify in the program. Published are a width of 1 "
+        f"and patches of 50,000 points. These networks have {options.width} of the maps and "
+        f"patches of {options.points:,} points with as many fewer representatives; they saw "
+        f"{options.patches} patches of each of {len(seeds_of(options.seeds))} flights, the local "
+        f"block {options.epochs} times with {learnt:,} waveforms a step, the global one "
+        f"{options.global_epochs} times. Published are nine million first returns of one place by "
+        "one scanner; here landscapes, scanners and densities differ from flight to flight. "
+        f"Scored are {scored} of each simulated flight. The learned merge is fitted to flights "
+        "that no block learnt from. Precision (P), recall (R) and F are of first returns with "
+        "cleaned waveforms; means are plain ones."
     )
 
 

@@ -86,6 +86,12 @@ class Patch:
     waves: F32
     classes: Integers
 
+    def some(self, chosen: Integers) -> Patch:
+        """Some of its points, by their place."""
+        return Patch(
+            self.points[chosen], self.xyz[chosen], self.waves[chosen], self.classes[chosen]
+        )
+
     def turned(self, angle: float) -> Patch:
         """The same turned about the vertical, by radians."""
         cosine, sine = np.cos(angle), np.sin(angle)

@@ -48,10 +48,14 @@ class Lesson:
         How often each patch is seen.
     say : callable
         Told each epoch's loss.
+    waves : int, optional
+        Points of a patch that a step of the local block sees, by chance: it knows no neighbours,
+        and is by far the slowest. None for all.
     """
 
     epochs: int
     say: Callable[[str], None]
+    waves: int | None = None
 
 
 def class_weights(patches: Iterable[Patch]) -> Floats:
@@ -88,7 +92,10 @@ def trained_network(
     for epoch in range(lesson.epochs):
         losses = []
         for number in rng.permutation(len(patches)).tolist():
-            patch = as_recorded(patches[number], rng)
+            seen = patches[number]
+            if kind == LOCAL and lesson.waves is not None:
+                seen = seen.some(rng.permutation(len(seen.xyz))[: lesson.waves])
+            patch = as_recorded(seen, rng)
             first = int(rng.integers(len(patch.xyz)))
             targets = torch.from_numpy(patch.classes).to(device)
             scores = network(*_told(kind, sizes, patch, first, device))
