@@ -122,6 +122,7 @@ class OcclusionBox(QWidget):
         self._whole = self._label()
         self._keys = QGridLayout()
         self._keys.setVerticalSpacing(1)
+        self._keys.setHorizontalSpacing(5)
         self._keys.setColumnStretch(1, 1)
         self._alone, self._alone_key = self._key(ALONE, SWATCH_PX)
         self._together, self._together_key = self._key(TOGETHER, _LINE_PX)
