@@ -44,6 +44,7 @@ class _Seen:
     compared: tuple[ChosenSide | None, ChosenSide | None]
     volume_parameters: object
     asks_model: bool
+    asked_model: int
     error: UserError | None
     has_focus: bool
 
@@ -66,6 +67,7 @@ class _Seen:
             compared=volume.sides,
             volume_parameters=volume.parameters.value(),
             asks_model=parts.pulse_panel.occlusion_box.switch.isChecked(),
+            asked_model=parts.pulse_panel.occlusion_box.method.currentIndex(),
             error=parts.message_bar.error,
             has_focus=focused in (*parts.image_views.views, parts.scene_view.picture),
         )
@@ -89,6 +91,7 @@ class _Seen:
         volume = parts.volume_panel.form
         volume.choose_sides(*self.compared)
         volume.parameters.set_values(vars(self.volume_parameters))
+        parts.pulse_panel.occlusion_box.method.setCurrentIndex(self.asked_model)
         parts.pulse_panel.occlusion_box.switch.setChecked(self.asks_model)
         if self.error is not None:
             parts.message_bar.show_error(self.error)

@@ -13,23 +13,28 @@ version 1; Protocol Buffers, "Encoding".
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from processing.core.protobuf_fields import (
+    block_field,
+    fields_of,
+    first_field,
+    number_field,
+    varint,
+)
 from processing.methods.noise.trees import Trees
 
-_VARINT, _EIGHT_BYTES, _BYTES, _FOUR_BYTES = 0, 1, 2, 5
 _GRAPH, _NODE, _ATTRIBUTE = 7, 1, 5  # of a model, of a graph, of a node
 _NAME, _FLOATS, _INTS, _STRINGS, _TYPE = 1, 7, 8, 9, 20  # of an attribute
 _FLOATS_TYPE, _INTS_TYPE, _STRINGS_TYPE, _STRING_TYPE, _STRING = 6, 7, 8, 3, 4
 _IR_VERSION, _OPSET, _ML_OPSET = 8, 15, 1
 _FLOAT_TENSOR, _INT64_TENSOR = 1, 7
 _LEAF, _BRANCH = b"LEAF", b"BRANCH_LEQ"
-_ALL_BITS = (1 << 64) - 1
 _MORE, _LONGEST = 0x80, 10  # of a varint: the bit of a byte that another follows, most bytes
 _MODES = "nodes_modes"  # says what the leaves say, too; a word a node takes long to read
 
@@ -217,66 +222,68 @@ def _trees_of(roots: NDArray[np.int32], nodes: NDArray[np.integer]) -> NDArray[n
 
 
 def _attributes_of(path: Path) -> dict[str, bytes]:
-    (graph,) = _fields(path.read_bytes(), _GRAPH)
-    (node,) = _fields(graph, _NODE)
-    named = ((_first(one, _NAME).decode(), one) for one in _fields(node, _ATTRIBUTE))
+    (graph,) = fields_of(path.read_bytes(), _GRAPH)
+    (node,) = fields_of(graph, _NODE)
+    named = ((first_field(one, _NAME).decode(), one) for one in fields_of(node, _ATTRIBUTE))
     return {name: one for name, one in named if name != _MODES}
 
 
 def _write_model(attributes: Mapping[str, bytes], path: Path, columns: int, classes: int) -> None:
     node = (
-        _block(1, b"features")
-        + _block(2, b"label")
-        + _block(2, b"shares")
-        + _block(4, b"TreeEnsembleClassifier")
+        block_field(1, b"features")
+        + block_field(2, b"label")
+        + block_field(2, b"shares")
+        + block_field(4, b"TreeEnsembleClassifier")
         + b"".join(
-            _block(_ATTRIBUTE, _block(_NAME, name.encode()) + content)
+            block_field(_ATTRIBUTE, block_field(_NAME, name.encode()) + content)
             for name, content in attributes.items()
         )
-        + _block(7, b"ai.onnx.ml")
+        + block_field(7, b"ai.onnx.ml")
     )
     graph = (
-        _block(_NODE, node)
-        + _block(2, b"zuka")
-        + _block(11, _tensor(b"features", _FLOAT_TENSOR, (columns,)))
-        + _block(12, _tensor(b"label", _INT64_TENSOR, ()))
-        + _block(12, _tensor(b"shares", _FLOAT_TENSOR, (classes,)))
+        block_field(_NODE, node)
+        + block_field(2, b"zuka")
+        + block_field(11, _tensor(b"features", _FLOAT_TENSOR, (columns,)))
+        + block_field(12, _tensor(b"label", _INT64_TENSOR, ()))
+        + block_field(12, _tensor(b"shares", _FLOAT_TENSOR, (classes,)))
     )
     path.write_bytes(
-        _number(1, _IR_VERSION)
-        + _block(2, b"zuka")
-        + _block(_GRAPH, graph)
-        + _block(8, _block(1, b"") + _number(2, _OPSET))
-        + _block(8, _block(1, b"ai.onnx.ml") + _number(2, _ML_OPSET))
+        number_field(1, _IR_VERSION)
+        + block_field(2, b"zuka")
+        + block_field(_GRAPH, graph)
+        + block_field(8, block_field(1, b"") + number_field(2, _OPSET))
+        + block_field(8, block_field(1, b"ai.onnx.ml") + number_field(2, _ML_OPSET))
     )
 
 
 def _ints(values: NDArray[np.integer]) -> bytes:
-    packed = b"".join(_varint(int(value)) for value in values)
-    return _block(_INTS, packed) + _number(_TYPE, _INTS_TYPE)
+    packed = b"".join(varint(int(value)) for value in values)
+    return block_field(_INTS, packed) + number_field(_TYPE, _INTS_TYPE)
 
 
 def _floats(values: NDArray[np.floating]) -> bytes:
-    return _block(_FLOATS, values.astype("<f4").tobytes()) + _number(_TYPE, _FLOATS_TYPE)
+    return block_field(_FLOATS, values.astype("<f4").tobytes()) + number_field(_TYPE, _FLOATS_TYPE)
 
 
 def _modes(is_leaf: NDArray[np.bool_]) -> bytes:
-    words = b"".join(_block(_STRINGS, _LEAF if one else _BRANCH) for one in is_leaf)
-    return words + _number(_TYPE, _STRINGS_TYPE)
+    words = b"".join(block_field(_STRINGS, _LEAF if one else _BRANCH) for one in is_leaf)
+    return words + number_field(_TYPE, _STRINGS_TYPE)
 
 
 def _word(word: bytes) -> bytes:
-    return _block(_STRING, word) + _number(_TYPE, _STRING_TYPE)
+    return block_field(_STRING, word) + number_field(_TYPE, _STRING_TYPE)
 
 
 def _tensor(name: bytes, kind: int, sizes: tuple[int, ...]) -> bytes:
-    rows = _block(1, _block(2, b"n"))
-    shape = rows + b"".join(_block(1, _number(1, size)) for size in sizes)
-    return _block(1, name) + _block(2, _block(1, _number(1, kind) + _block(2, shape)))
+    rows = block_field(1, block_field(2, b"n"))
+    shape = rows + b"".join(block_field(1, number_field(1, size)) for size in sizes)
+    return block_field(1, name) + block_field(
+        2, block_field(1, number_field(1, kind) + block_field(2, shape))
+    )
 
 
 def _ints_of(attribute: bytes) -> NDArray[np.int64]:
-    packed = np.frombuffer(b"".join(_fields(attribute, _INTS)), np.uint8)
+    packed = np.frombuffer(b"".join(fields_of(attribute, _INTS)), np.uint8)
     ends = np.flatnonzero(packed < _MORE) + 1
     starts = np.concatenate([[0], ends[:-1]]).astype(np.int64)
     values = np.zeros(ends.size, np.uint64)
@@ -290,61 +297,4 @@ def _ints_of(attribute: bytes) -> NDArray[np.int64]:
 
 
 def _floats_of(attribute: bytes) -> NDArray[np.float64]:
-    return np.frombuffer(b"".join(_fields(attribute, _FLOATS)), "<f4").astype(np.float64)
-
-
-def _fields(message: bytes, wanted: int) -> list[bytes]:
-    """The contents of a message's fields of one number, bytes as they stand."""
-    return list(_each_field(message, wanted))
-
-
-def _first(message: bytes, wanted: int) -> bytes:
-    return next(_each_field(message, wanted))
-
-
-def _each_field(message: bytes, wanted: int) -> Iterator[bytes]:
-    position = 0
-    while position < len(message):
-        key, position = _varint_at(message, position)
-        start = position
-        wire = key & 7
-        if wire == _VARINT:
-            _, position = _varint_at(message, position)
-        elif wire == _BYTES:
-            size, start = _varint_at(message, position)
-            position = start + size
-        elif wire in (_EIGHT_BYTES, _FOUR_BYTES):
-            position += 8 if wire == _EIGHT_BYTES else 4
-        else:
-            raise ValueError(f"wire type {wire} at byte {start}")
-        if key >> 3 == wanted:
-            yield message[start:position]
-
-
-def _varint_at(message: bytes, position: int) -> tuple[int, int]:
-    value, shift = 0, 0
-    while True:
-        byte = message[position]
-        position += 1
-        value |= (byte & 0x7F) << shift
-        if byte < 0x80:
-            return value, position
-        shift += 7
-
-
-def _varint(value: int) -> bytes:
-    value &= _ALL_BITS
-    parts = bytearray()
-    while value >= 0x80:
-        parts.append(value & 0x7F | 0x80)
-        value >>= 7
-    parts.append(value)
-    return bytes(parts)
-
-
-def _number(field: int, value: int) -> bytes:
-    return _varint(field << 3 | _VARINT) + _varint(value)
-
-
-def _block(field: int, content: bytes) -> bytes:
-    return _varint(field << 3 | _BYTES) + _varint(len(content)) + content
+    return np.frombuffer(b"".join(fields_of(attribute, _FLOATS)), "<f4").astype(np.float64)

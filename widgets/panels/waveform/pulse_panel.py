@@ -12,6 +12,7 @@ from typing_extensions import override
 from processing.core.errors import UserError
 from processing.core.text import Language, Text
 from processing.methods.classes.pulse_occlusion import PulseOcclusion
+from processing.methods.waveforms.pulse_grad_cam import PulseGradCam
 from processing.recording.shown_pulse import ShownPulse, pulse_behind
 from widgets.mouse_tools.tracing import BackgroundRunner
 from widgets.panels.waveform.occlusion_box import AskedPoint, OcclusionBox
@@ -135,8 +136,8 @@ class PulsePanel(QWidget):
         if not points.size or position.measured.point in points:
             self._show_point_if_seen()
 
-    def _on_occlusion_box_found(self, found: PulseOcclusion | None) -> None:
-        self.plot.show_occlusion(found, has_room=self.occlusion_box.is_shown)
+    def _on_occlusion_box_found(self, found: PulseOcclusion | PulseGradCam | None) -> None:
+        self.plot.show_looked_at(found, has_room=self.occlusion_box.is_shown)
 
     def _show_point_if_seen(self) -> None:
         self._is_stale = True

@@ -12,12 +12,16 @@ from PySide6.QtWidgets import QSizePolicy, QWidget
 from typing_extensions import override
 
 from processing.methods.classes.pulse_occlusion import PulseOcclusion
+from processing.methods.waveforms.pulse_grad_cam import PulseGradCam
 from processing.recording.shown_pulse import ShownPulse
 
 _NICE = (1.0, 2.0, 5.0)
 ALONE, TOGETHER = "#d55e00", "#009e73"
 """Colours of what hangs on this pulse, and on it together with those around: both can be read on
 light and dark, and told apart by the colour-blind (Okabe & Ito)."""
+
+SEEN = "#cc79a7"
+"""Colour of where the local network saw a class."""
 
 _BAND, _BAND_SHARE, _APART = 2.6, 0.36, 0.3
 """Most height of the band below the waveform in lines of text, its most share of what there is for
@@ -72,15 +76,22 @@ class PulsePlot(QWidget):
         super().__init__(parent)
         self._words = words
         self._pulse: ShownPulse | None = None
-        self._occlusion: PulseOcclusion | None = None
+        self._looked_at: PulseOcclusion | PulseGradCam | None = None
         self._has_band = False
         self.setMinimumSize(200, 140)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
 
     @property
     def occlusion(self) -> PulseOcclusion | None:
-        """What is drawn in the band below the waveform."""
-        return self._occlusion
+        """What is drawn in the band below the waveform, where that is what was lost."""
+        found = self._looked_at
+        return found if isinstance(found, PulseOcclusion) else None
+
+    @property
+    def grad_cam(self) -> PulseGradCam | None:
+        """What is drawn there, where that is what the local network saw."""
+        found = self._looked_at
+        return found if isinstance(found, PulseGradCam) else None
 
     @property
     def pulse(self) -> ShownPulse | None:
@@ -92,9 +103,11 @@ class PulsePlot(QWidget):
         self._pulse = pulse
         self.update()
 
-    def show_occlusion(self, found: PulseOcclusion | None, *, has_room: bool) -> None:
+    def show_looked_at(
+        self, found: PulseOcclusion | PulseGradCam | None, *, has_room: bool
+    ) -> None:
         """Show in a band what the class hangs on; its room may be kept while nothing is known."""
-        self._occlusion, self._has_band = found, has_room
+        self._looked_at, self._has_band = found, has_room
         self.update()
 
     def use_words(self, words: PulseWords) -> None:
@@ -120,7 +133,7 @@ class PulsePlot(QWidget):
             self._paint_samples(painter, self._pulse, axes)
             self._paint_returns(painter, self._pulse, axes)
             if axes.band is not None:
-                self._paint_band(painter, self._occlusion, axes, axes.band)
+                self._paint_band(painter, axes, axes.band)
 
     def _axes(self, pulse: ShownPulse, metrics: QFontMetrics) -> _Axes:
         line = metrics.height()
@@ -222,16 +235,39 @@ class PulsePlot(QWidget):
             box = QRectF(x - 2 * line, axes.field.top() - line, 4 * line, line)
             painter.drawText(box, int(Qt.AlignmentFlag.AlignHCenter), str(number + 1))
 
-    def _paint_band(
-        self, painter: QPainter, found: PulseOcclusion | None, axes: _Axes, band: QRectF
-    ) -> None:
-        """How much likelier the class is with each window hidden: less so where it is looked at."""
-        line = painter.fontMetrics().height()
+    def _paint_band(self, painter: QPainter, axes: _Axes, band: QRectF) -> None:
         painter.setBrush(Qt.BrushStyle.NoBrush)
         painter.setPen(QPen(self._colour(QPalette.ColorRole.Midlight), 1))
         painter.drawRect(band)
-        if found is None:
-            return
+        found = self._looked_at
+        if isinstance(found, PulseOcclusion):
+            self._paint_occlusion(painter, found, axes, band)
+        elif found is not None and found.times_ns.size:
+            self._paint_grad_cam(painter, found, axes, band)
+
+    def _paint_grad_cam(
+        self, painter: QPainter, found: PulseGradCam, axes: _Axes, band: QRectF
+    ) -> None:
+        """How much each time speaks for the class, of the greatest."""
+        places = [
+            QPointF(axes.x(time), band.bottom() - band.height() * value)
+            for time, value in zip(found.times_ns.tolist(), found.seen.tolist(), strict=True)
+        ]
+        fill = QColor(SEEN)
+        fill.setAlphaF(0.45)
+        painter.setBrush(fill)
+        painter.setPen(Qt.PenStyle.NoPen)
+        ends = [QPointF(places[-1].x(), band.bottom()), QPointF(places[0].x(), band.bottom())]
+        painter.drawPolygon(QPolygonF([*places, *ends]))
+        painter.setBrush(Qt.BrushStyle.NoBrush)
+        painter.setPen(QPen(QColor(SEEN), 1.6))
+        painter.drawPolyline(QPolygonF(places))
+
+    def _paint_occlusion(
+        self, painter: QPainter, found: PulseOcclusion, axes: _Axes, band: QRectF
+    ) -> None:
+        """How much likelier the class is with each window hidden: less so where it is looked at."""
+        line = painter.fontMetrics().height()
         changes = -np.stack([found.drops, found.drops_together])
         low, high = -_end_of(-float(changes.min())), 0.0
         if changes.max() > _UNSEEN:

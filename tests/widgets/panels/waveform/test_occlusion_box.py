@@ -15,12 +15,13 @@ from pytestqt.qtbot import QtBot
 from processing.core.text import Language, Text
 from processing.map.feature import PointReference
 from processing.methods.classes.pulse_occlusion import PulseOcclusion
+from processing.methods.waveforms.pulse_grad_cam import PulseGradCam
 from processing.project.store.runs import Run
 from processing.recording.drive import Drive
 from tests.waveform_flight import import_flight, write_flight
 from tests.widgets.builders import OpenMap
 from widgets.panels.waveform.pulse_panel import PulsePanel
-from widgets.panels.waveform.pulse_plot import ALONE, TOGETHER
+from widgets.panels.waveform.pulse_plot import ALONE, SEEN, TOGETHER
 from widgets.shared.cursor import PickedPosition
 
 Take = Callable[[object | None], None]
@@ -220,7 +221,7 @@ def test_the_band_is_painted_below_the_waveform(panel: PulsePanel, flight: OpenM
     go_to(flight, 7)
     starts = np.arange(76.0)
     bump = np.exp(-(((starts - 30) / 4) ** 2)).astype(np.float32)
-    panel.plot.show_occlusion(
+    panel.plot.show_looked_at(
         PulseOcclusion(2, 0.9, starts, 5.0, 0.8 * bump, -0.3 * bump), has_room=True
     )
     picture = panel.plot.grab().toImage()
@@ -239,3 +240,61 @@ def test_the_band_is_painted_below_the_waveform(panel: PulsePanel, flight: OpenM
             for one in map(QColor, colours)
         ]
         assert min(near) < 24
+
+
+def test_the_local_network_shows_where_it_saw_the_class(
+    qtbot: QtBot, panel: PulsePanel, flight: OpenMap, work: WaitingWork
+) -> None:
+    go_to(flight, 7)
+    switch_on(qtbot, panel)
+    qtbot.keyClick(panel.occlusion_box.method, Qt.Key.Key_Down)
+    work.do()  # what was asked before isn't shown
+    assert panel.plot.occlusion is None
+    assert panel.plot.grad_cam is None
+    work.do()
+    found = panel.plot.grad_cam
+    assert found is not None
+    assert found.code == 2
+    whole, seen = panel.occlusion_box.lines()
+    assert whole.startswith(f"Ground: {found.share:.0%} by the local network, which is not")
+    assert ("likeliest" in whole) == (found.likeliest != 2)
+    assert seen
+    qtbot.keyClick(panel.occlusion_box.method, Qt.Key.Key_Up)
+    assert panel.plot.grad_cam is None
+    work.do()
+    assert panel.plot.occlusion is not None
+
+
+def test_the_local_network_needs_no_run(
+    qtbot: QtBot, panel: PulsePanel, flight: OpenMap, work: WaitingWork
+) -> None:
+    box, flight.all_runs = panel.occlusion_box, ()
+    assert not box.method.isEnabled()
+    go_to(flight, 7)
+    assert not box.switch.isEnabled()
+    qtbot.keyClick(box.method, Qt.Key.Key_Down)
+    assert box.switch.isEnabled()
+    assert "not the model that classifies" in box.switch.toolTip()
+    switch_on(qtbot, panel)
+    work.do()
+    assert panel.plot.grad_cam is not None
+
+
+def test_what_the_network_saw_is_painted(panel: PulsePanel, flight: OpenMap) -> None:
+    go_to(flight, 7)
+    times = np.arange(60.0)
+    seen = np.exp(-(((times - 30) / 6) ** 2)).astype(np.float32)
+    panel.plot.show_looked_at(PulseGradCam(2, 0.9, 2, 0.9, times, seen), has_room=True)
+    picture = panel.plot.grab().toImage()
+    wanted = QColor(SEEN)
+    below = (
+        QColor(picture.pixel(x, y))
+        for x in range(picture.width())
+        for y in range(picture.height() // 2, picture.height())
+    )
+    assert any(
+        abs(one.red() - wanted.red()) < 24
+        and abs(one.green() - wanted.green()) < 24
+        and abs(one.blue() - wanted.blue()) < 24
+        for one in below
+    )
