@@ -47,6 +47,7 @@ TOOLS = (
 
 TRAINING = (
     "processing.laboratory.class_training.image_network",
+    "processing.laboratory.waveform_networks.networks",
     "processing.laboratory.waveform_training.response_learner",
 )
 """What asks for the extra ``train``, and has no kernels."""

@@ -107,16 +107,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     with tempfile.TemporaryDirectory() as temporary:
         keep = options.keep or Path(temporary)
         if not options.score_only:
-            learnt = [
-                one for one in seeds_of(options.seeds) if _order(one).sensor != options.without
-            ]
+            seeds = seeds_of(options.seeds)
+            learnt = [one for one in seeds if _order(one).sensor != options.without]
             for with_waveforms in (True, False):
-                flown = [_flown(one, keep) for one in learnt]
-                _make(flown, Path(temporary), with_waveforms=with_waveforms)
+                folders = [flown(one, keep) for one in learnt]
+                _make(folders, Path(temporary), with_waveforms=with_waveforms)
             flight_models.cache_clear()
         say(f"| flight | input | {' | '.join(map(str, SIX))} | mean F | first returns, least |")
         say("|---|---|" + "---|" * (len(SIX) + 2))
-        checked = [_flown(one, keep) for one in seeds_of(options.check)] + options.folders
+        checked = [flown(one, keep) for one in seeds_of(options.check)] + options.folders
         for folder in checked:
             for with_waveforms in (True, False):
                 for one in _cells_of(folder, with_waveforms=with_waveforms):
@@ -137,7 +136,8 @@ def _order(seed: int) -> FlightRequest:
     )
 
 
-def _flown(seed: int, keep: Path) -> Path:
+def flown(seed: int, keep: Path) -> Path:
+    """The folder of a seed's flight within another; it is simulated where it isn't there."""
     order = _order(seed)
     folder = keep / f"{seed}_{order.style}_{order.sensor}"
     if not folder.exists():

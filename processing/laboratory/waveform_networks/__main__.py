@@ -32,7 +32,7 @@ import numpy as np
 
 from processing.core.output_streams import write_every_character
 from processing.laboratory.accuracy.filters.filters import write_sections
-from processing.laboratory.class_training.flights import _flown
+from processing.laboratory.class_training.flights import flown
 from processing.laboratory.progress_lines import say
 from processing.laboratory.seed_ranges import seeds_of
 from processing.laboratory.waveform_networks.merging import LearnedMerge
@@ -170,7 +170,7 @@ class _Work:
             rng = np.random.default_rng(0)
             self._patches = []
             for seed in seeds_of(self.options.seeds):
-                flight = first_returns_of(_flown(seed, self.options.keep))
+                flight = first_returns_of(flown(seed, self.options.keep))
                 drawn = (random_patch(flight, self.sizes.points, rng) for _ in range(self._each))
                 self._patches += drawn
         return self._patches
@@ -181,7 +181,7 @@ class _Work:
 
     def _seen(self, name: str) -> tuple[NetworkSizes, list[FirstReturns]]:
         seeds = seeds_of(getattr(self.options, name))
-        return self.sizes, [first_returns_of(_flown(one, self.options.keep)) for one in seeds]
+        return self.sizes, [first_returns_of(flown(one, self.options.keep)) for one in seeds]
 
     def _change_table(
         self, networks: dict[str, Any], flights: Sequence[FirstReturns]

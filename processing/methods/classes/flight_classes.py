@@ -34,6 +34,7 @@ from processing.methods.ground.drive_ground import adaptive_ground
 from processing.methods.ground.drive_points import DrivePoints
 from processing.methods.ground.filters.adaptive import GroundAssumptions
 from processing.methods.noise.tiles_of_space import TiledCloud
+from processing.methods.waveforms.pulse_ringing import ringing_returns
 from processing.methods.waveforms.return_measures import (
     RETURN_MEASURES,
     PulseReference,
@@ -184,7 +185,8 @@ class FlightReturns:
         for folder in folders:
             with report_as_user_error(folder):
                 folder.mkdir()
-        points = DrivePoints(tuple(drives), _POINTS_AT_ONCE, monitor)
+        swings = [ringing_returns(one, monitor) if uses_waveforms else None for one in drives]
+        points = DrivePoints(tuple(drives), _POINTS_AT_ONCE, monitor, swings)
         adaptive_ground(points, GroundAssumptions(), folders, scratch / "surface", monitor)
         self.strips = Strips(drives, folders)
         self._waveforms = [waveforms_of(one) if uses_waveforms else None for one in drives]
